@@ -12,7 +12,7 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 
 from core.errors import InputError
-from core.messages import Language, Message, label
+from core.messages import MINUS, Language, Message, label
 from workbench.work.worker import ENDED, Failure
 
 
@@ -76,6 +76,11 @@ def choose(language: Language, parent: QObject) -> None:
     QCoreApplication.installTranslator(_Catalogue(parent))
 
 
+def chosen() -> Language:
+    """The language that was chosen, as the window says it."""
+    return _chosen
+
+
 def spoken() -> str:
     """The name of the language that was chosen."""
     return _chosen.name
@@ -95,6 +100,11 @@ def text_of(message: Message | Exception | Failure | str) -> str:
     if isinstance(message, InputError):
         return message.told(_chosen)
     return _chosen(message) if isinstance(message, Message) else str(message)
+
+
+def numeral(digits: str) -> str:
+    """Digits as Python writes them, with the decimal sign of the window's language and a true minus."""
+    return digits.replace("-", MINUS).replace(".", _chosen.decimal)
 
 
 def number(value: float, spec: str = "") -> str:

@@ -95,10 +95,10 @@ def fixed(value: float, decimals: int, *, signed: bool = False) -> str:
     return ENGLISH.fixed(value, decimals, signed=signed)
 
 
-def with_uncertainty(value: float, uncertainty: float) -> tuple[str, str]:
+def with_uncertainty(value: float, uncertainty: float, words: Words = ENGLISH) -> tuple[str, str]:
     """Value and uncertainty rounded alike, the uncertainty to two significant digits."""
     decimals = decimals_of(uncertainty)
-    return fixed(value, decimals), fixed(uncertainty, decimals)
+    return words.fixed(value, decimals), words.fixed(uncertainty, decimals)
 
 
 def count(number: int, noun: str) -> str:
@@ -106,9 +106,9 @@ def count(number: int, noun: str) -> str:
     return f"{grouped(number)} {noun}{'' if number == 1 else 's'}"
 
 
-def thickness_line(gauge: GaugeResult) -> str:
+def thickness_line(gauge: GaugeResult, words: Words = ENGLISH) -> str:
     """'50.012 mm ± 0.024 mm (k = 2)'."""
-    return _line(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", ENGLISH)
+    return _line(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", words)
 
 
 def value_line(one: Characteristic, words: Words = ENGLISH) -> str:

@@ -2,12 +2,21 @@
 
 from __future__ import annotations
 
+import re
+
 import pytest
 
+import workbench.language
 from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT
 from core.messages import Command, Field, Message
+from core.translations import language
+from tests.workbench.pages.inspect_cases import gauge
 from workbench.language import text_of
+from workbench.pages.inspect.words import result_rows, thickness
+from workbench.pages.scan.words import condition_text
+from workbench.pages.words import mm
+from workbench.views.scene.colours import ticks
 
 
 @pytest.mark.parametrize(
@@ -34,3 +43,17 @@ def test_advice_of_an_option_is_advice_of_the_windows_own() -> None:
     full = InputError(Message("test.full", "cannot be written"), where="x", todo=ANOTHER_OUT)
     assert text_of(full).endswith("copy the project to another disk and open it there.")
     assert str(full).endswith("choose another folder with --out.")
+
+
+def test_a_page_in_german_writes_all_its_numbers_alike(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(workbench.language, "_chosen", language("de"))
+    measured = gauge()
+    said = [
+        *(row[1] for row in result_rows(measured)),
+        thickness(measured),
+        mm(0.125),
+        condition_text(12.0),
+        *ticks(-0.5, 0.5, 5)[1],
+    ]
+    assert not [one for one in said if re.search(r"\d\.\d|-\d", one)]
+    assert "50,012 mm ± 0,024 mm (k = 2)" in said

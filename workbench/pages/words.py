@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import math
 
-from workbench.language import number
+from core.report.wording import Words
+from workbench.language import chosen, number
 
 
 def length(value: float, unit: str, digits: int = 3) -> str:
@@ -35,6 +36,11 @@ def percent(share: float) -> str:
 def count(number: int) -> str:
     """A count with thin spaces between thousands."""
     return f"{number:,}".replace(",", "\u2009")
+
+
+def wording() -> Words:
+    """The words and numbers of results in the window's language, as the report writes them."""
+    return Words(chosen())
 
 
 def capital(text: str) -> str:

@@ -9,7 +9,7 @@ from core.calibrate.camera.changes import CameraChanges, parameter_values
 from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.calibration.words import history_row, used_row
 from workbench.pages.words import degrees, mm, percent, px
 from workbench.views.lists.value_rows import ValueRow
@@ -72,7 +72,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
     if changes is None:
         return []
     rows: list[tuple[str, ...]] = [
-        (tr("RMS [px]"), f"{changes.rms_px[0]:.3f}", f"{changes.rms_px[1]:.3f}", "", ""),
+        (tr("RMS [px]"), number(changes.rms_px[0], ".3f"), number(changes.rms_px[1], ".3f"), "", ""),
         (tr("Views"), str(changes.views[0]), str(changes.views[1]), "", ""),
     ]
     for one in changes.parameters:
@@ -84,10 +84,10 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
         rows.append(
             (
                 f"{label} ({unit})" if unit else label,
-                f"{one.first:.{digits}f}",
-                f"{one.second:.{digits}f}",
-                f"{one.change:+.{digits}f}{mark}",
-                f"{one.sd:.{digits}f}",
+                number(one.first, f".{digits}f"),
+                number(one.second, f".{digits}f"),
+                number(one.change, f"+.{digits}f") + mark,
+                number(one.sd, f".{digits}f"),
             )
         )
     return rows
@@ -96,7 +96,7 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
 def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
     """The kept calibrations: when, RMS, views, id, whether in use."""
     return [
-        history_row(entry, accepted, f"{entry.rms_px:.3f}", f"{entry.used}/{entry.total}", entry.id)
+        history_row(entry, accepted, number(entry.rms_px, ".3f"), f"{entry.used}/{entry.total}", entry.id)
         for entry in entries
     ]
 

@@ -18,6 +18,7 @@ from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
 from workbench.pages.inspect.presenter import InspectPresenter
+from workbench.pages.words import wording
 from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
@@ -179,4 +180,4 @@ class ResultPanel(QWidget):
         if outdated:
             self.verdict.set_verdict("", self.tr("The result below is out of date."))
         else:
-            self.verdict.set_verdict(kinds.get(gauge.verdict, ""), verdict_sentence(gauge))
+            self.verdict.set_verdict(kinds.get(gauge.verdict, ""), verdict_sentence(gauge, wording()))

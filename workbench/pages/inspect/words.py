@@ -7,11 +7,11 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from core.files.project.data import Repeat
-from core.report.wording import decimals_of, fixed, grouped, with_uncertainty
+from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
 from core.study.repeats import RepeatStatistics
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.inspect.picks import Pick, Span
-from workbench.pages.words import capital
+from workbench.pages.words import capital, wording
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -25,14 +25,13 @@ CAPABLE = "capable"
 
 def thickness(gauge: GaugeResult) -> str:
     """'50.008 mm ± 0.027 mm (k = 2)'."""
-    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
-    return f"{value} mm ± {expanded} mm (k = {gauge.k:g})"
+    return thickness_line(gauge, wording())
 
 
 def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     """The thickness and all that is said of the faces."""
     decimals = max(decimals_of(gauge.U_mm), 0)
-    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm)
+    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm, wording())
     rows: list[ValueRow] = [
         (tr("Thickness"), f"{value} mm", tr("Distance of the two parallel planes fitted to both faces"), ""),
         (
@@ -44,16 +43,16 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     ]
     if gauge.deviation_mm is not None:
         nominal = tr("Measured thickness less the nominal value of {nominal:g} mm", nominal=gauge.nominal_mm)
-        rows.append((tr("Deviation"), f"{fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
+        rows.append((tr("Deviation"), f"{wording().fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
     flatness = tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
     upper, lower = gauge.points_used
     return [
         *rows,
-        (tr("Flatness, upper face"), f"{fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
-        (tr("Flatness, lower face"), f"{fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
+        (tr("Flatness, upper face"), f"{wording().fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
+        (tr("Flatness, lower face"), f"{wording().fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
         (
             tr("Parallelism"),
-            f"{fixed(math.degrees(gauge.parallelism), 3)}°",
+            f"{wording().fixed(math.degrees(gauge.parallelism), 3)}°",
             tr("Angle between the two faces when each is fitted by itself"),
             "",
         ),
@@ -66,11 +65,16 @@ def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
     """Each contribution to the uncertainty, and all together."""
     decimals = max(decimals_of(gauge.u_mm) + 1, 0)
     rows: list[ValueRow] = [
-        (capital(text_of(row.source)), f"{fixed(row.u_mm, decimals)} mm", tr("Standard uncertainty (k = 1)"), "")
+        (
+            capital(text_of(row.source)),
+            f"{wording().fixed(row.u_mm, decimals)} mm",
+            tr("Standard uncertainty (k = 1)"),
+            "",
+        )
         for row in gauge.budget
     ]
     together = tr("Root of the sum of squares of all rows (k = 1)")
-    return [*rows, (tr("u, all together"), f"{fixed(gauge.u_mm, decimals)} mm", together, "")]
+    return [*rows, (tr("u, all together"), f"{wording().fixed(gauge.u_mm, decimals)} mm", together, "")]
 
 
 def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> list[ValueRow]:
@@ -78,12 +82,12 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
     unknown = tr("needs a nominal value")
 
     def mm(value: float | None, *, signed: bool = False) -> str:
-        return unknown if value is None else f"{fixed(value, 4, signed=signed)} mm"
+        return unknown if value is None else f"{wording().fixed(value, 4, signed=signed)} mm"
 
-    std = f"{fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else tr("needs two repeats")
+    std = f"{wording().fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else tr("needs two repeats")
     rows: list[ValueRow] = [
         (tr("Repeats"), str(statistics.n), tr("Scans in the series"), ""),
-        (tr("Mean"), f"{fixed(statistics.mean_mm, 4)} mm", tr("Mean of all repeats"), ""),
+        (tr("Mean"), f"{wording().fixed(statistics.mean_mm, 4)} mm", tr("Mean of all repeats"), ""),
         (
             tr("Error of the mean"),
             mm(statistics.error_mm, signed=True),
@@ -103,14 +107,24 @@ def type1_rows(study: Type1Study) -> list[ValueRow]:
     """Bias, Cg and Cgk of a type-1 study, and whether they suffice."""
     level: Level = "good" if study.verdict == CAPABLE else "bad"
     verdict = tr("capable") if level == "good" else tr("not capable")
-    low, high = (fixed(end, 2) for end in study.cg_interval)
-    lasts = fixed(study.smallest_tolerance, 4)
+    low, high = (wording().fixed(end, 2) for end in study.cg_interval)
+    lasts = wording().fixed(study.smallest_tolerance, 4)
     return [
         (tr("Type-1 study"), verdict, tr("Capable if Cg and Cgk are 1.33 or more"), level),
-        (tr("Tolerance T"), f"{study.tolerance:g} mm", tr("Full width: twice the ± tolerance of the thickness"), ""),
-        (tr("Cg"), fixed(study.cg, 2), tr("0.2 T / (6 s); 95 % interval {low} to {high}", low=low, high=high), ""),
-        (tr("Cgk"), fixed(study.cgk, 2), tr("(0.1 T − |bias|) / (3 s)"), ""),
-        (tr("Bias"), f"{fixed(study.bias, 4, signed=True)} mm", tr("Mean less the reference value"), ""),
+        (
+            tr("Tolerance T"),
+            f"{number(study.tolerance, 'g')} mm",
+            tr("Full width: twice the ± tolerance of the thickness"),
+            "",
+        ),
+        (
+            tr("Cg"),
+            wording().fixed(study.cg, 2),
+            tr("0.2 T / (6 s); 95 % interval {low} to {high}", low=low, high=high),
+            "",
+        ),
+        (tr("Cgk"), wording().fixed(study.cgk, 2), tr("(0.1 T − |bias|) / (3 s)"), ""),
+        (tr("Bias"), f"{wording().fixed(study.bias, 4, signed=True)} mm", tr("Mean less the reference value"), ""),
         (tr("p of the bias"), f"{study.p:.2g}", tr("t-test: how probable a bias as large is without any"), ""),
         (tr("Smallest T"), f"{lasts} mm", tr("Smallest tolerance for which Cgk reaches 1.33"), ""),
     ]
@@ -118,7 +132,7 @@ def type1_rows(study: Type1Study) -> list[ValueRow]:
 
 def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
     """Scan, thickness, U, calibration, time."""
-    value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm)
+    value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm, wording())
     time = repeat.measured_at.astimezone().strftime("%Y-%m-%d %H:%M")
     return scan_name(repeat.scan), value, f"± {expanded}", short_id(repeat.calibration_id), time
 
@@ -169,16 +183,16 @@ def scan_name(stored: str) -> str:
 def pick_lines(pick: Pick) -> tuple[str, str]:
     """Where a picked point is, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
-    x, y, z = (fixed(float(value), decimals) for value in pick.place)
+    x, y, z = (wording().fixed(float(value), decimals) for value in pick.place)
     place = tr("{name}   x {x}   y {y}   z {z} mm", name=pick.name, x=x, y=y, z=z)
     u, v = pick.uv
     frame = PurePosixPath(pick.frame).name or tr("fan, no frame")
     return place, tr(
         "± {sigma} mm (sd), {frame}, u {u} v {v} px",
-        sigma=fixed(pick.sigma_mm, decimals),
+        sigma=wording().fixed(pick.sigma_mm, decimals),
         frame=frame,
-        u=fixed(u, 1),
-        v=fixed(v, 1),
+        u=wording().fixed(u, 1),
+        v=wording().fixed(v, 1),
     )
 
 
@@ -187,7 +201,7 @@ def span_lines(span: Span) -> tuple[str, str]:
     text = tr("{name}   {value} mm, u = {u} mm", name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
-        x, y, z = (fixed(float(value), 1) for value in pick.place)
+        x, y, z = (wording().fixed(float(value), 1) for value in pick.place)
         ends.append(f"({x}, {y}, {z})")
     return text, tr("from {start} to {end} mm", start=ends[0], end=ends[1])
 
@@ -198,5 +212,5 @@ def span_label(span: Span) -> str:
 
 
 def _span(span: Span) -> dict[str, str]:
-    value, u = with_uncertainty(span.result.distance_mm, span.result.u_mm)
+    value, u = with_uncertainty(span.result.distance_mm, span.result.u_mm, wording())
     return {"value": value, "u": u}

@@ -36,7 +36,7 @@ from core.pipeline.live.events import (
 )
 from core.scan.preview.preflight import Check
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.live.ending import LiveEnding, calibrated_s, new_folder
 from workbench.pages.live.settings import LiveSettings
 from workbench.pages.sources import folder_of
@@ -207,7 +207,7 @@ class LivePresenter(QObject):
         text = tr("{lost} of {total} pictures were lost on the way", lost=self.dropped, total=total)
         if not self.rate_hz > 0:
             return tr("{text}: choose a lower rate.", text=text)
-        lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else f"{0.9 * self.rate_hz:.1f}"
+        lower = f"{int(self.rate_hz)}" if self.rate_hz >= 1 else number(0.9 * self.rate_hz, ".1f")
         return tr(
             "{text}; {rate:.1f} a second are taken: choose a rate of {lower}/s or lower.",
             text=text,

@@ -8,7 +8,7 @@ from typing import Any
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration, PlanePose
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.calibration.words import history_row, used_row
 from workbench.pages.words import capital, degrees, mm, px
 from workbench.views.colours import Level
@@ -114,7 +114,7 @@ def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...
     """The kept planes: when, RMS of each line, poses, id, camera, whether in use."""
     return [
         history_row(
-            entry, accepted, ", ".join(f"{rms:.3f}" for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
+            entry, accepted, ", ".join(number(rms, '.3f') for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
             entry.id, entry.camera_id,
         )
         for entry in entries

@@ -14,6 +14,7 @@ from core.files.recording.options import StatedTilt
 from core.report.wording import thickness_line
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.words import wording
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import muted
@@ -104,7 +105,7 @@ class ProfilesPanel(QWidget):
         self._ended()
         used = [one for one in summary.pictures if one.reason is None]
         lines = [
-            thickness_line(summary.gauge),
+            thickness_line(summary.gauge, wording()),
             tr("{n} of {m} pictures used", n=len(used), m=len(summary.pictures)),
             *(f"{one.name}: {text_of(one.reason)}" for one in summary.pictures if one.reason is not None),
             *(text_of(note) for note in summary.gauge.notes),

@@ -7,7 +7,7 @@ import math
 from core.messages import Message
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.words import capital, count, mm, percent
 from workbench.views.lists.value_rows import ValueRow
 
@@ -103,7 +103,7 @@ def condition_text(condition: float) -> str:
     if math.isinf(condition):
         return tr("∞")
     if condition < 10_000:
-        return f"{condition:.0f}"
+        return number(condition, ".0f")
     exponent = math.floor(math.log10(condition))
     return f"{condition / 10**exponent:.0f}·10" + str(exponent).translate(_RAISED)
 

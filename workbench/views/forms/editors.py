@@ -9,6 +9,9 @@ from PySide6.QtCore import QEvent, QLocale, Qt, QTimer, Signal
 from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator, QWheelEvent
 from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QLineEdit, QPlainTextEdit
 
+from core.messages import MINUS
+from workbench.language import number
+
 _STEPPING_MS = 400
 
 
@@ -23,6 +26,11 @@ def _is_for_the_window(event: QEvent, typing: bool) -> bool:
         return False
     event.ignore()
     return True
+
+
+def _plain(text: str) -> str:
+    """A number as somebody types it, with either decimal sign and either minus, as Qt reads it."""
+    return text.replace(",", ".").replace(MINUS, "-")
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,7 +61,7 @@ class NumberEditor(QDoubleSpinBox):
         self._first = within.minimum if within.first is None else within.first
         self._whole = within.decimals == 0
         self._told: float | None = None
-        self.setLocale(QLocale.c())
+        self.setLocale(QLocale.c())  # which texts are numbers; they are shown in the window's language
         self.setDecimals(within.decimals)
         # the value below the smallest stands for none
         below = 0.0 if within.none_text is None else max(within.step, 10.0**-within.decimals)
@@ -100,16 +108,19 @@ class NumberEditor(QDoubleSpinBox):
     def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:
         if self._none_text is not None and self._typed(text) in ("", self._none_text):
             return QValidator.State.Acceptable, text, position
-        state, _, _ = super().validate(text.replace(",", "."), position)
+        state, _, _ = super().validate(_plain(text), position)
         return state, text, position
 
     def valueFromText(self, text: str) -> float:
         if self._none_text is not None and self._typed(text) in ("", self._none_text):
             return self.minimum()
-        return super().valueFromText(text.replace(",", "."))
+        return super().valueFromText(_plain(text))
+
+    def textFromValue(self, value: float) -> str:
+        return number(value, f".{self.decimals()}f")
 
     def fixup(self, text: str) -> str:
-        return super().fixup(text.replace(",", "."))
+        return super().fixup(_plain(text))
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         if self.hasFocus():

@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidgetAction,
 )
 
+from workbench.language import number
 from workbench.theme import icon
 from workbench.views.layouts import in_row
 
@@ -118,6 +119,6 @@ class ToneMenu(QMenu):
 
     def _say(self) -> None:
         gain, gamma = self.values
-        self._gain_text.setText(f"× {gain:.2f}")
-        self._gamma_text.setText(f"γ {gamma:.2f}")
+        self._gain_text.setText(f"× {number(gain, '.2f')}")
+        self._gamma_text.setText(f"γ {number(gamma, '.2f')}")
         self.changed.emit(gain, gamma)

@@ -9,6 +9,7 @@ from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
+from workbench.language import number, numeral
 from workbench.theme import shades
 from workbench.views.common import copy_picture, save_picture
 from workbench.views.empty_state import EmptyState
@@ -18,10 +19,10 @@ _TICK_PIXELS = 11
 
 
 class Axis(pg.AxisItem):  # type: ignore[misc]
-    """An axis whose numbers have a true minus."""
+    """An axis whose numbers are those of the window's language."""
 
     def tickStrings(self, values: Any, scale: float, spacing: float) -> list[str]:
-        return [text.replace("-", "−") for text in super().tickStrings(values, scale, spacing)]
+        return [numeral(text) for text in super().tickStrings(values, scale, spacing)]
 
 
 class Canvas(pg.PlotWidget):  # type: ignore[misc]
@@ -201,4 +202,4 @@ def written(value: float, step: float) -> str:
     decimals = 0
     while decimals < 9 and step < 0.999 * 10.0**-decimals:
         decimals += 1
-    return f"{value:.{decimals}f}".replace("-", "−")
+    return number(value, f".{decimals}f")

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import tr
+from workbench.language import number, tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot, tinted, written
 
@@ -126,7 +126,7 @@ class RunChart(Plot):
         if runs is None or not 0 <= place < len(runs.values):
             return ""
         value, U = (written(float(part[place]), 1e-4) for part in (runs.values, runs.U))
-        return f"{runs.labels[place]}: {value} ± {U} {runs.unit} (k = {runs.k:g})"
+        return f"{runs.labels[place]}: {value} ± {U} {runs.unit} (k = {number(runs.k, 'g')})"
 
 
 class Histogram(Plot):

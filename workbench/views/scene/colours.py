@@ -1,4 +1,4 @@
-"""Values to colours, and the colour bar's ticks. Numpy only."""
+"""Values to colours, and the colour bar's ticks."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.model.arrays import Array
+from workbench.language import number
 
 Rgb = tuple[int, int, int]
 ColourMap = Literal["viridis", "plasma", "deviation"]
@@ -124,7 +125,7 @@ def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]
     first, last = int(np.ceil(low / step - 1e-6)), int(np.floor(high / step + 1e-6))
     decimals = max(0, -int(np.floor(np.log10(step) + 1e-9)))
     values = [k * step for k in range(first, last + 1)]
-    return values, [f"{value:.{decimals}f}".replace("-", "−") for value in values]
+    return values, [number(value, f".{decimals}f") for value in values]
 
 
 def nice_step(at_least: float) -> float:

@@ -68,7 +68,7 @@ def test_half_limits_are_told(values, sentence):
 def test_regions_come_from_faces_by_number_or_from_other_features():
     spec = fields.with_value(made("thickness"), "parts", 2)
     assert spec.regions == (Auto(1), Auto(2))
-    spec = fields.with_value(spec, "source 1", fields.OF + "table")
+    spec = fields.with_value(spec, "source 1", fields.POINTS_OF + "table")
     assert spec.regions == (Auto(1), PointsOf("table"))
     drawn = fields.with_region(spec, 0, Polygon(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))))
     assert fields.values_of(drawn)["source 0"] == fields.DRAWN

@@ -121,7 +121,7 @@ def test_others_follow_a_new_name(presenter, features):
     presenter.feature.add("plane")
     presenter.feature.add("distance")
     presenter.feature.add("plane")
-    presenter.feature.set_value("source 0", fields.OF + "plane 1")
+    presenter.feature.set_value("source 0", fields.POINTS_OF + "plane 1")
     features.choose("plane 1")
     presenter.feature.set_value("name", "top")
     assert features.plan.feature("distance 1").of == ("top", "plane 2")

@@ -3,6 +3,8 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QKeySequence, QShortcut, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
+import workbench.language
+from core.translations import language
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 
@@ -25,6 +27,11 @@ def form(qtbot):
     form.activateWindow()
     form.setFocus()
     return form
+
+
+@pytest.fixture
+def german(monkeypatch):
+    monkeypatch.setattr(workbench.language, "_chosen", language("de"))
 
 
 @pytest.fixture
@@ -214,3 +221,24 @@ def test_undo_is_the_editors_own_while_something_is_half_typed_and_else_the_wind
     editor.setFocus()
     qtbot.keyClick(editor, Qt.Key.Key_Z, Qt.KeyboardModifier.ControlModifier)
     assert undone == ["the project", "the project"]
+
+
+@pytest.mark.parametrize("typed", ["12.25", "12,25"])
+def test_numbers_are_shown_in_the_windows_language_and_typed_with_either_sign(german, form, qtbot, typed):
+    square = form.editor("square")
+    assert square.text() == "10,000 mm"
+    type_in(qtbot, square, typed)
+    qtbot.keyClick(square, Qt.Key.Key_Return)
+    assert (square.text(), form.values()["square"]) == ("12,250 mm", 12.25)
+
+
+@pytest.mark.parametrize("minus", ["-", "−"])
+def test_a_number_below_zero_has_a_true_minus_and_takes_the_keyboards(german, form, qtbot, minus):
+    air = form.editor("air")
+    air.setFocus()
+    air.selectAll()
+    air.lineEdit().insert(f"{minus}3,5")  # pasted: no key has a true minus
+    qtbot.keyClick(air, Qt.Key.Key_Return)
+    assert (air.text(), form.values()["air"]) == ("−3,5 °C", -3.5)
+    qtbot.keyClick(air, Qt.Key.Key_Up)
+    assert form.values()["air"] == -2.5

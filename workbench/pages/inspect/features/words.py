@@ -9,7 +9,8 @@ from core.inspect.conformity import Verdict
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of
 from core.report.wording import decision_sentence, grouped, shown_unit, value_line, with_uncertainty
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
+from workbench.pages.words import wording
 from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
@@ -37,16 +38,16 @@ def value(row: Characteristic) -> str:
     """'50.012 ± 0.024 mm'."""
     unit, factor = shown_unit(row)
     if not math.isfinite(row.U):
-        return value_line(row)
-    shown, expanded = with_uncertainty(factor * row.value, factor * row.U)
+        return value_line(row, wording())
+    shown, expanded = with_uncertainty(factor * row.value, factor * row.U, wording())
     return f"{shown} ± {expanded} {unit}" if unit != "°" else f"{shown}° ± {expanded}°"
 
 
 def tip(row: Characteristic) -> str:
     """All about one result: value with k, the decision and why, what was measured."""
-    lines = [f"{row.name}: {value_line(row)}"]
+    lines = [f"{row.name}: {value_line(row, wording())}"]
     if row.verdict:
-        lines.append(decision_sentence(row))
+        lines.append(decision_sentence(row, wording()))
     if row.rule:
         lines.append(tr("Rule: {rule}.", rule=text_of(row.rule)))
     return "\n".join([*lines, *map(text_of, row.notes)])
@@ -79,7 +80,7 @@ def class_rows(found: ShownDeviations) -> list[ValueRow]:
         else:
             span = tr("{low:+g} to {high:+g}", low=one.low_mm, high=one.high_mm)
         name = f"{one.mark}  {span}" if one.mark else span
-        rows.append((name, f"{100 * one.share:.1f} %", share, ""))
+        rows.append((name, f"{number(100 * one.share, '.1f')} %", share, ""))
     return rows
 
 

@@ -6,9 +6,9 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-from core.report.wording import fixed
-from workbench.language import text_of, tr
+from workbench.language import number, text_of, tr
 from workbench.pages.inspect import words as inspect_words
+from workbench.pages.words import wording
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -108,7 +108,7 @@ def _components(study: GrrStudy) -> Table:
     for one in study.components:
         shares = [one.contribution, one.of_total] + ([one.of_tolerance or 0.0] if with_tolerance else [])
         said = names.get(one.source, one.source)
-        body.append([said, fixed(one.sigma, 5), *(fixed(100 * share, 1) for share in shares)])
+        body.append([said, wording().fixed(one.sigma, 5), *(wording().fixed(100 * share, 1) for share in shares)])
     return headers, body
 
 
@@ -129,9 +129,9 @@ def _quantities(study: AcceptanceCheck) -> Table:
         [
             text_of(one.title),
             str(len(one.readings)),
-            fixed(one.largest_error, 4, signed=True),
+            wording().fixed(one.largest_error, 4, signed=True),
             one.worst.position,
-            "" if one.limit is None else f"{one.limit:g}",
+            "" if one.limit is None else number(one.limit, "g"),
             verdict_row(one.verdict)[1] if one.verdict else "",
         ]
         for one in study.quantities
@@ -140,4 +140,4 @@ def _quantities(study: AcceptanceCheck) -> Table:
 
 
 def _percent(share: float) -> str:
-    return f"{fixed(100 * share, 1)} %" if math.isfinite(share) else "–"
+    return f"{wording().fixed(100 * share, 1)} %" if math.isfinite(share) else "–"
