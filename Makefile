@@ -12,15 +12,16 @@ OUT    ?= out
 # Two tests at a time, each on one core: linear algebra on more threads than cores is many times slower.
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
 # Modules are handed out in the order tests/conftest.py puts them into: long ones first.
-SIDE_BY_SIDE := -n 2 --dist loadscope --no-loadscope-reorder --max-worker-restart=0
+AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
+SIDE_BY_SIDE := -n 2 $(AS_MODULES)
 test quick proofs: export OPENBLAS_NUM_THREADS = 1
 test quick proofs: export OMP_NUM_THREADS = 1
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
-# is one; the whole job, the pages and the 3D view are also tested without a screen, where 3D is a picture.
-BOTH_WAYS := tests/workbench/test_whole_job.py tests/workbench/test_behaviour_pages.py \
-	$(wildcard tests/workbench/views/scene/test_*.py)
-SCREEN_ONLY := $(filter-out $(BOTH_WAYS),$(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py))
+# is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera.
+BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
+SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
+ON_SCREEN   := -n 3 $(AS_MODULES)
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
@@ -35,11 +36,12 @@ app: $(WINDOW)            ## open the workbench
 compile: $(READY)         ## once, so that test processes do not all compile the same at the same time
 	$(BIN)/python -c 'from core.pipeline.compile_ahead import compile_ahead; compile_ahead()'
 
-test: check compile       ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
+test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
+	@$(MAKE) --no-print-directory -j2 --output-sync=target check compile  # neither keeps two cores busy
 	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
 	@if command -v Xvfb >/dev/null; then set -x; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
-	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) $(BOTH_WAYS) $(SCREEN_ONLY); \
+	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); \
 	else echo "Xvfb is not installed: windows are tested without a screen only"; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
 

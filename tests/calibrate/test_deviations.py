@@ -29,6 +29,7 @@ def fan(camera) -> FanCalibration:
     return fit_fan(SEEN, camera.camera, THREE)
 
 
+@pytest.mark.accuracy
 def test_the_fan_follows_a_displaced_camera_as_if_it_were_calibrated_anew(camera, fan):
     """To a tenth of its own uncertainty: weights are estimated anew, too."""
     sd = np.sqrt(np.diag(np.asarray(fan.fan.covariance)))

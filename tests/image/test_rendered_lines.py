@@ -75,6 +75,7 @@ def hold(line: Centreline, error: np.ndarray) -> None:
     assert np.sqrt(np.mean((error / line.sigma) ** 2)) < 1.5
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", ["pose00", "pose04", "pose06"])
 def test_every_line_on_a_plate_is_where_its_light_is(poses: Poses, name: str) -> None:
     """Stripes saturated for long, faint ones on the dark mark, and ones of two brightnesses in one picture."""

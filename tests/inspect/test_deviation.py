@@ -48,6 +48,7 @@ def seen_from_above(rng, count=2000):
     return points + rng.normal(0, 0.02, count)[:, None] * normals[seen][which]
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("turn", [0.3, -1.7])
 def test_a_part_is_found_however_it_lies(turn):
     rng = np.random.default_rng(1)
@@ -61,6 +62,7 @@ def test_a_part_is_found_however_it_lies(turn):
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
 
 
+@pytest.mark.accuracy
 def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     rng = np.random.default_rng(4)
     points = np.column_stack([rng.uniform(-29, 29, (600, 1)), rng.uniform(-17, 17, (600, 1)), rng.normal(0, 0.01, 600)])

@@ -48,6 +48,7 @@ def relative():
     return found
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", HEIGHTS)
 def test_errors_of_heights_are_as_large_as_stated(relative, name):
     assert len(relative[name]) == len(SEEDS)

@@ -185,6 +185,7 @@ def test_speckle_costs_and_the_part_is_known_less_well_than_with_perfect_calibra
     assert 0 < alone.without < whole.without
 
 
+@pytest.mark.accuracy
 def test_four_times_the_poses_and_views_halve_the_calibrations_bounds(bounds):
     more = bounds_of(replace(SMALL, poses=4 * SMALL.poses, views=4 * SMALL.views), (50.0,))
     ratios = {str(one.quantity): one.with_speckle / bounds[str(one.quantity)].with_speckle for one in more}

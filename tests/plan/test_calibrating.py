@@ -36,6 +36,7 @@ def test_four_times_the_views_halve_the_cameras_deviations(camera):
     assert np.median(ratios) == pytest.approx(0.5, abs=0.12)
 
 
+@pytest.mark.accuracy
 def test_the_planned_fan_is_the_true_one_within_its_covariance(fan):
     off = (fan.fan.pis - SMALL.fan().pis).ravel()
     sd = np.sqrt(np.diag(fan.fan.covariance))
@@ -44,6 +45,7 @@ def test_the_planned_fan_is_the_true_one_within_its_covariance(fan):
     assert np.all(np.abs(off) < 5 * sd)
 
 
+@pytest.mark.accuracy
 def test_more_poses_make_the_fan_better_known(fan, camera):
     many = plan_fan(replace(SMALL, poses=4 * SMALL.poses), camera.camera, seed=1)
 
@@ -83,6 +85,7 @@ def test_a_board_with_more_markers_than_its_dictionary_is_told():
         plan_camera(replace(SMALL, camera_target=Charuco(12, 9, 15.0, 11.25, "DICT_4X4_50")), seed=1)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("target", [Checkerboard(17, 12, 10.0), CircleGrid(13, 10, 14.0)])
 def test_any_target_can_carry_the_fans_stripes(camera, target):
     fan = plan_fan(replace(SMALL, plane_target=target), camera.camera, seed=1)

@@ -24,6 +24,7 @@ def base(planner):
     return planner.predict(SMALL, HEIGHT, scans=2)
 
 
+@pytest.mark.accuracy
 def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(base):
     total = np.sqrt(sum(row.u_mm**2 for row in base.budget))
 
@@ -57,6 +58,7 @@ def test_the_same_plan_gives_the_same_figures(base):
     assert np.array_equal(again.sigma.own, base.sigma.own, equal_nan=True)
 
 
+@pytest.mark.accuracy
 def test_more_poses_leave_less_of_the_fans_share(planner, base):
     many = planner.predict(replace(SMALL, poses=3 * SMALL.poses), HEIGHT, scans=1)
 
@@ -67,6 +69,7 @@ def test_more_poses_leave_less_of_the_fans_share(planner, base):
     assert many.u_mm < base.u_mm
 
 
+@pytest.mark.accuracy
 def test_without_speckle_a_thickness_is_surer(planner, base):
     assert planner.predict(replace(SMALL, speckle=0.0), HEIGHT, scans=1).u_mm < 0.85 * base.u_mm
 

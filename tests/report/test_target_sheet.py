@@ -29,6 +29,7 @@ def raster(data, dpi=DPI):
     return np.array(pypdfium2.PdfDocument(data)[0].render(scale=dpi / 72, grayscale=True).to_numpy())
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", TARGETS)
 def test_a_printed_target_is_found_with_its_spacing_true_to_a_thousandth(name):
     target, paper = TARGETS[name]

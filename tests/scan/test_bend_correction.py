@@ -40,6 +40,7 @@ def _diameter_error(exact, scan):
     return 2 * (sphere_through(scan.cloud.points[on]).radius - sphere.radius)
 
 
+@pytest.mark.accuracy
 def test_a_ball_that_wide_light_makes_too_small_has_its_diameter_when_solved_again(scans):
     exact, (_, first), (_, second) = scans
     assert _diameter_error(exact, first) < -0.03

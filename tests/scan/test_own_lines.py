@@ -26,6 +26,7 @@ def scans():
     return crossings, solved
 
 
+@pytest.mark.accuracy
 def test_planes_follow_the_fans_cells_as_stated(scans):
     crossings, solved = scans
     rays, sweep = crossings.scan.rig.camera.rays(crossings.table.uv), crossings.table.a

@@ -40,6 +40,7 @@ def test_a_scan_at_rest_is_not_suspected(kind):
     assert movement(exact(kind), 1) is None
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize(("kind", "frame"), [("mask", 15), ("mask", 30), ("mask", 45), ("sphere", 30)])
 def test_a_shift_of_three_tenths_is_found_and_so_is_its_frame(kind, frame):
     found = movement(exact(kind, (frame, ASIDE)), 1)

@@ -99,6 +99,7 @@ def drawn(rng, p=10, o=3, r=3, part=1.0, operator=0.2, both=0.15, error=0.2):
     )  # fmt: skip
 
 
+@pytest.mark.accuracy
 def test_intervals_hold_the_truth_in_about_95_of_100_studies():
     rng = np.random.default_rng(3)
     grr = math.sqrt(0.2**2 + 0.15**2 + 0.2**2)

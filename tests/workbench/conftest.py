@@ -233,7 +233,11 @@ def _foreign_children(request: pytest.FixtureRequest) -> list[str]:
 
 def _children(listing: Path) -> Iterator[str]:
     for task in listing.glob("*/children"):
-        for pid in task.read_text().split():
+        try:
+            children = task.read_text().split()
+        except OSError:  # the thread has ended
+            continue
+        for pid in children:
             try:
                 command = Path(f"/proc/{pid}/cmdline").read_text().replace("\0", " ").strip()
             except OSError:

@@ -32,6 +32,7 @@ def test_a_skew_that_is_there_is_found_and_the_solution_is_that_with_the_skew_fr
     assert by_itself.camera.matrix[0, 1] == pytest.approx(0.39, abs=0.15)
 
 
+@pytest.mark.accuracy
 def test_a_skew_that_is_not_there_stays_zero():
     cameras = [calibrate_camera(views_without_skew(seed), TRUTH.image_size).camera for seed in range(4)]
     assert sum(camera.matrix[0, 1] == 0 for camera in cameras) >= 3

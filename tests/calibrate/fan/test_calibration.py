@@ -80,6 +80,7 @@ def test_noisy_features_give_lines_in_order_and_a_fit_as_good_as_the_noise():
     assert all(pose.used and len(pose.points) == 3 and len(pose.points[1]) > 100 for pose in result.poses)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize(("flatness_mm", "corner_px", "seed"), [(0.0, 0.02, 100), (0.05, 0.05, 200)])
 def test_covariance_is_that_of_repeated_calibrations(flatness_mm, corner_px, seed):
     tied, free = [], []

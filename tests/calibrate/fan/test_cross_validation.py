@@ -11,6 +11,7 @@ from core.calibrate.fan.stripe_distances import Stripes
 from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, PAPER, Noise, features, poses
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize(("count", "lines", "corner_px"), [(6, 3, 0.02), (7, 1, 0.02), (9, 3, 0.1)])
 def test_one_step_tells_what_fits_anew_tell(monkeypatch, count, lines, corner_px):
     asked = {}

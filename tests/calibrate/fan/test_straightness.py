@@ -31,6 +31,7 @@ def test_bowed_lines_are_told_with_size_and_direction(bow, where):
     assert where in str(note)
 
 
+@pytest.mark.accuracy
 def test_lines_that_are_planes_are_not_accused():
     accused = [seed for seed in range(12) if told(fitted(0.0, seed))]
     assert len(accused) <= 1

@@ -10,6 +10,7 @@ import pytest
 from tests.soak_kills import KINDS, soak
 
 
+@pytest.mark.accuracy
 @pytest.mark.skipif(sys.platform == "win32", reason="kill -9 is not known there")
 @pytest.mark.parametrize("kind", KINDS)
 def test_killed_at_any_moment_nothing_acknowledged_is_lost(kind: str, tmp_path: Path) -> None:

@@ -23,6 +23,7 @@ def frame(number, dropped=0):
     return Frame(picture(number), number + dropped, number / 10, dropped)
 
 
+@pytest.mark.accuracy
 @pytest.mark.skipif(not hasattr(os, "fork"), reason="this system has no fork")
 def test_killed_at_100_moments_every_acknowledged_frame_is_there_and_readable(tmp_path):
     command = [sys.executable, "-m", "tests.files.killed_recorder", str(tmp_path), "100"]

@@ -231,6 +231,7 @@ def rendered(angle_deg: float, contrast: float, count: int) -> tuple[tuple[np.nd
     return tuple(found)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("angle_deg", ANGLES)
 def test_rendered_stripes_cross_near_the_bound_of_their_pixels(angle_deg: float) -> None:
     found = rendered(angle_deg, 0.0, 40)

@@ -36,6 +36,7 @@ def test_a_black_sixteen_bit_picture_is_black_and_a_twelve_bit_one_is_not():
         detect(TARGETS[3], noise((0, 256)).astype(np.uint16) * 16)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("target", TARGETS, ids=lambda target: type(target).__name__)
 def test_noise_and_blotches_hold_no_target(target):
     random = np.random.default_rng(1)

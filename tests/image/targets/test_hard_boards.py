@@ -63,6 +63,7 @@ def test_clutter_alone_is_no_board():
         detect(BOARD, cluttered(np.full((720, 960), 200, dtype=np.uint8), (0, 0, 0, 0)))
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("shape", [(8, 5), (8, 6), (10, 7)])
 def test_no_detector_takes_a_board_of_another_size_for_a_part_of_it(shape):
     where = pose(15, 20, -30, MIDDLE, 500)
@@ -77,6 +78,7 @@ CUTS = {
 }
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", CUTS)
 def test_a_board_cut_at_one_end_of_each_direction_is_known_by_the_other_ends(name):
     where = CUTS[name]
@@ -104,6 +106,7 @@ def test_a_board_cut_at_both_ends_is_refused_for_the_camera_and_taken_for_its_pl
     assert np.linalg.norm(view.uv[:, None] - uv, axis=2).min(axis=1).max() < 0.3
 
 
+@pytest.mark.accuracy
 def test_a_board_on_dark_ground_may_be_counted_without_the_corners_of_its_outer_squares():
     where = pose(15, 10, 20, MIDDLE, 500)
     light_on_dark = 230 - seen(where)  # 9 × 6 corners; its outer dark squares melt into the ground

@@ -28,6 +28,7 @@ def test_exact_points_give_the_exact_pose(target):
     assert found.ambiguity > 10
 
 
+@pytest.mark.accuracy
 def test_errors_over_many_noisy_views_are_what_the_covariance_says():
     normalised = []
     for seed in range(150):

@@ -81,6 +81,7 @@ def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
     assert [len(pose["lines"]) for pose in said["poses"]] == [3, 3]
 
 
+@pytest.mark.accuracy
 def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned, tmp_path):
     work = work_in(turned, tmp_path)
     check = check_step(work)
@@ -99,6 +100,7 @@ def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned
     assert "the notes tell why" in verdict_sentence(gauge)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("with_check", [False, True], ids=["no check", "checked"])
 def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_check):
     work = work_in(unchanged, tmp_path, with_check=with_check)
@@ -131,6 +133,7 @@ def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_
     assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
 
 
+@pytest.mark.accuracy
 def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned, tmp_path):
     work = work_in(turned, tmp_path, with_check=False)
     scan_step(work, COARSE)

@@ -43,6 +43,7 @@ def test_back_in_the_picture_crossings_lie_where_lines_meet(scan):
     assert np.abs(np.linalg.norm(back.tangent_b, axis=1) - 1).max() < 1e-12
 
 
+@pytest.mark.accuracy
 def test_the_lens_leaves_no_common_error_in_crossings_with_the_fan(scan):
     """The mean error of all crossings with the fan over many scans: with distorted lines half a standard deviation."""
     true = ExactCrossings.of(scan).table

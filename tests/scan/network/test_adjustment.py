@@ -35,6 +35,7 @@ def test_without_noise_the_surface_comes_back():
     assert np.abs(errors).max() < 1e-3
 
 
+@pytest.mark.accuracy
 def test_depth_errors_agree_with_their_stated_sigma():
     squares = []
     for seed in range(16):

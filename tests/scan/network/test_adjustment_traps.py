@@ -99,6 +99,7 @@ def test_stated_sigma_is_that_of_repeated_scans(sampled):
     assert np.mean(sampled.scale) == pytest.approx(1.0, abs=0.03)
 
 
+@pytest.mark.accuracy
 def test_nothing_pulls_the_heights_one_way(sampled):
     assert abs(np.mean(sampled.height)) < 3 * np.std(sampled.height) / np.sqrt(DRAWS)
 

@@ -18,6 +18,7 @@ def exact():
     return ExactScan.of(Scenario(height_mm=50.0, seed=4, scale=0.5, frames=24))
 
 
+@pytest.mark.accuracy
 def test_means_of_the_fans_points_are_off_by_what_their_cells_say(exact):
     """Of single points the choice of windows, which hangs on their noise, leaves more."""
     camera, fan, noise = exact.rig.camera, exact.rig.fan, Noise.of_twin(0.5)

@@ -32,6 +32,7 @@ def raised(height: float) -> LightPlane:
     return LightPlane.from_normal(TABLE.normal, TABLE.d_mm - height)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize(("thing", "height"), [("block", 40), ("block", 70), ("narrow-block", 50), ("steps", 50)])
 def test_every_stretch_on_a_rendered_part_can_get_its_line(thing, height):
     stage, _, _ = scan_of(Scenario(object=thing, height_mm=height, scale=0.5, frames=2))

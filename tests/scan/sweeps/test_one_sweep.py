@@ -42,6 +42,7 @@ def test_a_sweep_is_found_among_those_that_are_known():
     assert np.all(plane.weights > 0.5)
 
 
+@pytest.mark.accuracy
 def test_its_covariance_is_true():
     sizes = []
     for seed in range(40):

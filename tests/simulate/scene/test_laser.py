@@ -63,6 +63,7 @@ def table_depth(ray: np.ndarray) -> float:
     return float((up @ pose.translation) / (ray @ up))
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("line", [0, 1, 2])
 @pytest.mark.parametrize("measure", [crest, centroid])
 def test_fan_lines_on_the_table_are_where_the_planes_meet_it(line, measure):

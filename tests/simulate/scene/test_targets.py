@@ -110,6 +110,7 @@ def test_camera_views_cover_the_picture_and_tilt_to_35_degrees_and_stay_inside()
     assert depths.max() < 700
 
 
+@pytest.mark.accuracy
 def test_all_fan_lines_fall_on_light_parts_of_the_plane_target_in_every_pose():
     square = printed(BlackSquare(60.0))
     poses = plane_poses(fan_centres(RIG, 9), square.outline, generator(1, "planes"))

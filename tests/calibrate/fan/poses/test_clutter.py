@@ -56,6 +56,7 @@ def cluttered(pair: Pair, pose: Pose, seed: int) -> Pair:
     return Pair(on, off)
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("seed", [1, 2])
 def test_clutter_adds_no_line_and_takes_none_away(seed):
     clean = render(POSE, seed=seed)
@@ -69,6 +70,7 @@ def test_clutter_adds_no_line_and_takes_none_away(seed):
     assert found > 0.9 * sum(len(line) for line in alone.centrelines)
 
 
+@pytest.mark.accuracy
 def test_planes_from_cluttered_pictures_are_those_of_clean_ones():
     features = []
     for number, pose in enumerate(fan_scenes.poses(4, 3)):

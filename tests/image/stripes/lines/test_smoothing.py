@@ -91,6 +91,7 @@ def test_too_few_points_stay_as_they_are():
     assert smooth(short) is short
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("length", [150, 400])
 def test_a_mean_along_the_line_is_as_certain_as_the_correlation_length_says(length):
     means, stated = [], []
