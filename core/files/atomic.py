@@ -88,6 +88,14 @@ def write_text(path: Path, text: str, *, sync: bool = True) -> None:
     write_bytes(path, text.encode("utf-8"), sync=sync)
 
 
+def remove(path: Path) -> None:
+    """Remove a file, if it is there; InputError if it cannot be."""
+    try:
+        path.unlink(missing_ok=True)
+    except OSError as error:
+        raise cannot_write(path, error) from error
+
+
 def make_folder(path: Path) -> Path:
     """Make the folder `path` with its parents, if it is not there, and see that it can be written to.
 

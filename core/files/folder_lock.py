@@ -13,7 +13,7 @@ from pathlib import Path
 from core.errors import InputError
 from core.messages import Message
 
-_LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
+LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
 """As `core.files.atomic` names what is not whole yet."""
 
 
@@ -67,6 +67,6 @@ def wait_for(handle: int) -> None:
 def sweep_leftovers(folder: Path) -> None:
     """Remove what a killed program left half written in `folder`; whoever calls it has the folder alone."""
     for path in folder.iterdir():
-        if _LEFTOVER.match(path.name):
+        if LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):
                 path.unlink()

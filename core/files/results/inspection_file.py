@@ -15,7 +15,7 @@ from pydantic import Field
 from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, whole_numbers, write_arrays
-from core.files.atomic import write_text
+from core.files.atomic import remove, write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
@@ -134,6 +134,7 @@ def write_inspection(
             arrays[f"profile_{number}"] = np.column_stack([result.profile.position, result.profile.height])
         if result.deviations is not None:
             arrays[f"deviation_{number}"] = np.column_stack([result.deviations.points, result.deviations.deviation])
+    remove(path)  # two files: better none than one of each inspection
     write_arrays(path.with_suffix(".npz"), arrays)
     values = inspection_values(inspection) | {"plan": plan, "calibration_id": calibration_id, "version": __version__}
     write_text(path, to_json(values))

@@ -5,12 +5,12 @@ from __future__ import annotations
 import contextlib
 import math
 import platform
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field, fields, replace
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from pydantic import Field
 
@@ -21,6 +21,8 @@ from core.files.reading import read_json
 from core.files.tables import Finite, KeptMessage, OptionalMessage, OrInfinite, OrNan, ResultFile, Time, kept
 from core.messages import Command, Message, plain
 from core.scan.features.frames import CrossingUse, FrameRecord
+
+T = TypeVar("T")
 
 LIBRARIES = ("numpy", "scipy", "opencv-python-headless", "numba", "matplotlib", "reportlab")
 """The packages that numbers and pictures come from; their versions are recorded."""
@@ -76,6 +78,21 @@ class RunRecord:
             notes={**self.notes, step: tuple(note if isinstance(note, Message) else plain(note) for note in notes)},
             timings={**self.timings, step: round(seconds, 3)},
             inputs=dict(sorted({**self.inputs, **inputs}.items())),
+        )
+
+    def without(self, steps: Collection[str]) -> RunRecord:
+        """The record as if these steps had not been done, but for the hashes of what they read."""
+
+        def left(told: Mapping[str, T]) -> dict[str, T]:
+            return {step: one for step, one in told.items() if step not in steps}
+
+        return replace(
+            self,
+            settings=left(self.settings),
+            notes=left(self.notes),
+            timings=left(self.timings),
+            made_at=left(self.made_at),
+            frames=() if {"scan", "profile"} & {*steps} else self.frames,
         )
 
     @property

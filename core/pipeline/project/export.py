@@ -18,7 +18,7 @@ from core.files.results.camera_file import write_camera
 from core.pipeline.project.report import project_content, report_bytes
 from core.pipeline.steps.export_kinds import Results, export_kind, write_export
 from core.pipeline.steps.report_step import results_content
-from core.pipeline.steps.workspace import FILES
+from core.pipeline.steps.workspace import FILES, made_beside, renew
 from core.progress import Progress, silent
 from core.report.content import ReportContent
 from core.report.layout.page_pictures import Pages, page_pictures
@@ -129,7 +129,9 @@ def import_camera(path: Path, out: Path) -> CameraCalibration:
         If it cannot be read, or is no camera that is modelled here.
     """
     calibration = read_opencv(path) if _of_opencv(path) else read_camera_info(path)
-    write_camera(make_folder(out) / FILES["camera"], calibration)
+    with made_beside(make_folder(out)) as beside:
+        write_camera(beside / FILES["camera"], calibration)
+        renew(out, beside, "camera")
     return calibration
 
 

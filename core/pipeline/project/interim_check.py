@@ -29,7 +29,7 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
     InputError
         If no calibration is accepted, or as `core.pipeline.steps.check_step.check_step`.
     """
-    with staged(folder / CHECK, tuple(FILES.values())) as beside:
+    with staged(folder / CHECK, FILES) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(project_set(folder, project), beside, part_name(project))
         return check_step(work, project.options, progress, project.info.air_celsius)

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import json
-import shutil
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, make_inner_folder
+from core.files.atomic import make_folder, make_inner_folder
 from core.files.json_text import to_json
 from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
 from core.files.project.data import Project
@@ -25,11 +24,11 @@ from core.pipeline.project.workspace import part_name, project_set, project_work
 from core.pipeline.steps.camera_step import solved_for_skew
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import FILES, Workspace
+from core.pipeline.steps.workspace import FILES, Workspace, made_beside, put_results
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 
-_OF_A_SCAN = tuple(name for key, name in FILES.items() if key != "report")
+_OF_A_SCAN = tuple(name for name in FILES if name != "report")
 """What a new scan replaces. The report stays: it is whole in itself, and says what it is of."""
 
 
@@ -132,12 +131,8 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
     write_run(work.path("run"), record)
 
 
-NEW_FOLDER = ".new"
-"""The folder among the results in which new ones are made."""
-
-
 @contextmanager
-def staged(results: Path, names: Sequence[str]) -> Iterator[Path]:
+def staged(results: Path, names: Collection[str]) -> Iterator[Path]:
     """A folder to make new results in; if all goes well, they take the place of the old ones.
 
     Parameters
@@ -145,8 +140,7 @@ def staged(results: Path, names: Sequence[str]) -> Iterator[Path]:
     results
         Where the results belong; made if it is not there.
     names
-        The files that belong together: old ones go even where there is no new one. All of them go before the first
-        new one comes, so that whoever pulls the plug finds old ones or new ones, perhaps not all, but never both.
+        The results that belong together, keys of FILES: old ones go even where there is no new one.
 
     Raises
     ------
@@ -154,22 +148,6 @@ def staged(results: Path, names: Sequence[str]) -> Iterator[Path]:
         If nothing can be written there.
     """
     make_folder(results)
-    beside = results / NEW_FOLDER
-    shutil.rmtree(beside, ignore_errors=True)  # of a run that was killed
-    make_folder(beside)
-    try:
+    with made_beside(results) as beside:
         yield beside
-        _replace(results, beside, names)
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
-
-
-def _replace(results: Path, beside: Path, names: Sequence[str]) -> None:
-    try:
-        for name in names:
-            (results / name).unlink(missing_ok=True)
-        for name in names:
-            if (beside / name).exists():
-                (beside / name).replace(results / name)
-    except OSError as error:
-        raise cannot_write(results, error) from error
+        put_results(results, beside, names)

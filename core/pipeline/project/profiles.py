@@ -33,7 +33,7 @@ def measure_profiles(
         If no calibration is accepted, or as `core.pipeline.steps.profile_step.profile_step`.
     """
     found, results = project_set(folder, project), folder / PROFILES
-    with staged(results, tuple(FILES.values())) as beside:
+    with staged(results, FILES) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))
         record_calibrations(work, folder, project)

@@ -42,7 +42,7 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
         calibration = solve_camera(see_views(work.found, progress), options, progress, work.found.rig.camera_board)
         log.settings["skew"] = solved_for_skew(calibration)
         log.notes.extend(calibration.notes)
-        write_camera(work.path("camera"), calibration)
+        write_camera(log.path("camera"), calibration)
     return read_camera(work.path("camera"))
 
 

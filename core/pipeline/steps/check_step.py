@@ -97,7 +97,7 @@ def check_step(
         log.notes.extend(stated_validity(found.rig))
         log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
-        write_check(work.path("check"), check)
+        write_check(log.path("check"), check)
     return check
 
 

@@ -55,8 +55,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         log.notes.extend(gauge.notes)
-        work.clear(("gauge", "faces"))  # two files: better none than one of each measurement
-        write_gauge(work.path("gauge"), gauge, calibration.id)
+        write_gauge(log.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
 
 

@@ -58,8 +58,8 @@ def planes_step(
         check_agreement(calibration, options.accept_few_poses)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
-        write_fan(work.path("planes"), calibration, camera)
-        write_poses(work.path("poses"), fan_id(calibration.fan), poses)
+        write_fan(log.path("planes"), calibration, camera)
+        write_poses(log.path("poses"), fan_id(calibration.fan), poses)
     return read_fan(work.path("planes"), camera)
 
 

@@ -27,7 +27,7 @@ from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import doubt_of_the_day
-from core.pipeline.steps.workspace import Calibration, Workspace, check_size
+from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
 from core.scan.features.frames import FrameRecord
@@ -129,7 +129,7 @@ def profile_step(
         log.notes.extend(notes)
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
-        _write(work, gauge, pictures, shown, cloud, calibration)
+        _write(log, gauge, pictures, shown, cloud, calibration)
     return MeasuredProfiles(gauge, tuple(pictures), cloud)
 
 
@@ -276,18 +276,17 @@ def _records(pictures: Sequence[PictureStep], seen: Sequence[Profiles]) -> list[
 
 
 def _write(
-    work: Workspace,
+    log: StepLog,
     gauge: GaugeResult,
     pictures: Sequence[PictureStep],
     shown: Step,
     cloud: Cloud,
     calibration: Calibration,
 ) -> None:
-    """All results at once: old and new never mix."""
-    work.clear((*_REPLACED, "profiles", "profile", "profile_table"))
-    write_cloud(work.path("profiles"), cloud, calibration.id)
+    log.gone.update(_REPLACED)
+    write_cloud(log.path("profiles"), cloud, calibration.id)
     along, up = profile_axes(shown.faces.planes.normal, shown.cloud)
     foot = -shown.faces.planes.lower_distance
-    write_profiles_csv(work.path("profile_table"), cloud, cloud.points @ along, cloud.points @ up - foot)
-    write_profiles(work.path("profile"), gauge, pictures, shown.frame, calibration.id)
-    write_gauge(work.path("gauge"), gauge, calibration.id)
+    write_profiles_csv(log.path("profile_table"), cloud, cloud.points @ along, cloud.points @ up - foot)
+    write_profiles(log.path("profile"), gauge, pictures, shown.frame, calibration.id)
+    write_gauge(log.path("gauge"), gauge, calibration.id)

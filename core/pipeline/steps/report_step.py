@@ -79,13 +79,13 @@ def report_step(
     InputError
         If a result is missing, damaged, or was measured with another calibration.
     """
-    with work.step("report", measures=False):
+    with work.step("report", measures=False) as log:
         content = report_content(work, progress, said)
         if beside is None:
             data = draw_report(content, progress=progress)
         else:
             data = beside.wait(beside.submit(draw_report, content, progress), progress)
-        write_bytes(work.path("report"), data)
+        write_bytes(log.path("report"), data)
     return work.path("report")
 
 

@@ -22,7 +22,7 @@ from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
 from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan, require_frames
 from core.pipeline.steps.validity import doubt_of_the_day
-from core.pipeline.steps.workspace import Calibration, Workspace, check_size
+from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
@@ -112,7 +112,7 @@ def scan_step(
         mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
-            _write(work, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
+            _write(log, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
     return Measured(scan, mesh)
 
 
@@ -183,15 +183,11 @@ def _features(found: RecordingSet, seen: SeenScan, camera: Camera, progress: Pro
     return replace(features, notes=(*seen.notes, *features.notes))
 
 
-def _write(work: Workspace, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:
-    """All results at once, after all the work: who cancels keeps the old ones, and old and new never mix."""
-    before = work.digest("cloud")
-    work.clear(("cloud", "scan", "mesh", "profiles", "profile", "profile_table"))
-    write_cloud(work.path("cloud"), scan.cloud, file.calibration_id)
-    write_scan(work.path("scan"), file)
-    write_mesh(work.path("mesh"), mesh, file.calibration_id)
-    if before != work.digest("cloud"):
-        work.clear(("gauge", "faces", "inspection", "inspected"))
+def _write(log: StepLog, scan: ScanResult, mesh: Mesh, file: ScanFile) -> None:
+    log.gone.update(("profiles", "profile", "profile_table"))
+    write_cloud(log.path("cloud"), scan.cloud, file.calibration_id)
+    write_scan(log.path("scan"), file)
+    write_mesh(log.path("mesh"), mesh, file.calibration_id)
 
 
 def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: str) -> ScanFile:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import shutil
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -47,6 +48,30 @@ CLEARED = (
     *("mesh", "cloud", "scan", "check", "planes", "poses", "camera", "run"),
 )
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
+_PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
+"""And in which they come."""
+
+NEW_FOLDER = ".new"
+"""The folder among the results in which new ones are made."""
+
+_OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
+_OF_CLOUD = ("gauge", "faces", "inspection", "inspected")
+_REST_ON: Mapping[str, tuple[str, ...]] = {
+    "camera": ("planes", "poses", "check", *_OF_SURFACE, *_OF_CLOUD),
+    "planes": ("check", *_OF_SURFACE, *_OF_CLOUD),
+    "cloud": _OF_CLOUD,
+    "profiles": _OF_CLOUD,
+}
+"""What no longer holds once one of these is another. The report stays: it is whole, and says what it is of."""
+_MADE = {
+    "camera": "camera",
+    "planes": "planes",
+    "check": "check",
+    "cloud": "scan",
+    "profile": "profile",
+    "gauge": "gauge",
+}
+"""Steps, by the result that shows that they were done."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,11 +89,18 @@ class Calibration:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StepLog:
-    """What a step leaves for run.json besides its results."""
+    """What a step leaves for run.json, and where it puts its results until all of them are there."""
 
+    beside: Path
+    gone: set[str] = field(default_factory=set)
+    """Results of another step that these take the place of."""
     settings: dict[str, Any] = field(default_factory=dict)
     notes: list[Message | str] = field(default_factory=list)
     frames: list[FrameRecord] = field(default_factory=list)
+
+    def path(self, name: str) -> Path:
+        """Where the step writes the result `name`, a key of FILES."""
+        return self.beside / FILES[name]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -94,18 +126,9 @@ class Workspace:
         """Where the result `name`, a key of FILES, lies."""
         return self.out / FILES[name]
 
-    def clear(self, names: Sequence[str] = CLEARED) -> None:
-        """Remove results of an earlier run, so that old and new never stand side by side, wherever it is cut off."""
-        for name in sorted(names, key=CLEARED.index):
-            try:
-                self.path(name).unlink(missing_ok=True)
-            except OSError as error:
-                raise cannot_write(self.path(name), error) from error
-
-    def digest(self, name: str) -> str:
-        """SHA-256 in hex of a result's bytes; nothing if it is not there."""
-        path = self.path(name)
-        return file_hash(path) if path.exists() else ""
+    def clear(self) -> None:
+        """Remove the results of an earlier run: old and new never stand side by side, wherever it is cut off."""
+        put_results(self.out, None, CLEARED)
 
     def written(self) -> dict[str, Path]:
         """The results that are there, by their keys in FILES."""
@@ -123,27 +146,99 @@ class Workspace:
 
     @contextmanager
     def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:
-        """Time a step and, if it succeeds, add it to run.json.
+        """Time a step and, if it succeeds, put its results in place and add it to run.json.
+
+        Whoever cuts it off leaves the old results; whoever cuts off its very end leaves results that belong together.
 
         Parameters
         ----------
         name
-            camera, planes, scan, gauge or report.
+            camera, planes, check, scan, profile, gauge or report.
         measures
             Whether the step measures anything: then its beginning is the time the report prints.
         """
         begun, started = _now(), time.perf_counter()
-        before, log = self.record(), StepLog()  # a damaged run.json is told before the work, not after it
-        yield log
-        seconds = time.perf_counter() - started
-        record = before.with_step(name, seconds, self.found.hashes, log.settings, log.notes)
-        if self.part:
-            record = replace(record, part=self.part)
-        if measures:
-            record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
-        if log.frames:
-            record = replace(record, frames=tuple(log.frames))
-        write_run(self.path("run"), record)
+        self.record()  # a damaged run.json is told before the work, not after it
+        with made_beside(self.out) as beside:
+            log = StepLog(beside)
+            yield log
+            seconds = time.perf_counter() - started
+            renew(self.out, beside, name, log.gone)
+            record = self.record().with_step(name, seconds, self.found.hashes, log.settings, log.notes)
+            if self.part:
+                record = replace(record, part=self.part)
+            if measures:
+                record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
+            if log.frames:
+                record = replace(record, frames=tuple(log.frames))
+            write_run(self.path("run"), record)
+
+
+def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> None:
+    """Put what a step has made in `beside` among the results in `out`; those `gone`, and what rests on what is
+    another now, go.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    new = {name for name in FILES if (beside / FILES[name]).exists()}
+    same = {name for name in new if _same(beside / FILES[name], out / FILES[name])}
+    for name in same:
+        (beside / FILES[name]).unlink()
+    old = {name for name in {*new, *gone} - same if (out / FILES[name]).exists()}
+    old |= {one for name in old for one in _REST_ON.get(name, ())} - same
+    run = out / FILES["run"]
+    if run.exists() and old - {"report"}:  # it never tells of other results than those beside it
+        write_run(run, read_run(run).without({step, *(made for result, made in _MADE.items() if result in old)}))
+    put_results(out, beside, old)
+
+
+@contextmanager
+def made_beside(out: Path) -> Iterator[Path]:
+    """A folder among the results in `out` to make new ones in; it goes in the end, whatever is left in it.
+
+    Raises
+    ------
+    InputError
+        If it cannot be made.
+    """
+    beside = out / NEW_FOLDER
+    shutil.rmtree(beside, ignore_errors=True)  # of a program that was killed
+    try:
+        beside.mkdir(exist_ok=True)
+    except OSError as error:
+        raise cannot_write(out, error) from error
+    try:
+        yield beside
+    finally:
+        shutil.rmtree(beside, ignore_errors=True)
+
+
+def put_results(out: Path, beside: Path | None, gone: Collection[str]) -> None:
+    """Remove the results `gone` from `out`, keys of FILES, then move there what is in `beside`, if there is any.
+
+    What rests on another goes before it and comes after it: whoever pulls the plug finds old ones or new ones, perhaps
+    not all, but never both.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    try:
+        for name in sorted(gone, key=CLEARED.index):
+            (out / FILES[name]).unlink(missing_ok=True)
+        for name in _PLACED if beside is not None else ():
+            if beside is not None and (beside / FILES[name]).exists():
+                (beside / FILES[name]).replace(out / FILES[name])
+    except OSError as error:
+        raise cannot_write(out, error) from error
+
+
+def _same(one: Path, other: Path) -> bool:
+    return other.exists() and file_hash(one) == file_hash(other)
 
 
 def read_calibration(out: Path) -> Calibration:
