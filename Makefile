@@ -57,8 +57,9 @@ accuracy: proofs          ## measure the manual's accuracy table anew: about 80 
 	$(BIN)/python -m tests.accuracy --manual
 
 soak: export OPENBLAS_NUM_THREADS = 1
-soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page: counts, memory, freezes; then 100 kills each of saving, autosave, recording
+soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page; every state of a folder of results; 100 kills each of all that writes
 	$(BIN)/python -m tests.soak --window --seconds 600
+	$(BIN)/python -m tests.output_states
 	$(BIN)/python -m tests.soak_kills --kills 100
 
 fuzz: export OPENBLAS_NUM_THREADS = 1

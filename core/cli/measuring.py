@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
 from core.cli.options import ExitCode
 from core.errors import InputError
+from core.files.folder_lock import alone_in
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RIG, excluded_names, open_set
 from core.files.recording.rig import read_rig
@@ -150,31 +152,31 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
 
 def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Camera step."""
-    work = _open(folder, out)
-    calibration = camera_step(work, chosen, progress)
-    rows, values = output.camera_rows(calibration), output.camera_json(calibration)
-    return _shown(work, "camera", rows, values, "camera")
+    with alone_with(folder, out) as work:
+        calibration = camera_step(work, chosen, progress)
+        rows, values = output.camera_rows(calibration), output.camera_json(calibration)
+        return _shown(work, "camera", rows, values, "camera")
 
 
 def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Planes step."""
-    work = _open(folder, out)
-    calibration = planes_step(work, chosen, progress)
-    return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
+    with alone_with(folder, out) as work:
+        calibration = planes_step(work, chosen, progress)
+        return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
 
 def run_check(
     folder: Path, out: Path, chosen: Options, progress: Progress, celsius: float | None = None
 ) -> tuple[InterimCheck, Shown]:
     """Check step; `celsius` is the temperature of the air."""
-    work = _open(folder, out)
-    check = check_step(work, chosen, progress, celsius)
-    return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
+    with alone_with(folder, out) as work:
+        check = check_step(work, chosen, progress, celsius)
+        return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
 
 
 def run_artefact(folder: Path, out: Path, id_: str, celsius: float | None) -> tuple[ArtefactCheck, Shown]:
     """Compare the thickness in `out` with the certificate of the artefact called `id_`."""
-    check = artefact_step(_open(folder, out), artefact_named(id_, folder), celsius)
+    check = artefact_step(Workspace.open(open_set(folder), out), artefact_named(id_, folder), celsius)
     return check, Shown(output.artefact_rows(check), output.artefact_json(check))
 
 
@@ -192,18 +194,18 @@ def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Scan step."""
-    work = _open(folder, out)
-    measured = scan_step(work, chosen, progress)
-    frames, points = measured.scan.frames, len(measured.scan.cloud)
-    rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
-    return _shown(work, "scan", rows, values, "cloud", "mesh")
+    with alone_with(folder, out) as work:
+        measured = scan_step(work, chosen, progress)
+        frames, points = measured.scan.frames, len(measured.scan.cloud)
+        rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
+        return _shown(work, "scan", rows, values, "cloud", "mesh")
 
 
 def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult, Shown]:
     """Gauge step."""
-    work = _open(folder, out)
-    gauge = gauge_step(work, progress)
-    return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
+    with alone_with(folder, out) as work:
+        gauge = gauge_step(work, progress)
+        return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
 
 
 def run_profile(
@@ -216,16 +218,20 @@ def run_profile(
             where="--tilt-sd",
         )
     tilt = StatedTilt(stage, math.radians(tilt_sd_deg) or None) if stage or tilt_sd_deg else None
-    work = Workspace.open(open_set(folder), out, chosen.part)
-    measured = profile_step(work, chosen, tilt, progress)
-    gauge, pictures = measured.gauge, measured.pictures
-    rows = [*output.gauge_rows(gauge), *output.picture_rows(pictures)]
-    values = {**output.gauge_json(gauge), **output.pictures_json(pictures)}
-    return gauge, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
+    with alone_with(folder, out, chosen.part) as work:
+        measured = profile_step(work, chosen, tilt, progress)
+        gauge, pictures = measured.gauge, measured.pictures
+        rows = [*output.gauge_rows(gauge), *output.picture_rows(pictures)]
+        values = {**output.gauge_json(gauge), **output.pictures_json(pictures)}
+        return gauge, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
 
 
-def _open(folder: Path, out: Path) -> Workspace:
-    return Workspace.open(open_set(folder), out)
+@contextmanager
+def alone_with(folder: Path, out: Path, part: str = "") -> Iterator[Workspace]:
+    """A recording set and the folder of its results, which no other program writes to meanwhile."""
+    work = Workspace.open(open_set(folder), out, part)
+    with alone_in(work.out):
+        yield work
 
 
 def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, Any], *names: str) -> Shown:

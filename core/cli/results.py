@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from contextlib import nullcontext
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import cast
@@ -11,12 +12,13 @@ from typing import cast
 from rich.table import Table
 
 from core.cli import output
-from core.cli.measuring import Shown, exit_code
+from core.cli.measuring import Shown, alone_with, exit_code
 from core.cli.options import ExitCode
 from core.errors import InputError
+from core.files.atomic import make_folder
+from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
 from core.files.project.report_template import read_report_template, section_set
-from core.files.recording.recording_set import open_set
 from core.files.results.export_list import EXPORTS
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
@@ -26,7 +28,6 @@ from core.pipeline.project.export import export_results, import_camera, with_tem
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step, with_studies
-from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.template import LANGUAGES, PAPERS, Paper
@@ -37,7 +38,11 @@ _COLUMNS = ("characteristic", "measured", "U", "nominal", "limits", "deviation",
 
 def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
     """Inspect; nominal surfaces lie beside the plan."""
-    return inspect_step(source, read_plan(plan), plan.parent, out, progress)
+    asked, folder = read_plan(plan), out or source
+    if out is not None:
+        make_folder(out)
+    with alone_in(folder) if folder.is_dir() else nullcontext():
+        return inspect_step(source, asked, plan.parent, out, progress)
 
 
 def inspection_exit_code(inspection: Inspection) -> ExitCode:
@@ -132,9 +137,9 @@ class ReportOptions:
 
 def run_report(folder: Path, out: Path, chosen: ReportOptions, progress: Progress) -> Shown:
     """Report step."""
-    work = Workspace.open(open_set(folder), out, chosen.part)
-    report_step(work, progress, chosen.said)
-    notes = tuple(work.record().notes.get("report", ()))
+    with alone_with(folder, out, chosen.part) as work:
+        report_step(work, progress, chosen.said)
+        notes = tuple(work.record().notes.get("report", ()))
     return Shown([], {}, notes, {"report": work.path("report")})
 
 

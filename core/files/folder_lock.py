@@ -13,6 +13,8 @@ from pathlib import Path
 from core.errors import InputError
 from core.messages import Message
 
+HELD = ".held"
+"""Among results, on Windows."""
 LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
 """As `core.files.atomic` names what is not whole yet."""
 
@@ -21,34 +23,47 @@ LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
 def alone_in(folder: Path) -> Iterator[None]:
     """Hold `folder` for as long as this lasts; the system lets go of it even if the program is killed.
 
-    The lock is of the folder itself and leaves no file. Windows, which locks files only, goes without.
+    The lock is of the folder itself and leaves no file; on Windows, which locks files only, of the hidden file HELD.
 
     Raises
     ------
     InputError
         If another program holds it.
     """
-    if sys.platform == "win32":
-        yield
-        return
-    import fcntl
-
-    handle = os.open(folder, os.O_RDONLY)
+    windows = sys.platform == "win32"
+    handle = os.open(folder / HELD, os.O_RDWR | os.O_CREAT) if windows else os.open(folder, os.O_RDONLY)
     try:
-        try:
-            fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError as error:
+        if not _hold(handle):
             raise InputError(
                 Message("file.folder_in_use", "another run writes its results here"),
                 where=folder,
                 todo=Message("advice.wait_or_another_out", "wait for its end, or choose another --out"),
-            ) from error
-        except OSError:
-            pass  # a disk of the network that cannot lock
+            )
         sweep_leftovers(folder)
         yield
     finally:
         os.close(handle)
+
+
+def _hold(handle: int) -> bool:
+    """Hold an open file or folder until it is closed; False if another program does."""
+    if sys.platform == "win32":
+        import msvcrt
+
+        try:
+            msvcrt.locking(handle, msvcrt.LK_NBLCK, 1)
+        except OSError:
+            return False
+        return True
+    import fcntl
+
+    try:
+        fcntl.flock(handle, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        return False
+    except OSError:
+        pass  # a disk of the network that cannot lock
+    return True
 
 
 def wait_for(handle: int) -> None:

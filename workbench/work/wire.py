@@ -10,6 +10,7 @@ import io
 import mmap
 import os
 import pickle
+import shutil
 import struct
 import tempfile
 from collections import deque
@@ -19,6 +20,8 @@ from enum import IntEnum
 from io import FileIO
 from pathlib import Path
 from typing import Any
+
+from core.files.running import is_running
 
 LARGE_BYTES = 1 << 20
 """Smaller arrays are copied through the pipe, which takes less than a millisecond."""
@@ -106,7 +109,16 @@ def memory_folder() -> tempfile.TemporaryDirectory[str]:
     """A folder for the files of large arrays, in memory where the system has such a place."""
     shared = Path("/dev/shm")
     place = shared if shared.is_dir() and os.access(shared, os.W_OK) else None
-    return tempfile.TemporaryDirectory(prefix="trisect-", dir=place, ignore_cleanup_errors=True)
+    _sweep(place or Path(tempfile.gettempdir()))
+    return tempfile.TemporaryDirectory(prefix=f"trisect-{os.getpid()}-", dir=place, ignore_cleanup_errors=True)
+
+
+def _sweep(place: Path) -> None:
+    """Remove such folders of programs that were killed: what is in them takes memory."""
+    for path in place.glob("trisect-*-*"):
+        pid = path.name.split("-")[1]
+        if pid.isdigit() and not is_running(int(pid)):
+            shutil.rmtree(path, ignore_errors=True)
 
 
 def _exactly(read: Callable[[int], bytes], size: int) -> bytes:

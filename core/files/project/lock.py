@@ -1,8 +1,8 @@
 """One program at a time changes a project: a file in its folder says who has it open, where, and since when.
 
 While the program runs, the system holds the file for it (`flock`), and lets go even if the program is killed: so what a
-crash leaves behind is told from what is in use. Another computer's hold cannot be told so, nor can any on Windows:
-there, whoever opens the project decides.
+crash leaves behind is told from what is in use. On Windows the number of the process tells it. Another computer's hold
+cannot be told so: whoever opens the project decides.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ import secrets
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated
@@ -28,6 +28,7 @@ from core.files.complaints import checked_json
 from core.files.folder_lock import sweep_leftovers, wait_for
 from core.files.json_text import to_json
 from core.files.reading import read_json
+from core.files.running import is_running
 from core.files.tables import TIME_WORDS, Time
 from core.messages import Message
 
@@ -36,12 +37,13 @@ LOCK = ".lock.json"
 
 @dataclass(frozen=True, slots=True)
 class LockOwner:
-    """Who has a project open: the user's and the computer's name, since when; `key` is another one each time."""
+    """Who has a project open: user, computer, since when, by which process; `key` is another one each time."""
 
     owner: str
     host: str
     since: Annotated[Time, Field(description=TIME_WORDS)]
     key: str
+    pid: int = 0
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
 
 
@@ -124,7 +126,7 @@ def read_holder(folder: Path) -> LockOwner | None:
 def held_by(folder: Path) -> LockOwner | None:
     """Who has the project open; None if nobody has, as far as can be told."""
     holder = read_holder(folder)
-    if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK)):
+    if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK, holder)):
         return None
     return holder
 
@@ -145,7 +147,7 @@ def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
 
 def _take(folder: Path, *, take_over: bool) -> ProjectLock:
     path = folder / LOCK
-    holder = LockOwner(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8))
+    holder = LockOwner(user_name(), platform.node(), datetime.now().astimezone(), secrets.token_hex(8), os.getpid())
     beside = path.with_name(f"{LOCK}.{holder.key}.new")
     try:
         handle = _write_held(beside, holder)
@@ -193,7 +195,7 @@ def _one_at_a_time(folder: Path) -> Iterator[None]:
 def _write_held(path: Path, holder: LockOwner) -> int:
     """Write the file and hold it; the open file."""
     handle = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o644)
-    text = to_json({"owner": holder.owner, "host": holder.host, "since": holder.since.isoformat(), "key": holder.key})
+    text = to_json({**asdict(holder), "since": holder.since.isoformat()})
     try:
         os.write(handle, text.encode())
         if sys.platform == "win32":
@@ -221,10 +223,10 @@ def _put_if_none(beside: Path, path: Path) -> None:
         beside.unlink()
 
 
-def _is_left_behind(path: Path) -> bool:
+def _is_left_behind(path: Path, holder: Holder) -> bool:
     """Whether nobody on this computer holds the file any longer."""
     if sys.platform == "win32":
-        return False
+        return not is_running(holder.pid, holder.since)
     import fcntl
 
     try:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from core import __version__
 from core.errors import InputError
 from core.files.atomic import write_bytes
+from core.files.limits import LARGEST
 from core.files.reading import MISSING, read_bytes
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.messages import Command, Message
@@ -89,21 +90,9 @@ def read_cloud(path: Path) -> CloudFile:
     known = [name for name in _SINCE_LATER if name in (vertices.dtype.names or ())]
 
     def columns(*names: str) -> Array:
-        return np.column_stack([vertices[name] for name in names]).astype(np.float64)
+        return _columns(vertices, names)
 
-    for name in ("x", "y", "z", "sigma", "image_u", "image_v", *known):
-        wrong = int(np.count_nonzero(~np.isfinite(vertices[name])))
-        if wrong:
-            raise InputError(
-                Message(
-                    "file.property_not_finite",
-                    "property {name} is not finite in {wrong} of {vertices} points",
-                    name=name,
-                    wrong=wrong,
-                    vertices=len(vertices),
-                ),
-                where=path,
-            )
+    _check_finite(vertices, ("x", "y", "z", "sigma", "image_u", "image_v", *known), path)
     if np.any(vertices["sigma"] <= 0):
         raise InputError(Message("file.sigma_not_positive", "property sigma is not above 0 in every point"), where=path)
     cloud = Cloud(
@@ -154,6 +143,7 @@ def read_mesh(path: Path) -> Mesh:
     data = _read(path, _TODO)
     vertices = _element(data, "vertex", [name for name, _ in _MESH], path)
     faces = _element(data, "face", ["vertex_indices"], path)
+    _check_finite(vertices, ("x", "y", "z", "sigma"), path)
     shape = faces["vertex_indices"].shape
     if len(faces) and shape[1:] != (3,):
         raise InputError(Message("file.faces_no_triangles", "its faces are no triangles"), where=path)
@@ -163,14 +153,36 @@ def read_mesh(path: Path) -> Mesh:
             Message("file.triangle_without_vertex", "a triangle names a vertex that is not there"), where=path
         )
     return Mesh(
-        vertices=np.column_stack([vertices[name] for name in ("x", "y", "z")]).astype(np.float64),
-        normals=np.column_stack([vertices[name] for name in ("nx", "ny", "nz")]).astype(np.float64),
+        vertices=_columns(vertices, ("x", "y", "z")),
+        normals=_columns(vertices, ("nx", "ny", "nz")),
         sigma=np.asarray(vertices["sigma"], dtype=np.float64),
         triangles=corners,
         filled=np.asarray(faces[_FILLED], dtype=np.bool_)
         if _FILLED in (faces.dtype.names or ())
         else np.zeros(0, bool),
     )
+
+
+def _check_finite(vertices: NDArray[Any], names: Sequence[str], path: Path) -> None:
+    """InputError if a property is not finite in every point, or beyond all that is computed with."""
+    for name in names:
+        wrong = int(np.count_nonzero(~(np.abs(_columns(vertices, (name,))) <= LARGEST)))
+        if wrong:
+            raise InputError(
+                Message(
+                    "file.property_not_finite",
+                    "property {name} is not finite in {wrong} of {vertices} points",
+                    name=name,
+                    wrong=wrong,
+                    vertices=len(vertices),
+                ),
+                where=path,
+            )
+
+
+def _columns(vertices: NDArray[Any], names: Sequence[str]) -> Array:
+    with np.errstate(invalid="ignore"):  # of a NaN that signals; it becomes a quiet one
+        return np.column_stack([vertices[name] for name in names]).astype(np.float64)
 
 
 def _put(vertices: NDArray[Any], names: Sequence[str], values: Array) -> None:

@@ -293,6 +293,17 @@ def test_mesh_round_trip(tmp_path):
     assert read_mesh(tmp_path / "empty.ply").triangles.shape == (0, 3)
 
 
+@pytest.mark.parametrize("bits", [0x7FA00000, 0x7FC00000, 0x7F800000], ids=["signalling NaN", "NaN", "infinite"])
+def test_a_mesh_with_a_corner_nowhere_is_refused(tmp_path, bits):
+    """Found by `make fuzz`: a NaN that signals was a warning of numpy, not a sentence."""
+    write_mesh(tmp_path / "mesh.ply", Mesh(np.ones((3, 3)), np.ones((3, 3)), np.ones(3), np.array([[0, 1, 2]])), "a")
+    data = (tmp_path / "mesh.ply").read_bytes()
+    head, end, body = data.partition(b"end_header\n")
+    (tmp_path / "mesh.ply").write_bytes(head + end + bits.to_bytes(4, "little") + body[4:])
+    with pytest.raises(InputError, match="property x is not finite in 1 of 3 points"):
+        read_mesh(tmp_path / "mesh.ply")
+
+
 def test_a_mesh_of_squares_is_refused(tmp_path):
     squares = np.zeros(2, dtype=[("vertex_indices", "i4", (4,))])
     vertices = np.zeros(4, dtype=[(name, "f4") for name in ("x", "y", "z", "nx", "ny", "nz", "sigma")])

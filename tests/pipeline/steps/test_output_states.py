@@ -1,4 +1,4 @@
-"""Wherever a command is cut off, its folder is whole and its results belong together: `tests.output_states` in short."""
+"""Wherever a command is cut off, its folder is whole and results belong together: `tests.output_states` in short."""
 
 from functools import partial
 
