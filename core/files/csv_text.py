@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -15,11 +16,27 @@ _FORMULA = ("=", "+", "-", "@", "\t", "\r")
 def csv_text(rows: Iterable[Sequence[Any]]) -> str:
     """The rows as text, text that would be a formula made harmless."""
     text = io.StringIO()
-    csv.writer(text, lineterminator="\n").writerows([_harmless(cell) for cell in row] for row in rows)
+    csv.writer(text, lineterminator="\n").writerows([harmless(cell) for cell in row] for row in rows)
     return text.getvalue()
 
 
-def _harmless(cell: Any) -> Any:
+def harmless_table(text: str, separator: str) -> str:
+    """A table of texts as it was, but for cells that would be formulas; those that are numbers stay."""
+    rows = csv.reader(text.splitlines(), delimiter=separator)
+    out = io.StringIO()
+    writer = csv.writer(out, delimiter=separator, lineterminator="\n")
+    writer.writerows([cell if _is_number(cell) else harmless(cell) for cell in row] for row in rows)
+    return out.getvalue()
+
+
+def _is_number(text: str) -> bool:
+    try:
+        return math.isfinite(float(text.replace(",", ".")))
+    except ValueError:
+        return False
+
+
+def harmless(cell: Any) -> Any:
     """A cell that no spreadsheet takes for a formula: such a text stands behind an apostrophe; numbers stay numbers.
 
     Control characters are written out.

@@ -15,6 +15,7 @@ from typing import Any
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
 from core.files.recording.rig import rig_tables
+from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
 STEPS = ("camera", "planes", "check", "scan", "inspect", "features", "report")
@@ -82,21 +83,41 @@ ACCEPTED: Mapping[str, str] = {
 
 
 def relocated(file: ProjectFile, moved: Mapping[str, str]) -> ProjectFile:
-    """A project whose folders of pictures are elsewhere, by their names before; results stay as up to date as they are.
+    """A project whose pictures, nominal surfaces or template are elsewhere, by their names before.
 
-    The keys of results that rest on a folder's name change with it, and so do those of what rests on these.
+    Results stay as up to date as they are: the keys of those that rest on a name change with it, and so do those of
+    what rests on these.
     """
     if not moved:
         return file
-    sources = {name: moved.get(stored, stored) for name, stored in asdict(file.project.sources).items()}
+    before = file.project
+    sources = {name: moved.get(stored, stored) for name, stored in asdict(before.sources).items()}
+    after = replace(
+        before,
+        sources=Sources(**sources),
+        inspection=replace(before.inspection, features=tuple(_moved(one, moved) for one in before.inspection.features)),
+        report=replace(before.report, template=moved.get(before.report.template, before.report.template)),
+    )
     renamed, results = dict(moved), dict(file.results)
     for step in STEPS:
         if (done := results.get(step)) is not None:
-            keys = {name: renamed.get(key, key) if key else key for name, key in done.rests_on.items()}
+            old, new = rests_on(step, before, file.results), rests_on(step, after, results)
+            keys = {
+                name: new.get(name, key) if key and old.get(name) == key else renamed.get(key, key)
+                for name, key in done.rests_on.items()
+            }
             if keys != dict(done.rests_on):
                 renamed[done.key] = _digest(keys)
                 results[step] = replace(done, key=_digest(keys), rests_on=keys)
-    return replace(file, project=replace(file.project, sources=Sources(**sources)), results=results)
+    return replace(file, project=after, results=results)
+
+
+def _moved(spec: FeatureSpec, moved: Mapping[str, str]) -> FeatureSpec:
+    if spec.deviation is None:
+        return spec
+    return replace(
+        spec, deviation=replace(spec.deviation, nominal=moved.get(spec.deviation.nominal, spec.deviation.nominal))
+    )
 
 
 def _camera(project: Project) -> dict[str, str]:

@@ -35,9 +35,11 @@ from core.files.project.folder import AUTOSAVE, PROJECT, read_project, source_fo
 from core.files.project.json_form import project_text
 from core.files.project.keys import relocated
 from core.files.project.lock import LOCK
+from core.files.project.report_template import logo_beside
 from core.files.reading import cannot_read, json_of
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import Table
+from core.files.results.nominal_surface import nominal_names
 from core.files.tables import TIME_WORDS, Time
 from core.messages import Message
 from core.progress import Progress, silent, steps
@@ -48,6 +50,8 @@ FILES_MOST = 200_000
 """Files a packed project may have."""
 GATHERED = "recordings/packed"
 """Where folders of pictures from outside the project go in the pack."""
+ENCLOSED = "enclosed"
+"""The same for nominal surfaces and the report's template."""
 
 _LEFT_BEHIND = re.compile(rf"^({re.escape(AUTOSAVE)}|{re.escape(LOCK)}|\.new|.*\.part)$")
 _COMPRESSED = (".png", ".jpg", ".jpeg", ".npz", ".pdf", ".zip", ".xlsx", ".3mf")
@@ -82,8 +86,9 @@ class Packed:
 def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
     """Put the project in `folder` into the file `to`, whole or not at all.
 
-    Folders of pictures that lie outside the project come along, and are within it in the pack; the results stay
-    as up to date as they are. What belongs to a program at work (lock, autosaved state) stays behind.
+    Folders of pictures, nominal surfaces and the report's template (with a logo beside it) that lie outside the project
+    come along, and are within it in the pack; the results stay as up to date as they are. What belongs to a program at
+    work (lock, autosaved state) stays behind.
 
     Raises
     ------
@@ -96,11 +101,11 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
         for path in sorted(folder.rglob("*"))
         if path.is_file() and path.resolve() != to.resolve() and not _left_behind(path.relative_to(folder))
     }
-    packed, outside = _with_sources_within(folder, file)
+    packed, outside = _with_all_within(folder, file)
     files |= outside
     _check_names(files, folder)
     with tempfile.TemporaryDirectory() as beside:
-        if outside:
+        if packed != file:
             files |= _rewritten(folder, Path(beside), file, packed)
         return _pack(files, to, progress)
 
@@ -175,10 +180,9 @@ def _left_behind(path: Path) -> bool:
     return any(_LEFT_BEHIND.match(part) for part in path.parts)
 
 
-def _with_sources_within(folder: Path, file: ProjectFile) -> tuple[ProjectFile, Mapping[str, Path]]:
-    """The project as it is once all its pictures lie within it, and the files from outside by their places there."""
-    moved: dict[str, str] = {}
-    files: dict[str, Path] = {}
+def _with_all_within(folder: Path, file: ProjectFile) -> tuple[ProjectFile, Mapping[str, Path]]:
+    """The project as it is once all it names lies within it, and the files from outside by their places there."""
+    moved, files = _enclosed(folder, file)
     for part in (*PARTS, CHECK):
         stored = getattr(file.project.sources, part)
         pictures = source_folder(folder, stored)
@@ -192,6 +196,23 @@ def _with_sources_within(folder: Path, file: ProjectFile) -> tuple[ProjectFile, 
             if path.is_file() and not _left_behind(path.relative_to(pictures)):
                 files[f"{place}/{path.relative_to(pictures).as_posix()}"] = path
     return relocated(file, moved), files
+
+
+def _enclosed(folder: Path, file: ProjectFile) -> tuple[dict[str, str], dict[str, Path]]:
+    """Nominal surfaces and the template: their names in the pack, where these are others, and what lies outside."""
+    moved: dict[str, str] = {}
+    files: dict[str, Path] = {}
+    for stored in sorted({*nominal_names(file.project.inspection), file.project.report.template} - {""}):
+        path = (folder / stored).resolve()
+        if path.is_relative_to(folder.resolve()):
+            moved[stored] = path.relative_to(folder.resolve()).as_posix()
+        elif path.is_file():
+            place = f"{ENCLOSED}/{len(files) + 1}"
+            moved[stored] = f"{place}/{path.name}"
+            files[moved[stored]] = path
+            if stored == file.project.report.template and (logo := logo_beside(path)) is not None:
+                files[f"{place}/{logo.relative_to(path.parent).as_posix()}"] = logo
+    return {name: place for name, place in moved.items() if name != place}, files
 
 
 def _put_in(archive: zipfile.ZipFile, name: str, path: Path) -> dict[str, object]:

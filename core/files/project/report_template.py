@@ -84,6 +84,12 @@ def read_report_template(path: Path) -> ReportTemplate:
     )
 
 
+def logo_beside(path: Path) -> Path | None:
+    """The logo of the template in `path`; None if it has none, or one that lies elsewhere than beside or below it."""
+    logo = (path.parent / checked(_Template, read_toml(path), path).logo).resolve()
+    return logo if logo.is_file() and logo.is_relative_to(path.parent.resolve()) else None
+
+
 def section_set(names: list[str], *, where: str) -> frozenset[str]:
     """Names of sections to be left out; InputError if there is no such section."""
     for name in names:

@@ -61,5 +61,9 @@ def read_nominals(plan: InspectionPlan, folder: Path) -> dict[str, Triangles]:
     InputError
         If one of them cannot be read as a surface in mm; names the file.
     """
-    names = {feature.deviation.nominal for feature in plan.features if feature.deviation is not None}
-    return {name: read_nominal(folder / name) for name in sorted(names)}
+    return {name: read_nominal(folder / name) for name in nominal_names(plan)}
+
+
+def nominal_names(plan: InspectionPlan) -> list[str]:
+    """Every nominal surface a plan names."""
+    return sorted({feature.deviation.nominal for feature in plan.features if feature.deviation is not None})

@@ -122,6 +122,11 @@ def read_table(path: Path) -> Table:
     return table_of(read_text(path), path)
 
 
+def separator_of(head: str) -> str:
+    """What stands between the cells of a table whose head line is `head`."""
+    return next((one for one in SEPARATORS if one in head), ",")
+
+
 def table_of(text: str, path: Path) -> Table:
     """The table that stands in `text`; `path` is for complaints, and names in it are seen from its folder.
 
@@ -138,7 +143,7 @@ def table_of(text: str, path: Path) -> Table:
     if len(lines) < 2:
         raise InputError(Message("study.table_without_rows", "the table has no rows below its head"), where=path)
     head = lines[0][1]
-    separator = next((one for one in SEPARATORS if one in head), ",")
+    separator = separator_of(head)
     names, *rows = ([cell.strip() for cell in row] for row in csv_rows((line for _, line in lines), path, separator))
     twice = next((name for name in names if names.count(name) > 1), None)
     if twice is not None:

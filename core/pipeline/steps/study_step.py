@@ -9,6 +9,7 @@ from typing import Literal, cast
 
 from core.errors import InputError
 from core.files.atomic import make_inner_folder, write_bytes, write_text
+from core.files.csv_text import harmless_table
 from core.files.json_text import to_json
 from core.files.project.data import KeptStudy
 from core.files.project.folder import is_project, read_project, results_folder
@@ -16,7 +17,7 @@ from core.files.reading import read_bytes, read_text
 from core.files.study.input import THICKNESS, crossed_of, readings_of
 from core.files.study.results import measured_in
 from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
-from core.files.study.table import table_of
+from core.files.study.table import separator_of, table_of
 from core.messages import Message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
@@ -182,7 +183,8 @@ def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
     make_inner_folder(folder, STUDIES)
     path = study_path(folder, id_)
     write_study(path.parent, study)
-    write_text(path.with_name(TABLE), table)
+    head = next(line for line in table.splitlines() if line.strip() and not line.lstrip().startswith("#"))
+    write_text(path.with_name(TABLE), harmless_table(table, separator_of(head)))
     return KeptStudy(id_, str(study_values(study)["kind"]), _title(study))
 
 

@@ -14,10 +14,11 @@ import pytest
 from core.errors import InputError
 from core.files.project.audit import read_trail
 from core.files.project.data import Accepted, Done, Project, ProjectFile, Sources, new_project
-from core.files.project.folder import create_project, read_project
+from core.files.project.folder import create_project, read_project, write_project
 from core.files.project.keys import changed, finished, rests_on
 from core.files.project.lock import take_lock
 from core.files.project.packing import CONTENTS, pack_project, unpack_project
+from core.inspect.plan.feature_spec import Deviation, FeatureSpec
 
 
 def measured(project: Project) -> ProjectFile:
@@ -161,3 +162,41 @@ def test_a_name_that_is_no_text_is_told(project: Path, tmp_path: Path) -> None:
     packed.write_bytes(packed.read_bytes().replace("ä.txt".encode(), b"\x91\x91.txt", 1))  # in the file's own head
     with pytest.raises(InputError, match="no whole packed project"):
         unpack_project(packed, tmp_path / "out")
+
+
+def test_nominal_surfaces_and_the_template_with_its_logo_come_along_from_outside_and_nothing_is_out_of_date(
+    project: Path, tmp_path: Path
+) -> None:
+    outside = tmp_path / "office"
+    (outside / "pictures").mkdir(parents=True)
+    (outside / "part.stl").write_bytes(b"outside")
+    (outside / "pictures" / "logo.png").write_bytes(b"logo")
+    (outside / "ours.toml").write_text('name = "A"\nlogo = "pictures/logo.png"\n')
+    (project / "own.stl").write_bytes(b"within")
+    names = (str(outside / "part.stl"), str(project / "own.stl"), str(tmp_path / "gone.stl"))
+    features = tuple(
+        FeatureSpec(f"skin{number}", "deviation", deviation=Deviation(name)) for number, name in enumerate(names)
+    )
+    made = read_project(project).project
+    made = replace(
+        made,
+        inspection=replace(made.inspection, features=features),
+        report=replace(made.report, template=str(outside / "ours.toml")),
+    )
+    file = measured(made)
+    results = {**file.results, "features": finished("features", made, file.results)}
+    file = replace(file, results={**results, "report": finished("report", made, results)})
+    write_project(project, file)
+    packed = pack_project(project, tmp_path / "block.trisectz").path
+    outside.rename(tmp_path / "closed")
+    out = unpack_project(packed, tmp_path / "here")
+    back = read_project(out)
+    found = [feature.deviation.nominal for feature in back.project.inspection.features if feature.deviation]
+    assert [(out / name).read_bytes() for name in found[:2]] == [b"outside", b"within"]
+    assert found[1:] == ["own.stl", names[2]]
+    template = out / back.project.report.template
+    assert template.read_text().startswith('name = "A"')
+    assert (template.parent / "pictures" / "logo.png").read_bytes() == b"logo"
+    assert set(back.results) == set(file.results)
+    for step, done in back.results.items():
+        assert not changed(done.rests_on, rests_on(step, back.project, back.results)), step

@@ -6,6 +6,7 @@ import math
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from core.files.csv_text import harmless
 from core.files.project.data import Repeat
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
 from core.study.repeats import RepeatStatistics
@@ -144,7 +145,7 @@ def repeats_tsv(
     lines = [[tr("scan"), tr("thickness [mm]"), "U [mm]", "k", tr("calibration"), tr("measured at")]]
     lines += [
         [
-            repeat.scan,
+            harmless(repeat.scan),
             f"{repeat.thickness_mm:.6f}",
             f"{repeat.U_mm:.6f}",
             f"{repeat.k:g}",

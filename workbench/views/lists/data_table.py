@@ -9,6 +9,7 @@ from PySide6.QtCore import QAbstractTableModel, QModelIndex, QPersistentModelInd
 from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTableView, QWidget
 
+from core.files.csv_text import harmless
 from workbench.views.layouts import in_column
 
 _NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
@@ -149,9 +150,10 @@ class DataTable(QWidget):
         self.table.setCurrentIndex(self._model.index(row, 0))
 
     def copied(self) -> str:
-        """What Ctrl+C copies: the chosen rows, or all if none is chosen, with the headers."""
+        """What Ctrl+C copies: the chosen rows, or all if none is chosen, with the headers; no text is a formula."""
         chosen = sorted({index.row() for index in self.table.selectedIndexes()}) or range(len(self._model.rows))
-        return "\n".join("\t".join(line) for line in (self._model.titles, *(self._model.rows[row] for row in chosen)))
+        lines = (self._model.titles, *(self._model.rows[row] for row in chosen))
+        return "\n".join("\t".join(cell if _is_number(cell) else harmless(cell) for cell in line) for line in lines)
 
     def _copy(self) -> None:
         QGuiApplication.clipboard().setText(self.copied())
