@@ -223,7 +223,7 @@ def _put_if_none(beside: Path, path: Path) -> None:
         beside.unlink()
 
 
-def _is_left_behind(path: Path, holder: Holder) -> bool:
+def _is_left_behind(path: Path, holder: LockOwner) -> bool:
     """Whether nobody on this computer holds the file any longer."""
     if sys.platform == "win32":
         return not is_running(holder.pid, holder.since)
