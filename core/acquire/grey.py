@@ -2,15 +2,33 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any, Final, Literal, get_args
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-Channel = Literal["red", "green", "blue"]
+PlainChannel = Literal["red", "green", "blue"]
+"""One of a colour picture's channels."""
+Channel = Literal[PlainChannel, "red-green", "green-red", "blue-red"]
+"""The same, or a laser's colour as a difference of two: what is grey or white is dark in it, in any light."""
+PLAIN_CHANNELS: Final = get_args(PlainChannel)
+CHANNELS: Final = get_args(Channel)
 
 _BGR: dict[str, int] = {"blue": 0, "green": 1, "red": 2}
+_NONE_SHARE = 4
+"""A difference of nothing is this part of the largest grey value: noise below it is not cut off."""
+
+
+def is_difference(channel: str | None) -> bool:
+    """Whether a channel is a difference of two, in which targets cannot be seen."""
+    return channel is not None and channel not in PLAIN_CHANNELS
+
+
+def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.bool_]:
+    """(height, width) True where a colour picture is saturated in anything that `to_grey` makes of it."""
+    names = PLAIN_CHANNELS if channel is None else channel.split("-")
+    return np.asarray((picture[:, :, [_BGR[name] for name in names]] == np.iinfo(picture.dtype).max).any(axis=2))
 
 
 def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[Any]:
@@ -21,7 +39,8 @@ def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[An
     picture
         (height, width), or (height, width, 1 … 4): grey, grey with alpha, BGR, BGR with alpha.
     channel
-        The channel of a colour picture to take; without it, colour is reduced to 0.299 R + 0.587 G + 0.114 B.
+        The channel of a colour picture to take; without it, colour is reduced to 0.299 R + 0.587 G + 0.114 B. A
+        difference has a quarter of the largest grey value added, and that largest value where either is saturated.
     """
     if picture.ndim == 2:
         return picture
@@ -29,7 +48,18 @@ def to_grey(picture: NDArray[Any], channel: Channel | None = None) -> NDArray[An
         return picture[:, :, 0]
     if picture.shape[2] == 2:
         return np.ascontiguousarray(picture[:, :, 0])
+    if channel is not None and is_difference(channel):
+        return _difference(picture, *channel.split("-"))
     if channel is not None:
         return np.ascontiguousarray(picture[:, :, _BGR[channel]])
     grey: NDArray[Any] = cv2.cvtColor(picture[:, :, :3], cv2.COLOR_BGR2GRAY)
     return grey
+
+
+def _difference(picture: NDArray[Any], first: str, second: str) -> NDArray[Any]:
+    white = int(np.iinfo(picture.dtype).max)
+    more, less = (np.ascontiguousarray(picture[:, :, _BGR[name]]) for name in (first, second))
+    shifted = np.clip(more.astype(np.int32) - less + white // _NONE_SHARE, 0, white)
+    difference: NDArray[Any] = shifted.astype(picture.dtype)
+    difference[(more == white) | (less == white)] = white
+    return difference

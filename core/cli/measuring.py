@@ -11,9 +11,10 @@ from typing import Any
 
 from rich.table import Table
 
+from core.acquire.grey import Channel
 from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
-from core.cli.options import ExitCode
+from core.cli.options import ChannelName, ExitCode
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options, StatedTilt
@@ -66,8 +67,8 @@ class Shown:
 
 
 def options(
-    method: Method,
-    sigma_cut: float,
+    method: Method = Method.NETWORK,
+    sigma_cut: float = 0.05,
     *,
     camera: CameraOptions = CameraOptions(),
     part: str = "",
@@ -75,23 +76,29 @@ def options(
     contrast: float = 0.0,
     adjust_camera: bool = False,
     accept_few_poses: bool = False,
+    channel: ChannelName | None = None,
 ) -> Options:
-    """The pipeline's options from the command line's; InputError if one is absurd."""
+    """The pipeline's options from the command line's; InputError if one is absurd.
+
+    Width and contrast are those of all stripes, in the scan and on the plane target.
+    """
     stripe = _stripe(stripe_width, contrast)
     return Options(
-        method, sigma_cut, camera, part, stripe, adjust_camera=adjust_camera, accept_few_poses=accept_few_poses
+        method,
+        sigma_cut,
+        camera,
+        part,
+        stripe,
+        adjust_camera=adjust_camera,
+        plane_stripe=stripe,
+        accept_few_poses=accept_few_poses,
+        channel=None if channel is None else channel.value,
     )
 
 
 def camera_options(skew: bool | None, k3: bool) -> CameraOptions:
     """The camera model as the command line states it."""
     return CameraOptions(skew=skew, k3=k3)
-
-
-def plane_options(adjust_camera: bool, accept_few_poses: bool, stripe_width: float, contrast: float) -> Options:
-    """The options of the planes step alone, where width and contrast are those of the stripes on the plane target."""
-    stripe = _stripe(stripe_width, contrast)
-    return Options(adjust_camera=adjust_camera, accept_few_poses=accept_few_poses, plane_stripe=stripe)
 
 
 def _stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
@@ -160,7 +167,7 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 
 def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Planes step."""
-    with alone_with(folder, out) as work:
+    with alone_with(folder, out, channel=chosen.channel) as work:
         calibration = planes_step(work, chosen, progress)
         return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
@@ -169,7 +176,7 @@ def run_check(
     folder: Path, out: Path, chosen: Options, progress: Progress, celsius: float | None = None
 ) -> tuple[InterimCheck, Shown]:
     """Check step; `celsius` is the temperature of the air."""
-    with alone_with(folder, out) as work:
+    with alone_with(folder, out, channel=chosen.channel) as work:
         check = check_step(work, chosen, progress, celsius)
         return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
 
@@ -194,7 +201,7 @@ def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
 
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Scan step."""
-    with alone_with(folder, out) as work:
+    with alone_with(folder, out, channel=chosen.channel) as work:
         measured = scan_step(work, chosen, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
         rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
@@ -218,7 +225,7 @@ def run_profile(
             where="--tilt-sd",
         )
     tilt = StatedTilt(stage, math.radians(tilt_sd_deg) or None) if stage or tilt_sd_deg else None
-    with alone_with(folder, out, chosen.part) as work:
+    with alone_with(folder, out, chosen.part, chosen.channel) as work:
         measured = profile_step(work, chosen, tilt, progress)
         gauge, pictures = measured.gauge, measured.pictures
         rows = [*output.gauge_rows(gauge), *output.picture_rows(pictures)]
@@ -227,9 +234,9 @@ def run_profile(
 
 
 @contextmanager
-def alone_with(folder: Path, out: Path, part: str = "") -> Iterator[Workspace]:
-    """A recording set and the folder of its results, which no other program writes to meanwhile."""
-    work = Workspace.open(open_set(folder), out, part)
+def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
+    """A recording set, lasers looked at in this channel, and the folder of its results, which nobody else writes to."""
+    work = Workspace.open(open_set(folder).seen_in(channel), out, part)
     with alone_in(work.out):
         yield work
 

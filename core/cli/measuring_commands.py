@@ -13,6 +13,7 @@ from core.cli.options import (
     K3,
     AcceptFewPoses,
     AdjustCamera,
+    ChannelOption,
     Contrast,
     Exclude,
     Json,
@@ -44,6 +45,7 @@ def run(
     sigma_cut: SigmaCut = 0.05,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     skew: Skew = None,
     k3: K3 = False,
     adjust_camera: AdjustCamera = False,
@@ -66,6 +68,7 @@ def run(
             contrast=contrast,
             adjust_camera=adjust_camera,
             accept_few_poses=accept_few_poses,
+            channel=channel,
         )
         options = measuring.leaving_out(options, folder, exclude)
         with bars() as progress:
@@ -105,9 +108,7 @@ def camera(
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import measuring
 
-    options = measuring.leaving_out(
-        measuring.options(Method.NETWORK, 0.05, camera=measuring.camera_options(skew, k3)), folder, exclude
-    )
+    options = measuring.leaving_out(measuring.options(camera=measuring.camera_options(skew, k3)), folder, exclude)
     with bars() as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)
@@ -121,13 +122,20 @@ def planes(
     accept_few_poses: AcceptFewPoses = False,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     exclude: Exclude = None,
     json: Json = False,
 ) -> None:
     """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import measuring
 
-    chosen = measuring.plane_options(adjust_camera, accept_few_poses, stripe_width, contrast)
+    chosen = measuring.options(
+        stripe_width=stripe_width,
+        contrast=contrast,
+        adjust_camera=adjust_camera,
+        accept_few_poses=accept_few_poses,
+        channel=channel,
+    )
     options = measuring.leaving_out(chosen, folder, exclude)
     with bars() as progress:
         shown = measuring.run_planes(folder, out, options, progress)
@@ -140,6 +148,7 @@ def check(
     out: Out,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     celsius: Celsius = None,
     history: Annotated[
         bool, typer.Option("--history", help="Check nothing: show the checks of this rig so far, with their limits.")
@@ -153,7 +162,7 @@ def check(
         past, shown = measuring.rig_history(folder, out)
         shown.show(as_json=json)
         raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
-    options = measuring.plane_options(False, False, stripe_width, contrast)
+    options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
     with bars() as progress:
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
@@ -184,6 +193,7 @@ def scan(
     sigma_cut: SigmaCut = 0.05,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     exclude: Exclude = None,
     profile: Profile = False,
     json: Json = False,
@@ -191,7 +201,7 @@ def scan(
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import measuring
 
-    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
         watched = measuring.timed(progress, profile)
@@ -221,6 +231,7 @@ def profile(
     ] = 0.0,
     stripe_width: StripeWidth = 0.0,
     contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     part: Part = "",
     exclude: Exclude = None,
     json: Json = False,
@@ -228,7 +239,7 @@ def profile(
     """Measure a thickness with the fixed lines alone, no hand-held laser: by the step in each picture of SET/scan."""
     from core.cli import measuring
 
-    options = measuring.options(Method.NETWORK, 0.05, part=part, stripe_width=stripe_width, contrast=contrast)
+    options = measuring.options(part=part, stripe_width=stripe_width, contrast=contrast, channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
     with bars() as progress:
         result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)

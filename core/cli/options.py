@@ -41,6 +41,17 @@ class OrderBy(str, Enum):  # noqa: UP042
     time = "time"
 
 
+class ChannelName(str, Enum):  # noqa: UP042
+    """What the laser is looked at in, in colour pictures."""
+
+    red = "red"
+    green = "green"
+    blue = "blue"
+    red_green = "red-green"
+    green_red = "green-red"
+    blue_red = "blue-red"
+
+
 Set = Annotated[Path, typer.Argument(metavar="SET", help="The recording set: a folder with rig.toml and pictures.")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; made if need be.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]
@@ -84,6 +95,17 @@ StripeWidth = Annotated[
 Contrast = Annotated[
     float,
     typer.Option("--contrast", metavar="GREY", help="Height of a rather faint stripe above its background; 0: chosen."),
+]
+
+
+ChannelOption = Annotated[
+    ChannelName | None,
+    typer.Option(
+        "--channel",
+        help="Look at the lasers in this channel of colour pictures, or difference of two; else as rig.toml says, or "
+        "in the one that shows their light best.",
+        show_default=False,
+    ),
 ]
 
 

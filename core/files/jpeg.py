@@ -2,7 +2,8 @@
 
 References
 ----------
-ITU-T T.81, Digital compression and coding of continuous-tone still images (1992), annexes A.3.4 and B.2.4.1.
+ITU-T T.81, Digital compression and coding of continuous-tone still images (1992), annexes A.3.4, B.2.2 and B.2.4.1.
+ITU-T T.871, JPEG File Interchange Format (2011), section 7: brightness and two colours of red, green and blue.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from core.acquire.grey import Channel, is_difference
+from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.messages import Message
 
 START = b"\xff\xd8"
@@ -19,6 +22,14 @@ _FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """Markers of a frame's head; the three between them are tables and an extension."""
 _COARSE_TERMS = 10
 """Terms of a block's cosine series, in the order of the file, that make up a stripe: those of the 4 lowest orders."""
+
+_TERMS = 64
+_BLOCK_PX = 8.0
+"""Side of a block."""
+_BEFORE_COMPONENTS = 6
+"""Bytes of a frame's head before its components: precision, height, width and how many they are."""
+_COLOUR = {"red": (1.0, 0.0, 1.402), "green": (1.0, -0.344136, -0.714136), "blue": (1.0, 1.772, 0.0)}
+"""Of brightness, blueness and redness."""
 
 _ENDS_EARLY = Message("picture.ends_early", "ends early")
 
@@ -37,26 +48,64 @@ def jpeg_damage(data: bytes) -> Message | None:
     return _ENDS_EARLY
 
 
-def compression_grey(data: bytes) -> float:
-    """Standard deviation in grey levels of what rounding the terms of a block leaves of each; 0 for any other file.
+def compression_of(data: bytes, channel: Channel | None = None) -> Compression:
+    """What rounding the terms of a block leaves a channel of a picture off; nothing for any other file.
 
-    From the file's own quantisation table of brightness: a term in steps of q is off by q/√12, on the average of the
-    terms that make up a stripe. `data` may end behind the tables.
+    From the file's own tables: a term in steps of q is off by q/√12, on the average of the terms that make up a
+    stripe. A JPEG holds brightness and two colours, each with its table, and the colours mostly in fewer pixels: a
+    stripe in one of them is off by as many times more pixels of the picture. Grey is brightness alone, a difference of
+    channels colour alone, a channel of both. `data` may end behind the tables.
     """
     if not data.startswith(START):
-        return 0.0
+        return UNCOMPRESSED
+    steps: dict[int, float] = {}
+    components: list[tuple[int, int, int]] = []
     try:
         for marker, start, end in _segments(data):
-            if marker == _SCAN:
+            if end > len(data):
                 break
-            if marker == _QUANTISATION and end <= len(data) and data[start] & 0x0F == 0:
-                size = 2 if data[start] >> 4 else 1
-                table = data[start + 1 : start + 1 + _COARSE_TERMS * size]
-                steps = np.frombuffer(table, ">u2" if size == 2 else np.uint8).astype(np.float64)
-                return float(np.sqrt(np.mean(steps**2) / 12)) if len(steps) == _COARSE_TERMS else 0.0
+            if marker == _QUANTISATION:
+                steps.update(_steps(data[start:end]))
+            elif marker in _FRAMES:
+                components = _components(data[start:end])
     except ValueError:
-        pass
-    return 0.0
+        return UNCOMPRESSED
+    components = components or [(1, 1, 0)]
+    across, down = (max(samples[way] for samples in components) for way in (0, 1))
+    squares, block = 0.0, _BLOCK_PX
+    for share, (columns, rows, table) in zip(_shares(channel, len(components)), components, strict=False):
+        if share and table in steps:
+            coarser = max(across / columns, down / rows)
+            squares += (share * coarser * steps[table]) ** 2 / 12
+            block = max(block, _BLOCK_PX * coarser)
+    return Compression(float(np.sqrt(squares)), block)
+
+
+def _shares(channel: Channel | None, components: int) -> tuple[float, ...]:
+    """How much of brightness and of both colours is in a channel."""
+    if channel is None or components < len(_COLOUR):
+        return (1.0,)
+    if not is_difference(channel):
+        return _COLOUR[channel]
+    first, second = (_COLOUR[name] for name in channel.split("-"))
+    return tuple(a - b for a, b in zip(first, second, strict=True))
+
+
+def _steps(segment: bytes) -> Iterator[tuple[int, float]]:
+    """Number of each table in a segment, and the RMS of its steps for the coarse terms."""
+    at = 0
+    while at < len(segment):
+        number, size = segment[at] & 0x0F, 2 if segment[at] >> 4 else 1
+        table = np.frombuffer(segment[at + 1 : at + 1 + _COARSE_TERMS * size], ">u2" if size == 2 else np.uint8)
+        if len(table) == _COARSE_TERMS:
+            yield number, float(np.sqrt(np.mean(table.astype(np.float64) ** 2)))
+        at += 1 + _TERMS * size
+
+
+def _components(head: bytes) -> list[tuple[int, int, int]]:
+    """Samples a unit, across and down, and number of the table of each component in a frame's head."""
+    places = range(_BEFORE_COMPONENTS, len(head) - 2, 3)
+    return [(max(1, head[at + 1] >> 4), max(1, head[at + 1] & 0x0F), head[at + 2]) for at in places]
 
 
 def frame_sizes(data: bytes) -> Iterator[tuple[int, int]]:

@@ -17,6 +17,7 @@ from core.files.atomic import write_bytes
 from core.files.limits import check_file, check_pixels
 from core.files.picture_size import declared_sizes
 from core.files.reading import read_bytes
+from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.messages import Message
 
 MAGIC = b"P5"
@@ -164,17 +165,17 @@ def decode_colours(data: bytes, path: Path) -> NDArray[Any]:
     return picture
 
 
-def compression_grey(path: Path) -> float:
-    """How far compression leaves the grey values of a picture file off, see :func:`core.files.jpeg.compression_grey`.
+def compression_of(path: Path, channel: Channel | None = None) -> Compression:
+    """How far compression leaves a channel of a picture file off, see :func:`core.files.jpeg.compression_of`.
 
-    0 for a file that is lossless or cannot be read.
+    Not at all for a file that is lossless or cannot be read.
     """
     check_file(path)
     try:
         with path.open("rb") as file:
-            return jpeg.compression_grey(file.read(_TABLES_WITHIN))
+            return jpeg.compression_of(file.read(_TABLES_WITHIN), channel)
     except OSError:
-        return 0.0
+        return UNCOMPRESSED
 
 
 def write_picture(path: Path, picture: Picture) -> None:

@@ -71,7 +71,7 @@ def run(
         If anything in the set keeps it from being measured; what was finished before stays, whole.
     """
     options = options or Options()
-    found = open_set(set_folder)
+    found = open_set(set_folder).seen_in(options.channel)
     require_camera(found)
     require_planes(found)
     require_scan(found)

@@ -16,7 +16,7 @@ import numpy as np
 
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
-from core.files.pictures import compression_grey, read_picture
+from core.files.pictures import compression_of, read_picture
 from core.files.plan.plan_file import read_plan, write_plan
 from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
@@ -65,7 +65,7 @@ def _camera(path: Path) -> Any:
 
 
 def _picture(path: Path) -> None:
-    compression_grey(path)
+    compression_of(path, "red-green")
     check_sizes([path, path.with_name("other.png")] if path.suffix == "" else [path])
     _taken_at(path)
     read_picture(path)

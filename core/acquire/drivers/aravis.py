@@ -257,7 +257,7 @@ def _telling() -> Iterator[None]:
 
 def _make(id_: str, rig: Any) -> GenICamSource:
     name = id_ or "Aravis camera"
-    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.live_channel)
 
 
 def _list() -> tuple[SourceInfo, ...]:

@@ -239,7 +239,7 @@ def _telling() -> Iterator[None]:
 
 def _make(id_: str, rig: Any) -> GenICamSource:
     name = f"Basler {id_}"
-    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.live_channel)
 
 
 def _list() -> tuple[SourceInfo, ...]:

@@ -320,7 +320,7 @@ def _said(problem: Exception) -> str:
 
 def _make(id_: str, rig: Any) -> GenICamSource:
     name = id_ or "GenICam camera"
-    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.channel)
+    return GenICamSource(name.strip(), partial(connect, id_), None if rig is None else rig.live_channel)
 
 
 def _list() -> tuple[SourceInfo, ...]:

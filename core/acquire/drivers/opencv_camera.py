@@ -249,7 +249,7 @@ class _Grabber:
 
 
 def _make(id_: str, rig: Any) -> OpenCVSource:
-    return OpenCVSource(id_, None if rig is None else rig.channel)
+    return OpenCVSource(id_, None if rig is None else rig.live_channel)
 
 
 def _list() -> tuple[SourceInfo, ...]:

@@ -227,6 +227,7 @@ def _options(table: OptionsTable) -> Options:
 
 def _options_table(options: Options) -> dict[str, Any]:
     table = asdict(options)
+    del table["channel"]  # a project's rig says it
     table["camera"]["fixed"] = sorted(options.camera.fixed)
     return {**table, "excluded": sorted(options.excluded)}
 

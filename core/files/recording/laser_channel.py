@@ -1,36 +1,59 @@
 """Which channel of colour pictures shows the light of a laser best, where nobody has said it.
 
-Grey mixes all channels: of a red laser's light a third is left, and the noise of the other two is added.
+Grey mixes all channels: of a red laser's light a third is left, and the noise of the other two is added. A difference
+of two channels is free of what is grey or white, like marks and room light that changes, but has the noise of both, and
+in a JPEG it is of coarser pixels and steps.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.grey import Channel, to_grey
+from core.acquire.grey import CHANNELS, PLAIN_CHANNELS, Channel, saturated_in, to_grey
+from core.files.jpeg import compression_of
 from core.messages import Message
-from core.model.robust import mad_sd
 
 CLEARLY = 1.5
-"""A channel is taken if it is so many times better than grey: less is no reason to leave what everybody expects."""
+"""A channel is taken if it is so many times better than grey, and a difference if it is so many times better than the
+best of these: less is no reason to leave what everybody expects."""
 _LIT_SHARE = 0.002
 """Share of the pixels, the brightest ones of the difference, that are judged as the laser's light."""
 _LEAST_NOISE = 0.5
 """Of a difference, in levels of the picture: rounding alone gives as much."""
+_REST_QUANTILE, _REST_SD = 0.8, 1.2816
+"""Share of the brighter half of a difference that is nothing but the rest, edges and other light included, and how many
+standard deviations noise alone is within at that share. The darker half holds the shadow of a mean with light in it."""
 _BACKGROUND_PX = 31
 """Width of the mean that stands for a picture without the light, where there is none: many times a stripe's."""
 
-_NAMES = {
+NAMES: Mapping[Channel, Message] = {
     "red": Message("set.channel_red", "red"),
     "green": Message("set.channel_green", "green"),
     "blue": Message("set.channel_blue", "blue"),
+    "red-green": Message("set.channel_red_green", "red − green"),
+    "green-red": Message("set.channel_green_red", "green − red"),
+    "blue-red": Message("set.channel_blue_red", "blue − red"),
 }
+"""The channels in words."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LitPicture:
+    """A colour picture (height, width, 3 or 4) in OpenCV's order with the light, and what is known of it.
+
+    `off` is the same without the light, None if there is none; `data` the bytes of its file, for what they tell of
+    compression.
+    """
+
+    on: NDArray[Any]
+    off: NDArray[Any] | None = None
+    data: bytes = b""
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +62,11 @@ class LaserChannel:
 
     channel: Channel | None = None
     times: float = 1.0
+
+    @property
+    def settings(self) -> dict[str, str]:
+        """For run.json the channel that was looked at; nothing for grey."""
+        return {} if self.channel is None else {"channel": self.channel}
 
     def notes(self, part: str) -> tuple[Message, ...]:
         """Which channel was chosen for the pictures of a part of a set; nothing where it was stated."""
@@ -50,40 +78,41 @@ class LaserChannel:
                 "The colour pictures in {part} are looked at in their {channel} channel, in which the laser's light "
                 "stands out {times:.1f} times as far as in grey. A channel in rig.toml decides otherwise.",
                 part=part,
-                channel=_NAMES[self.channel],
+                channel=NAMES[self.channel],
                 times=self.times,
             ),
         )
 
 
-def laser_channel(pictures: Sequence[tuple[NDArray[Any], NDArray[Any] | None]]) -> LaserChannel:
-    """The channel in which the light stands out farthest from the noise, if clearly farther than in grey.
-
-    Parameters
-    ----------
-    pictures
-        Colour pictures (height, width, 3 or 4) in OpenCV's order with the light, each with the same one without it, or
-        None.
-    """
+def laser_channel(pictures: Sequence[LitPicture]) -> LaserChannel:
+    """The channel in which the light stands out farthest from all the rest, if clearly farther than in grey."""
     if not pictures:
         return LaserChannel()
-    grey = _contrast(pictures, None)
-    found = {channel: _contrast(pictures, channel) for channel in get_args(Channel)}
-    best: Channel = max(found, key=lambda channel: found[channel])
+    grey = _separation(pictures, None)
+    found = {channel: _separation(pictures, channel) for channel in CHANNELS}
+    plain: Channel = max(PLAIN_CHANNELS, key=lambda channel: found[channel])
+    best: Channel = max(CHANNELS, key=lambda channel: found[channel])
+    if found[best] < CLEARLY * max(grey, found[plain]):
+        best = plain
     times = found[best] / grey if grey > 0 else 0.0
     return LaserChannel(best, times) if times >= CLEARLY else LaserChannel()
 
 
-def _contrast(pictures: Sequence[tuple[NDArray[Any], NDArray[Any] | None]], channel: Channel | None) -> float:
-    """Median over pictures of the light's height over the noise; saturated light counts for nothing."""
+def _separation(pictures: Sequence[LitPicture], channel: Channel | None) -> float:
+    """Median over pictures of the light's height over what the rest scatters; saturated light counts for nothing."""
     heights = []
-    for on, off in pictures:
-        light = to_grey(on, channel)
-        level = light.astype(np.float32)
-        without = cv2.blur(level, (_BACKGROUND_PX, _BACKGROUND_PX)) if off is None else to_grey(off, channel)
+    for picture in pictures:
+        level = to_grey(picture.on, channel).astype(np.float32)
+        if picture.off is None:
+            without = cv2.blur(level, (_BACKGROUND_PX, _BACKGROUND_PX))
+        else:
+            without = to_grey(picture.off, channel).astype(np.float32)
         difference = level - without
         lit = difference >= np.quantile(difference, 1 - _LIT_SHARE)
-        saturated = float((light[lit] == np.iinfo(light.dtype).max).mean())
-        noise = mad_sd(np.asarray(difference - np.median(difference), dtype=np.float64))
-        heights.append((1 - saturated) * float(np.median(difference[lit])) / max(noise, _LEAST_NOISE))
+        saturated = float(saturated_in(picture.on, channel)[lit].mean())
+        median = float(np.median(difference))
+        brighter = difference[difference >= median] - median
+        scatter = float(np.quantile(brighter, _REST_QUANTILE)) / _REST_SD
+        noise = np.hypot(max(scatter, _LEAST_NOISE), compression_of(picture.data, channel).grey)
+        heights.append((1 - saturated) * float(np.median(difference[lit])) / noise)
     return float(np.median(heights))

@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from core.acquire.grey import Channel
 from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
 from core.image.stripes.stripe import StripeSettings
@@ -29,6 +30,8 @@ class Options:
         Width and contrast of the stripes in the scan's pictures; None: chosen from the pictures, for each laser.
     plane_stripe
         The same of the stripes on the plane target.
+    channel
+        The channel of colour pictures in which the lasers are looked at; None: as the rig says, or chosen.
     part
         Name of the part for the report; else it is named like the set.
     excluded
@@ -57,6 +60,7 @@ class Options:
     adjust_camera: bool = False
     plane_stripe: StripeSettings | None = None
     accept_few_poses: bool = False
+    channel: Channel | None = None
 
     def __post_init__(self) -> None:
         if self.method not in list(Method):

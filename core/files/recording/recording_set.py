@@ -17,15 +17,16 @@ from __future__ import annotations
 import contextlib
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
 from core.acquire.folder import read_ahead
+from core.acquire.grey import Channel, is_difference
 from core.errors import InputError
-from core.files.pictures import Picture, decode_colours, decode_picture
+from core.files.pictures import Picture, decode_colours, decode_picture, read_picture
 from core.files.reading import file_hash, read_bytes
-from core.files.recording.laser_channel import LaserChannel, laser_channel
+from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
 from core.messages import Message
@@ -114,6 +115,23 @@ class RecordingSet:
         self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
         return decode_picture(data, path, self.laser_channel(self.part_of(path)).channel)
 
+    def read_target(self, path: Path) -> Picture:
+        """Read one picture of the set in the channel in which a target is looked for, else as `read`.
+
+        That is the laser's, unless targets cannot be seen in it; then it is the camera's.
+        """
+        laser = self.laser_channel(self.part_of(path)).channel
+        return read_picture(path, self.rig.channel_of("camera") if is_difference(laser) else laser)
+
+    def seen_in(self, channel: Channel | None) -> RecordingSet:
+        """The set with this channel for the laser, in all parts; as it is for None."""
+        if channel is None:
+            return self
+        rig = self.rig
+        for part in ("planes", "scan"):
+            rig = rig.with_channel(part, channel)
+        return replace(self, rig=rig, chosen={})
+
     def part_of(self, path: Path) -> str:
         """The part that a picture belongs to, as "camera"."""
         return self.name_of(path).partition("/")[0]
@@ -139,13 +157,15 @@ class RecordingSet:
         pictures = []
         for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
             try:
-                seen = [None if path is None else decode_colours(read_bytes(path), path) for path in (on, off)]
+                data = read_bytes(on)
+                lit = decode_colours(data, on)
+                dark = None if off is None else decode_colours(read_bytes(off), off)
             except InputError:
                 continue  # told when it is measured
-            if seen[0] is None or seen[0].ndim < 3 or seen[0].shape[2] < 3:
+            if lit.ndim < 3 or lit.shape[2] < 3:
                 return LaserChannel()
-            same = seen[1] is not None and seen[1].shape == seen[0].shape
-            pictures.append((seen[0], seen[1] if same else None))
+            same = dark is not None and dark.shape == lit.shape
+            pictures.append(LitPicture(lit, dark if same else None, data))
         return laser_channel(pictures)
 
     def id_of(self, paths: Iterable[Path]) -> str:

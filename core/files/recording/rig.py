@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from core.acquire.grey import Channel
+from core.acquire.grey import Channel, PlainChannel, is_difference
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.change import Stability
 from core.errors import InputError
@@ -32,7 +32,8 @@ _A_LENGTH = label("a length in mm above 0 and at most 5000")
 _TWO_COUNTS = label("two whole numbers from 3 to 500, [columns, rows]")
 _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
 _Polygon = Annotated[list[_Vertex], Field(min_length=3)]
-_A_CHANNEL = '"red", "green" or "blue"'
+_A_PLAIN_CHANNEL = '"red", "green" or "blue"'
+_A_CHANNEL = label('"red", "green", "blue", or a laser\'s colour: "red-green", "green-red" or "blue-red"')
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
 
 
@@ -223,7 +224,7 @@ class _Camera(Table):
 class _Channels(Table):
     """[channels]: what each step looks at, where that is not the `channel` of all."""
 
-    camera: Channel | None = Field(None, description=_A_CHANNEL)
+    camera: PlainChannel | None = Field(None, description=_A_PLAIN_CHANNEL)
     planes: Channel | None = Field(None, description=_A_CHANNEL)
     scan: Channel | None = Field(None, description=_A_CHANNEL)
 
@@ -298,7 +299,7 @@ class GaugeSpec:
 class Channels:
     """The channel of colour pictures that each step looks at; None where it is the one of all."""
 
-    camera: Channel | None = None
+    camera: PlainChannel | None = None
     planes: Channel | None = None
     scan: Channel | None = None
 
@@ -341,9 +342,24 @@ class Rig:
     channels: Channels = Channels()
 
     def channel_of(self, part: str) -> Channel | None:
-        """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any."""
+        """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any.
+
+        The camera's target cannot be seen in a difference of channels that is stated for all parts.
+        """
         own: Channel | None = getattr(self.channels, "planes" if part == "check" else part, None)
-        return own or self.channel
+        seen = own or self.channel
+        return None if part == "camera" and is_difference(seen) else seen
+
+    @property
+    def live_channel(self) -> Channel | None:
+        """The channel that colour pictures of live sources are reduced to: targets have to be seen in it."""
+        scan = self.channel_of("scan")
+        return self.channel_of("camera") if is_difference(scan) else scan
+
+    def with_channel(self, part: str, channel: Channel | None) -> Rig:
+        """The rig with the pictures of one part looked at in this channel, None: as it is chosen for them."""
+        now = {name: self.channel_of(name) for name in ("camera", "planes", "scan")}
+        return replace(self, channel=None, channels=Channels(**(now | {part: channel})))  # type: ignore[arg-type]
 
 
 def default_rig() -> Rig:

@@ -52,7 +52,6 @@ from core.image.stripes.lines.splitting import split_at_breaks
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.positions import Piece, estimate_positions
 from core.image.stripes.precision import (
-    BLOCK_PX,
     added_in_squares,
     compression_sigma,
     noise_sigma,
@@ -200,9 +199,9 @@ def _centreline(
     """A `part` of the points of a placed piece; `extra` is their scatter in px beyond the law."""
     height, sigma = piece.profiles.height[part], added_in_squares(line.sigma[part], extra)
     correlation = line.correlation_px
-    if noise.compression_grey > 0:
+    if noise.compression.grey > 0:
         sigma = np.maximum(sigma, compression_sigma(height, noise))
-        correlation = max(correlation, BLOCK_PX)
+        correlation = max(correlation, noise.compression.block_px)  # points within a block share what it does
     return Centreline(
         line.run[part, :2],
         line.run[part, 2:4],

@@ -11,7 +11,8 @@ EMVA 1288, release 4.0: photon transfer from pairs of pictures.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Final
 
 import cv2
 import numpy as np
@@ -37,6 +38,32 @@ _BACKGROUND_PX = 15  # side of the mean that a difference of two pictures is fre
 
 
 @dataclass(frozen=True, slots=True)
+class Compression:
+    """What compression leaves the grey values of a picture off, all along a block alike, so no scatter shows it.
+
+    Parameters
+    ----------
+    grey
+        Standard deviation of each term of a block in grey levels, per px of a grid as fine as the picture's; 0 for
+        none.
+    block_px
+        Side of a block in px of the picture.
+    """
+
+    grey: float = 0.0
+    block_px: float = 8.0
+
+    def __post_init__(self) -> None:
+        if not (np.isfinite(self.grey) and self.grey >= 0):
+            raise ValueError(f"compression leaves {self.grey} grey levels, not zero or positive")
+        if not (np.isfinite(self.block_px) and self.block_px > 0):
+            raise ValueError(f"blocks of {self.block_px} px are not positive")
+
+
+UNCOMPRESSED: Final = Compression()
+
+
+@dataclass(frozen=True, slots=True)
 class NoiseModel:
     """Noise of one pixel, in grey levels of the picture it is used for.
 
@@ -47,22 +74,19 @@ class NoiseModel:
         pictures also the shot noise of whatever light both have in common.
     grey_per_electron
         Shot noise: variance per grey level of signal. 0 when it is not known.
-    compression_grey
-        What compression leaves each term of a block of the picture off, as a standard deviation; 0 for none. It takes
-        noise away and shifts what is left, all along a block alike, so no scatter shows it.
+    compression
+        What compression leaves the picture off. It takes noise away and shifts what is left.
     """
 
     read_grey: float
     grey_per_electron: float = 0.0
-    compression_grey: float = 0.0
+    compression: Compression = UNCOMPRESSED
 
     def __post_init__(self) -> None:
         if not (np.isfinite(self.read_grey) and self.read_grey > 0):
             raise ValueError(f"read_grey is {self.read_grey}, not positive")
         if not (np.isfinite(self.grey_per_electron) and self.grey_per_electron >= 0):
             raise ValueError(f"grey_per_electron is {self.grey_per_electron}, not zero or positive")
-        if not (np.isfinite(self.compression_grey) and self.compression_grey >= 0):
-            raise ValueError(f"compression_grey is {self.compression_grey}, not zero or positive")
 
     def variance(self, level: Array) -> Array:
         """Variance in grey levels² at grey values `level` (any shape)."""
@@ -74,7 +98,7 @@ class NoiseModel:
         return NoiseModel(
             float(np.sqrt(2 * self.read_grey**2 + 2 * self.grey_per_electron * max(common_grey, 0.0))),
             self.grey_per_electron,
-            float(np.sqrt(2)) * self.compression_grey,
+            replace(self.compression, grey=float(np.sqrt(2)) * self.compression.grey),
         )
 
 

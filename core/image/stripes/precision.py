@@ -33,8 +33,6 @@ FLOOR_PX = 0.001
 COMPRESSION_SHARE = 0.75
 """Px by which a line is off per grey level that compression leaves the terms of a block off, times its height in grey
 levels: 0.55 to 1.0 for stripes of σ 1.2 to 5 px in qualities of 50 to 95, tests/image/stripes/test_compression.py."""
-BLOCK_PX = 8.0
-"""Side of the blocks of a JPEG: points within one share what compression does."""
 _SATURATED_SHARE = 0.01  # of the filter's weight: with more on saturated pixels a point is flagged
 _SATURATED_REACH = 2.5  # filter σ looked at for them: the rest has 4 % of the weight
 _TESTED_TOGETHER = 8  # points whose pixels are tested at once for saturation; chosen by speed
@@ -66,7 +64,7 @@ def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Arra
 
 def compression_sigma(height: Array, noise: NoiseModel) -> Array:
     """Standard uncertainty (N,) in px that compression leaves at least, of stripes of this height in grey levels."""
-    return np.asarray(COMPRESSION_SHARE * noise.compression_grey / np.maximum(height, 1.0))
+    return np.asarray(COMPRESSION_SHARE * noise.compression.grey / np.maximum(height, 1.0))
 
 
 @compiled(fastmath=True)

@@ -119,7 +119,7 @@ def _make_simulated(id_: str, rig: Rig | None) -> FrameSource:
 
 
 def _make_replay(id_: str, rig: Rig | None) -> FrameSource:
-    channel = None if rig is None else rig.channel
+    channel = None if rig is None else rig.live_channel
     if not id_:
         raise InputError(
             Message("source.no_folder_chosen", "no folder is chosen"),

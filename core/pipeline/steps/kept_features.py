@@ -64,7 +64,7 @@ def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
     pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
     rests_on = {
         "program": program_text(_SCAN_ROOMS),
-        "channel": found.rig.channel_of("scan"),
+        "channel": found.laser_channel("scan").channel,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [found.name_of(path) for path in found.frames],
@@ -154,7 +154,7 @@ def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Pa
     rests_on: dict[str, Any] = {
         "program": program_text(_CALIBRATION_ROOMS),
         "target": rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"],
-        "channel": project.rig.channel_of(step),
+        "channel": found.laser_channel(step).channel,
         "camera": camera,
         "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
     }

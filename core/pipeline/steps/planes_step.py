@@ -6,13 +6,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
+from core.acquire.grey import is_difference
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.pictures import compression_grey
+from core.files.pictures import compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, require_planes
@@ -53,6 +54,7 @@ def planes_step(
     camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.found.rig, options))
+        log.settings.update(work.found.laser_channel("planes").settings)
         poses = measure_poses(work.found, camera, progress, options.plane_stripe, beside)
         calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
         check_agreement(calibration, options.accept_few_poses)
@@ -95,7 +97,7 @@ def measure_poses(
     """
     require_planes(found)
     part = found.part_of(found.planes[0].on)  # an interim check has its pictures in a folder of its own
-    chosen = found.laser_channel(part).notes(part)
+    chosen = found.laser_channel(part)
     measure = partial(_measure, replace(found, hashes={}), camera, stripe)
     features: list[PoseFeatures] = []
     total = len(found.planes)
@@ -105,7 +107,7 @@ def measure_poses(
         found.hashes.update(hashes)
         features.append(pose)
         progress("plane poses", len(features), total)
-    features[0] = replace(features[0], notes=(*chosen, *features[0].notes))
+    features[0] = replace(features[0], notes=(*chosen.notes(part), *features[0].notes))
     return tuple(features)
 
 
@@ -124,6 +126,7 @@ def _pose_features(
         with stage(progress, "decoding"):
             on = found.read(pair.on)
             off = found.read(pair.off) if pair.off is not None else None
+            colour = _colour(found, pair)
     except InputError as error:
         return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
     check_size(pair.on, on.shape, camera)
@@ -131,9 +134,18 @@ def _pose_features(
         reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
         return PoseFeatures(pair.name, None, (), reason)
     rig = found.rig
-    lost = compression_grey(pair.on)
     with stage(progress, "plane poses"):
-        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, lost)
+        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, colour)
+
+
+def _colour(found: RecordingSet, pair: PlanePair) -> Colour:
+    """What the pictures of a pose are of."""
+    channel = found.laser_channel(found.part_of(pair.on)).channel
+    compression = compression_of(pair.on, channel)
+    if not is_difference(channel):
+        return Colour(compression=compression)
+    unlit = found.read_target(pair.off) if pair.off is not None else None
+    return Colour((found.read_target(pair.on), unlit), compression)
 
 
 def solve_planes(

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.calibrate.change import PROVES_NOTHING
 from core.errors import InputError
+from core.files.pictures import compression_of
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import GaugeSpec
@@ -89,7 +90,9 @@ def profile_step(
             ),
         )
     with work.step("profile") as log:
-        log.settings.update({**options.scan_settings, **_tilt_settings(tilt)})
+        channel = found.laser_channel("scan")
+        log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
+        looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
         change = since_calibration(found, calibration, options, progress)
         common = CommonErrors.of_fan(camera, fan, change.deviations)
         seen, steps, pictures = [], [], []
@@ -101,7 +104,7 @@ def profile_step(
                 continue
             check_size(paths[index], picture.shape, camera)
             try:
-                profiles = read_profiles(picture, index, camera, fan, feature_options(options))
+                profiles = read_profiles(picture, index, camera, fan, looking)
             except InputError as error:
                 pictures.append(PictureStep(index, name, reason=error.what))
                 continue
@@ -123,7 +126,13 @@ def profile_step(
         doubt = CHANGED if change.p < PROVES_NOTHING else doubt_of_the_day(work, calibration)
         if doubt is not None:
             gauge = doubted(gauge, doubt)
-        notes = (*change.notes, *gauge.notes, *_assumed(fan.lines, tilt, shown), *assumed_stability(found))
+        notes = (
+            *channel.notes("scan"),
+            *change.notes,
+            *gauge.notes,
+            *_assumed(fan.lines, tilt, shown),
+            *assumed_stability(found),
+        )
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))
         log.notes.extend(notes)

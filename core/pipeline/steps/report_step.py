@@ -113,7 +113,9 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         overlay=_overlay(work.found, scan, content.cloud) if scan else None,
     )
     content = said(content) if said else content
-    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, Words.of(content.language)))
+    channel = work.record().settings.get("scan", {}).get("channel") or rig.channel_of("scan")
+    words = Words.of(content.language)
+    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, channel, words))
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
@@ -203,12 +205,12 @@ def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[Cali
     )
 
 
-def _rig_in_words(rig: Rig, image_size: tuple[int, int], words: Words) -> Mapping[str, str]:
+def _rig_in_words(rig: Rig, image_size: tuple[int, int], channel: str | None, words: Words) -> Mapping[str, str]:
     size = {"width": image_size[0], "height": image_size[1]}
     angle = words.general(math.degrees(rig.angle))
     said = {
-        label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=rig.channel_of("scan"))
-        if rig.channel_of("scan")
+        label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=channel)
+        if channel
         else words("{width} × {height} px", **size),
         label("Camera target"): target_in_words(rig.camera_target, words),
         label("Plane target"): target_in_words(rig.plane_target, words),

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
-from core.files.pictures import Picture, compression_grey
+from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
@@ -75,8 +75,8 @@ def look_at_scan(
     """
     found, options = job
     times = progress if isinstance(progress, StageTimes) else None
-    lost = compression_grey(found.frames[0]) if found.frames else 0.0
-    looking = replace(feature_options(options), compression_grey=lost)
+    channel = found.laser_channel("scan")
+    looking = replace(feature_options(options), compression=compression_of(found.frames[0], channel.channel))
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
     reference = read_reference(picture, looking)
@@ -85,7 +85,7 @@ def look_at_scan(
     show = watching(reference) if watching else None
     lines = extract_lines(reference, frames, total, looking, progress, show, times)
     averaged = lines.averaged(progress, times)
-    notes = (*found.laser_channel("scan").notes("scan"), *note)
+    notes = (*channel.notes("scan"), *note)
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
 

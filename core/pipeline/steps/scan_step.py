@@ -93,6 +93,7 @@ def scan_step(
         if features is None or features.image_size != camera.image_size:
             looked = seen() if seen else _look(found, calibration, options, progress, watch)
             features = _features(found, looked, camera, progress)
+        log.settings.update(found.laser_channel("scan").settings)
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None

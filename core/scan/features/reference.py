@@ -17,7 +17,7 @@ from core.compiled import compiled
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
-from core.image.stripes.noise import NoiseModel, estimate_noise
+from core.image.stripes.noise import UNCOMPRESSED, Compression, NoiseModel, estimate_noise
 from core.image.stripes.running_statistics import median
 from core.image.stripes.settings import choose_settings
 from core.image.stripes.stripe import StripeSettings
@@ -166,8 +166,7 @@ class FeatureOptions:
     """How pictures become features; None means chosen from the pictures.
 
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
-    a `camera`, centrelines are crossed as they would be without its distortion. `compression_grey` is that of the noise
-    of each picture, see :class:`core.image.stripes.noise.NoiseModel`.
+    a `camera`, centrelines are crossed as they would be without its distortion. `compression` is that of each picture.
     """
 
     sweep_stripe: StripeSettings | None = None
@@ -175,7 +174,7 @@ class FeatureOptions:
     window: CrossingWindow = field(default_factory=CrossingWindow)
     move_limit_px: float = 0.3
     camera: Camera | None = None
-    compression_grey: float = 0.0
+    compression: Compression = UNCOMPRESSED
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -221,7 +220,7 @@ def read_reference(picture: Picture, options: FeatureOptions | None = None) -> R
     options = options or FeatureOptions()
     full_scale = float(np.iinfo(picture.dtype).max)
     base = picture.astype(np.float32)
-    noise = replace(estimate_noise(base), compression_grey=options.compression_grey)
+    noise = replace(estimate_noise(base), compression=options.compression)
     stripe, fan = _fan_centrelines(base, full_scale, noise, options)
     return ReferenceFeatures(picture, full_scale, noise.of_difference(float(np.median(base))), fan, stripe)
 

@@ -4,9 +4,13 @@ import cv2
 import numpy as np
 import pytest
 
-from core.files.recording.laser_channel import LaserChannel, laser_channel
+from core.acquire.grey import saturated_in, to_grey
+from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
+from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import default_rig, rig_to_toml
+from core.pipeline.steps.kept_features import features_key
+from tests import paper
 
 
 def lit(colour, seed, light=True, room=60.0):
@@ -24,7 +28,9 @@ RED, GREEN, BLUE, WHITE = (2, 8, 150), (5, 150, 20), (150, 8, 2), (60, 60, 60)
 @pytest.mark.parametrize("with_off", [True, False])
 @pytest.mark.parametrize(("colour", "channel"), [(RED, "red"), (BLUE, "blue")])
 def test_the_channel_of_the_lasers_colour_is_chosen_and_told(colour, channel, with_off):
-    pictures = [(lit(colour, seed), lit(colour, 10 + seed, light=False) if with_off else None) for seed in range(3)]
+    pictures = [
+        LitPicture(lit(colour, seed), lit(colour, 10 + seed, light=False) if with_off else None) for seed in range(3)
+    ]
     chosen = laser_channel(pictures)
     assert chosen.channel == channel
     (note,) = chosen.notes("scan")
@@ -33,14 +39,64 @@ def test_the_channel_of_the_lasers_colour_is_chosen_and_told(colour, channel, wi
 
 @pytest.mark.parametrize("colour", [WHITE, GREEN])
 def test_light_that_grey_shows_about_as_well_stays_grey(colour):
-    chosen = laser_channel([(lit(colour, seed), lit(colour, 10 + seed, light=False)) for seed in range(3)])
+    chosen = laser_channel([LitPicture(lit(colour, seed), lit(colour, 10 + seed, light=False)) for seed in range(3)])
     assert chosen == LaserChannel()
     assert chosen.notes("scan") == ()
 
 
+def textured(colour, seed):
+    """As `lit`, but on black and white squares of which the light takes as much as they give."""
+    rng = np.random.default_rng(seed)
+    rows, columns = np.mgrid[:240, :320]
+    squares = np.where((rows // 8 + columns // 8) % 2, 150.0, 20.0)[:, :, None]
+    stripe = np.exp(-0.5 * ((rows - 0.5 * columns - 30) / 1.5) ** 2)[:, :, None]
+    picture = squares + rng.normal(0, 2.0, (240, 320, 3)) + stripe * np.asarray(colour, dtype=float)
+    return np.clip(picture, 0, 255).round().astype(np.uint8)
+
+
+@pytest.mark.parametrize(
+    ("colour", "channel"), [((2, 8, 90), "red-green"), ((2, 90, 8), "green-red"), ((90, 8, 2), "blue-red")]
+)
+def test_among_black_and_white_marks_a_laser_is_looked_at_by_its_colour(colour, channel):
+    chosen = laser_channel([LitPicture(textured(colour, seed)) for seed in range(3)])
+    assert chosen.channel == channel
+    assert "−" in str(chosen.notes("planes")[0])
+
+
+def test_colours_that_a_jpeg_has_rounded_away_are_not_chosen():
+    picture = textured((2, 8, 90), 1)
+    data = cv2.imencode(".jpg", picture, [cv2.IMWRITE_JPEG_QUALITY, 30])[1]
+    seen = LitPicture(cv2.imdecode(data, cv2.IMREAD_UNCHANGED), data=data.tobytes())
+    assert laser_channel([seen]).channel not in ("red-green", "green-red", "blue-red")
+
+
+def test_a_difference_shows_nothing_where_a_channel_is_saturated():
+    picture = np.zeros((4, 4, 3), np.uint8)
+    picture[0, 0], picture[1, 1], picture[2, 2] = (0, 10, 60), (0, 60, 10), (0, 200, 255)
+    grey = to_grey(picture, "red-green")
+    assert [grey[3, 3], grey[0, 0], grey[1, 1], grey[2, 2]] == [63, 113, 13, 255]
+    assert saturated_in(picture, "red-green").sum() == saturated_in(picture, None).sum() == 1
+    assert not saturated_in(picture, "green").any()
+
+
+def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path):
+    found = colour_set(tmp_path / "set", 'channel = "green"\n').seen_in("red-green")
+    assert [found.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + ["red-green"] * 2
+    colours = cv2.imread(str(found.planes[0].on))
+    assert (found.read(found.planes[0].on) == to_grey(colours, "red-green")).all()
+    assert (found.read_target(found.planes[0].on) == colours[:, :, 1]).all()
+
+
+def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):
+    found, camera = colour_set(tmp_path / "set"), paper.HALF
+    chosen = features_key(found, Options(), camera)
+    assert chosen == features_key(found.seen_in("red"), Options(), camera)
+    assert chosen != features_key(found.seen_in("red-green"), Options(), camera)
+
+
 def test_a_channel_that_is_saturated_is_not_chosen():
     bright = (20, 90, 4000)
-    assert laser_channel([(lit(bright, 1), lit(bright, 2, light=False))]).channel != "red"
+    assert laser_channel([LitPicture(lit(bright, 1), lit(bright, 2, light=False))]).channel not in ("red", "red-green")
 
 
 def colour_set(folder, head="", colour=RED):

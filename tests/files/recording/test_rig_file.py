@@ -1,4 +1,5 @@
 import math
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -286,3 +287,20 @@ def test_an_unknown_channel_of_a_step_is_refused(tmp_path):
     path.write_text('[channels]\nscan = "violet"\n', encoding="utf-8")
     with pytest.raises(InputError, match="red"):
         read_rig(path)
+
+
+def test_a_lasers_colour_may_be_a_difference_in_which_no_target_is_looked_for(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text('channel = "red-green"\n', encoding="utf-8")
+    rig = read_rig(path)
+    assert [rig.channel_of(part) for part in ("camera", "planes", "scan")] == [None, "red-green", "red-green"]
+    assert rig.live_channel is None
+    path.write_text('[channels]\ncamera = "red-green"\n', encoding="utf-8")
+    with pytest.raises(InputError, match=re.escape("channels.camera")):
+        read_rig(path)
+
+
+def test_the_channel_of_one_step_changes_and_the_others_stay(tmp_path):
+    rig = replace(default_rig(), channel="green").with_channel("scan", "blue-red")
+    assert [rig.channel_of(part) for part in ("camera", "planes", "scan")] == ["green", "green", "blue-red"]
+    assert rig.with_channel("scan", None).channel_of("scan") is None

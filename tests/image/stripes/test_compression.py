@@ -8,9 +8,10 @@ import cv2
 import numpy as np
 import pytest
 
-from core.files.jpeg import compression_grey
+from core.acquire.grey import to_grey
+from core.files.jpeg import compression_of
 from core.image.stripes.extraction import StripeSettings, extract_centrelines
-from core.image.stripes.noise import estimate_noise
+from core.image.stripes.noise import Compression, estimate_noise
 from tests.image.synthetic_stripes import draw, expose, straight
 
 SHAPE, POINT = (200, 400), (200.0, 100.3)
@@ -24,7 +25,7 @@ def errors_in_sigma(sigma_px: float, height: float, quality: int, angle: float) 
     light = expose(20 + draw(SHAPE, truth, sigma_px, height, 2), rng, 0.5, 0.0)
     data = cv2.imencode(".jpg", np.clip(np.round(light), 0, 255), [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
     picture = np.asarray(cv2.imdecode(data, cv2.IMREAD_GRAYSCALE), dtype=np.float32)
-    noise = replace(estimate_noise(picture), compression_grey=compression_grey(data.tobytes()))
+    noise = replace(estimate_noise(picture), compression=compression_of(data.tobytes()))
     lines = extract_centrelines(picture, StripeSettings(4 * sigma_px, height), noise=noise)
     assert sum(map(len, lines)) > 120
     return np.concatenate([truth(*line.uv.T) / line.sigma for line in lines])
@@ -43,8 +44,28 @@ def test_only_compression_makes_lines_less_sure() -> None:
     picture = expose(draw(SHAPE, straight(POINT, 0.1), 2.0, 100.0, 2), np.random.default_rng(1)).astype(np.float32)
     noise, settings = estimate_noise(picture), StripeSettings(8.0, 100.0)
     (plain,) = extract_centrelines(picture, settings, noise=noise)
-    (compressed,) = extract_centrelines(picture, settings, noise=replace(noise, compression_grey=10.0))
+    (compressed,) = extract_centrelines(picture, settings, noise=replace(noise, compression=Compression(10.0)))
     np.testing.assert_array_equal(compressed.uv, plain.uv)
     assert (compressed.sigma > plain.sigma).all()
-    (little,) = extract_centrelines(picture, settings, noise=replace(noise, compression_grey=1e-3))
+    (little,) = extract_centrelines(picture, settings, noise=replace(noise, compression=Compression(1e-3)))
     np.testing.assert_array_equal(little.sigma, plain.sigma)
+
+
+@pytest.mark.parametrize("quality", [50, 75, 95])
+@pytest.mark.parametrize(("sigma_px", "height"), [(2.5, 150.0), (5.0, 100.0)])
+def test_a_lasers_colour_in_jpegs_is_as_sure_as_it_says(sigma_px: float, height: float, quality: int) -> None:
+    """Its colours have half the pixels and coarser steps, and their noise is smoothed."""
+    rng, each = np.random.default_rng(quality), []
+    for angle in ANGLES:
+        truth = straight(POINT, angle)
+        light = 60 + np.multiply.outer(draw(SHAPE, truth, sigma_px, height, 2), [0.03, 0.06, 1.0])
+        light = np.clip(np.round(light + rng.normal(0, 2.0, light.shape)), 0, 255)
+        data = cv2.imencode(".jpg", light, [cv2.IMWRITE_JPEG_QUALITY, quality])[1]
+        picture = to_grey(np.asarray(cv2.imdecode(data, cv2.IMREAD_UNCHANGED)), "red-green").astype(np.float32)
+        noise = replace(estimate_noise(picture), compression=compression_of(data.tobytes(), "red-green"))
+        lines = extract_centrelines(picture, StripeSettings(4 * np.hypot(sigma_px, 1.0), height), noise=noise)
+        errors = np.concatenate([truth(*line.uv.T) / line.sigma for line in lines])
+        assert len(errors) > 120
+        each.append(np.sqrt(np.mean(errors**2)))
+    assert max(each) < 2.0
+    assert np.sqrt(np.mean(np.square(each))) < 1.3

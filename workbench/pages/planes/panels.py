@@ -11,6 +11,7 @@ from workbench.language import tr
 from workbench.pages.calibration.card import CalibrationCard
 from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
+from workbench.pages.channels import add_channel
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views.forms.editors import NumberRange
@@ -116,13 +117,21 @@ class LaserForm(SettingsForm):
             self.tr("Hold the planes to one pencil"),
             self.tr("Steadier; used only where the free planes agree with it."),
         )
+        add_channel(self)
         self.edited.connect(self._tell)
 
     def refresh(self) -> None:
         """Show the laser."""
         rig, options = self._presenter.project.rig, self._presenter.project.options
         angle = math.degrees(rig.angle) if rig.angle else None
-        self.set_values({"lines": rig.lines, "angle": angle, "constrain": options.constrain_fan})
+        self.set_values(
+            {
+                "lines": rig.lines,
+                "angle": angle,
+                "constrain": options.constrain_fan,
+                "channel": rig.channel_of("planes") or "",
+            }
+        )
         one = self.tr("One line has no neighbour.") if rig.lines == 1 else ""
         for key in ("angle", "constrain"):
             self.set_editable(key, not one, one)

@@ -104,10 +104,12 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- laser
 
     def set_laser(self, field: str, value: Any) -> None:
-        """Change "lines", "angle" (rad; None where nobody states it) or "constrain"; undoable."""
+        """Change "lines", "angle" (rad; None: not stated), "constrain" or "channel" ("": found); undoable."""
         project = self.project
         if field == "constrain":
             after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
+        elif field == "channel":
+            after = replace(project, rig=project.rig.with_channel("planes", value or None))
         else:
             changes: dict[str, Any] = {field: value or 0.0}
             after = replace(project, rig=replace(project.rig, **changes))

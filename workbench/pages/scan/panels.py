@@ -12,6 +12,7 @@ from core.pipeline.live.events import ScanDetail
 from core.scan.method import Method
 from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
+from workbench.pages.channels import add_channel
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter, Stage
 from workbench.pages.scan.stability import STABILITY
@@ -149,6 +150,7 @@ class SettingsPanel(QWidget):
             NumberRange(1.0, 65535.0, decimals=0, step=5.0, unit=self.tr("grey levels")),
             self.tr("Height above the background where the stripe is rather faint."),
         )
+        add_channel(form)
         form.add_section(self.tr("Shutter of the camera"))
         form.add_number(
             "row_time_us",

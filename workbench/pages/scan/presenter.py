@@ -219,6 +219,7 @@ class ScanPresenter(StepPresenter):
             **stability.shown(rig.stability),
             **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
             "row_time_us": rig.row_time_us,
+            "channel": rig.channel_of("scan") or "",
         }
 
     def set_setting(self, field: str, value: Any) -> None:
@@ -227,6 +228,10 @@ class ScanPresenter(StepPresenter):
             rig = self.project.rig
             after = replace(self.project, rig=replace(rig, stability=stability.stated(rig.stability, field, value)))
             self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
+            return
+        if field == "channel":
+            after = replace(self.project, rig=self.project.rig.with_channel("scan", value or None))
+            self.model.edit(tr("change the colour that is looked at"), after, f"scan {field}")
             return
         if field == "row_time_us":
             after = replace(self.project, rig=replace(self.project.rig, row_time_us=value))

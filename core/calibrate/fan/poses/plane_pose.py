@@ -10,8 +10,8 @@ out as well (`core.calibrate.fan.poses.plate`).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -22,7 +22,13 @@ from core.calibrate.fan.poses.plate import Plate, without_clutter
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
-from core.image.stripes.noise import estimate_noise, estimate_noise_of_pair, free_of_structure
+from core.image.stripes.noise import (
+    UNCOMPRESSED,
+    Compression,
+    estimate_noise,
+    estimate_noise_of_pair,
+    free_of_structure,
+)
 from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -44,6 +50,21 @@ SHORTEST = 12
 """Runs with fewer points left are dropped."""
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Colour:
+    """What the grey values of a pose's pictures are of.
+
+    `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
+    theirs; `compression` is that of each picture.
+    """
+
+    target: tuple[Picture, Picture | None] | None = None
+    compression: Compression = UNCOMPRESSED
+
+
+GREY: Final = Colour()
+
+
 def measure_plane_pose(
     name: str,
     on: Picture,
@@ -52,7 +73,7 @@ def measure_plane_pose(
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
     margin_mm: float | None = None,
-    compression_grey: float = 0.0,
+    colour: Colour = GREY,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -70,8 +91,8 @@ def measure_plane_pose(
         Width and contrast of the stripes; chosen from the picture if not given.
     margin_mm
         How far the plate goes on beyond what is printed on it; None: not known.
-    compression_grey
-        Of the noise of each picture, see :class:`core.image.stripes.noise.NoiseModel`.
+    colour
+        What the grey values are of.
 
     Raises
     ------
@@ -80,12 +101,13 @@ def measure_plane_pose(
     """
     if off is not None and (on.shape != off.shape or on.dtype != off.dtype):
         raise ValueError(f"the pictures of {name} differ: {on.shape} {on.dtype} and {off.shape} {off.dtype}")
-    plate = on if off is None else off
+    lit, unlit = colour.target or (on, off)
+    plate = lit if unlit is None else unlit
     try:
         view = detect(target, plate, name, camera, plane_only=True)
     except TargetNotFound as error:
         return PoseFeatures(name, None, (), error.what)
-    moved = None if off is None else _movement(on, off, view, target, camera)
+    moved = None if unlit is None else _movement(lit, unlit, view, target, camera)
     if moved is not None and moved >= MOVED_PX:
         reason = Message(
             "fan.target_moved",
@@ -94,7 +116,7 @@ def measure_plane_pose(
         )
         return PoseFeatures(name, view, (), reason)
     carrier = Plate(target, view, camera, margin_mm)
-    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, compression_grey)
+    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, colour.compression)
     if not centrelines:
         return PoseFeatures(name, view, (), Message("fan.no_stripe", "no stripe was found: is the fan on?"))
     level = DARK * _plate_level(plate, view)
@@ -117,18 +139,18 @@ def _stripes(
     view: TargetView,
     outside: NDArray[np.bool_],
     settings: StripeSettings | None,
-    compression_grey: float,
+    compression: Compression,
 ) -> tuple[Centreline, ...]:
     """Centrelines of the laser in the difference of two pictures, or in the only one, but not `outside` the plate."""
     picture = on.astype(np.float32)
     saturated = on >= np.iinfo(on.dtype).max
     if off is None:
-        noise = replace(estimate_noise(picture), compression_grey=compression_grey)
+        noise = replace(estimate_noise(picture), compression=compression)
     else:
         without = off.astype(np.float32)
         common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
         one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
-        noise = replace(one, compression_grey=compression_grey).of_difference(common)
+        noise = replace(one, compression=compression).of_difference(common)
         picture = picture - without
     around = picture[_window(view, picture.shape, margin=1.0)]
     chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))

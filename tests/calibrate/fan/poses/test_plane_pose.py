@@ -5,8 +5,9 @@ import numpy as np
 import pytest
 from scipy.special import expit
 
+from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.targets import BlackSquare, TargetNotFound, detect
 from core.model import Pose
@@ -100,6 +101,28 @@ def test_without_an_off_picture_the_light_plate_still_serves(pair):
     on_stripe = misses_px(alone) < 1.5
     assert on_stripe.sum() > 300
     assert np.sqrt(np.mean(misses_px(alone)[on_stripe] ** 2)) < 0.1
+
+
+def in_colour(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
+    """The pair as a colour camera sees it, in the order blue, green, red: the fan is red, all else grey."""
+    grain = np.random.default_rng(5).normal(0, 1.0, (2, *pair.on.shape, 3))
+    on = np.stack([pair.off, pair.off, pair.on], axis=-1) + grain[0]
+    off = np.stack([pair.off] * 3, axis=-1) + grain[1]
+    return tuple(np.clip(np.round(picture), 0, 255).astype(np.uint8) for picture in (on, off))
+
+
+@pytest.mark.parametrize("with_off", [True, False])
+def test_the_fan_is_seen_in_its_colour_and_the_target_in_grey(pair, with_off):
+    on, off = in_colour(pair)
+    grey = to_grey(on), to_grey(off) if with_off else None
+    light = to_grey(on, "red-green"), to_grey(off, "red-green") if with_off else None
+    features = measure_plane_pose("p", *light, TARGET, CAMERA, colour=Colour(grey))
+    assert features.reason is None
+    misses = misses_px(features)
+    assert len(misses) > 600
+    assert np.quantile(misses, 0.99) < 0.3
+    sigma = np.concatenate([line.sigma for line in features.centrelines])
+    assert np.sqrt(np.mean((misses / sigma) ** 2)) < 1.25
 
 
 def test_points_at_the_edges_of_the_square_are_left_out(measured):

@@ -227,6 +227,7 @@ def test_the_pose_shown_gets_the_numbers_of_its_lines_once_they_are_solved(
 @pytest.mark.parametrize(
     ("change", "read"),
     [
+        (lambda p: p.set_laser("channel", "red-green"), lambda p: p.project.rig.channel_of("planes")),
         (lambda p: p.set_laser("lines", 2), lambda p: p.project.rig.lines),
         (lambda p: p.set_laser("angle", math.radians(4.0)), lambda p: p.project.rig.angle),
         (lambda p: p.set_laser("angle", None), lambda p: p.project.rig.angle),

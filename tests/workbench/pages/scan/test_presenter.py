@@ -252,6 +252,17 @@ def test_a_shutter_of_which_nothing_is_known_is_stated_and_undone(measured):
     assert measured.settings()["row_time_us"] == before
 
 
+def test_the_lasers_colour_is_stated_for_the_scan_alone_and_undone(measured):
+    assert measured.settings()["channel"] == ""
+    measured.set_setting("channel", "red-green")
+    assert measured.settings()["channel"] == measured.project.rig.channel_of("scan") == "red-green"
+    assert measured.project.rig.channel_of("planes") is None
+    assert measured.stage is Stage.OUTDATED
+    measured.model.undo_stack.undo()
+    assert measured.settings()["channel"] == ""
+    assert measured.stage is Stage.MEASURED
+
+
 def test_a_stripe_that_is_to_be_given_starts_as_it_was_found(measured):
     assert measured.settings()["automatic"] is True
     measured.set_setting("automatic", False)

@@ -1,0 +1,22 @@
+"""The channel of colour pictures in which a laser is looked at, as a choice in a form."""
+
+from __future__ import annotations
+
+from core.acquire.grey import CHANNELS
+from core.files.recording.laser_channel import NAMES
+from workbench.language import text_of, tr
+from workbench.views.forms.form import SettingsForm
+
+
+def add_channel(form: SettingsForm) -> None:
+    """Add the choice "channel" to a form; "" is what the pictures are best looked at in."""
+    choices = [("", tr("Found automatically")), *((name, _capital(text_of(NAMES[name]))) for name in CHANNELS)]
+    form.add_choice(
+        "channel", tr("Colour"), choices,
+        tr("What the laser's light is looked for in, in colour pictures: one channel, or a difference of two, which is "
+           "free of what is grey or white."),
+    )  # fmt: skip
+
+
+def _capital(text: str) -> str:
+    return text[:1].upper() + text[1:]
