@@ -1,6 +1,6 @@
 """Compiled loops: functions of Python that numba turns into machine code, kept on the disk for the next start.
 
-`compiled` is for functions that Python calls, `inlined` for those that only compiled functions call, or both.
+`compiled` is for functions that Python calls, `inlined` for those that only compiled functions call.
 What a compiled function answers must not depend on what was compiled or loaded before it, so
 
 - every option is stated: what is not (`fastmath`) a function would inherit from whichever caller compiles it first;
@@ -60,8 +60,10 @@ def _processor() -> str:
 os.environ["NUMBA_CPU_NAME"] = PROCESSOR = _processor()
 os.environ["NUMBA_CPU_FEATURES"] = ""
 os.environ["NUMBA_DISABLE_INTEL_SVML"] = "1"  # another library of exp and log would give other digits
+os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] = "1"  # it colours what it only tries: a twentieth of the time
 
 import numba  # noqa: E402 - reads the lines above
+from numba.core import types  # noqa: E402
 from numba.core.compiler import CompileResult  # noqa: E402
 from numba.core.serialize import dumps  # noqa: E402
 
@@ -71,26 +73,40 @@ numba.core.config.reload_config()  # type: ignore[no-untyped-call]  # should it 
 def compiled(*, fastmath: bool | set[str] = False, inline: bool = False) -> Callable[[Function], Dispatcher[Function]]:
     """Declare a compiled function: without Python's lock, division by zero as in numpy.
 
-    With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows.
+    With `fastmath` sums may be reordered, or only what a set of LLVM's flags allows. With `inline` it becomes part of
+    the compiled functions that call it, and Python can call it too.
     """
+    return _declared(fastmath, forceinline=inline)
 
+
+def inlined(*, fastmath: bool | set[str] = False) -> Callable[[Function], Dispatcher[Function]]:
+    """Declare a compiled function that becomes part of the compiled functions that call it; Python cannot."""
+    return _declared(fastmath, forceinline=True, no_cpython_wrapper=True)
+
+
+def _declared(fastmath: bool | set[str], **options: bool) -> Callable[[Function], Dispatcher[Function]]:
     def declare(function: Function) -> Dispatcher[Function]:
-        options: dict[str, Any] = {
-            "nogil": True,
-            "error_model": "numpy",
-            "no_cfunc_wrapper": True,
-            "forceinline": inline,
-        }
-        dispatcher: Dispatcher[Function] = numba.njit(fastmath=fastmath, **options)(function)
-        cast(Any, dispatcher)._cache = _Saved(function)
+        chosen: dict[str, Any] = {"nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True, **options}
+        dispatcher: Dispatcher[Function] = numba.njit(fastmath=fastmath, **chosen)(function)
+        adapted = cast(Any, dispatcher)
+        adapted._cache = _Saved(function)
+        adapted.get_call_template = _with_plain_types(adapted.get_call_template)
+        if "no_cpython_wrapper" in options:  # nothing there that Python could call: it would end the process
+            adapted._insert = lambda *_, **__: None
+            adapted._compile_for_args = _refuse
         return dispatcher
 
     return declare
 
 
-def inlined(*, fastmath: bool | set[str] = False) -> Callable[[Function], Dispatcher[Function]]:
-    """Declare a compiled function that becomes part of the compiled functions that call it."""
-    return compiled(fastmath=fastmath, inline=True)
+def _with_plain_types(template: Callable[[Any, Any], Any]) -> Callable[[Any, Any], Any]:
+    """How numba finds the code for types of arguments, with one code for all whole numbers that a caller spells out."""
+    plain = cast(Any, types.unliteral)
+    return lambda args, kws: template(tuple(map(plain, args)), {name: plain(kind) for name, kind in kws.items()})
+
+
+def _refuse(*_: object, **__: object) -> None:
+    raise TypeError("only compiled functions can call an inlined one")
 
 
 def _files(package: Path) -> dict[Path, bytes]:

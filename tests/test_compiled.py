@@ -123,6 +123,25 @@ def test_what_nobody_has_used_for_long_is_removed(package, tmp_path):
     assert (old.exists(), recent.exists(), folder.exists()) == (False, True, True)
 
 
+def test_python_is_refused_an_inlined_function_before_and_after_others_have_compiled_it(package, tmp_path):
+    program = """
+from core.caller import asked
+from core.callee import answer
+for _ in range(2):
+    try:
+        answer(10.0)
+    except TypeError as refused:
+        print(len(str(refused)) > 0)
+    asked(10.0)
+"""
+    assert run(program, cwd=package.parent, cache=tmp_path / "cache") == ["True", "True"]
+
+
+def test_numbers_spelt_out_share_one_code_of_a_function(package, tmp_path):
+    (package / "caller.py").write_text(CALLER.replace("answer(x)", "answer(2) + answer(3)"))
+    assert ask(package, tmp_path / "cache")[:2] == (11.0, 2)
+
+
 def test_a_cache_that_cannot_be_written_is_done_without(package, tmp_path):
     (tmp_path / "cache").write_text("no folder")
     assert ask(package, tmp_path / "cache")[0] == 21.0

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from core.compiled import inlined
+from core.compiled import compiled, inlined
 from core.image.stripes.running_statistics import quantile_of_magnitudes
 from core.model.arrays import Array
 from core.model.small_arrays import mean_of, new_row, new_table, zero_table
@@ -93,7 +93,7 @@ def _solve(m: Array, x: float, fit: Array) -> bool:
     return True
 
 
-@inlined()
+@compiled(inline=True)
 def smooth_curve(run: Array, arc: Array, weight: Array, filter_px: float) -> Array:
     """Fit the curve through a run (N, ≥ 2) by `parabolas` over ± 8 filter σ, shorter ones where the run is bent."""
     curve = parabolas(run, arc, weight, _ARM * filter_px)

@@ -32,7 +32,7 @@ _NARROWED = 0.9  # share of width² further in: with less it is a shadow
 _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 
 
-@inlined()
+@compiled(inline=True)
 def arc_length(run: Array) -> Array:
     """Length along a run (N, ≥ 2) up to each point, in pixels."""
     arc = new_row(len(run))

@@ -201,7 +201,7 @@ def _height_levels(height: Array) -> NDArray[np.int64]:
     return level
 
 
-@inlined()
+@compiled(inline=True)
 def cuts_of(run: Array, arc: Array) -> Array:
     """Find where rows or columns of the picture cut a `run` (N, ≥ 4).
 

@@ -12,7 +12,7 @@ _FILTER_PER_STEP = 1.1  # filter σ to a step, at least: a point between then er
 _HOLE_PX = 0.6  # more than usual from one point to the next: what lies between is not known
 
 
-@inlined()
+@compiled(inline=True)
 def tracing_step(filter_px: float) -> int:
     """Largest distance in px, a whole number, of points that tell all a filter of σ `filter_px` leaves of a line."""
     return max(1, int(filter_px / _FILTER_PER_STEP))
