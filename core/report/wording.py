@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from dataclasses import dataclass
 from decimal import ROUND_HALF_EVEN, Decimal
 
@@ -118,8 +119,11 @@ def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
 
 
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
-    """What a characteristic is called: in the report's language where it is called after its kind alone."""
-    return words.known(one.name) if one.name == one.kind else one.name
+    """What a characteristic is called, its kind in the report's language: "top flatness", "stairs height 2"."""
+    feature, kind, number = one.name.rpartition(one.kind)
+    if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
+        return one.name  # somebody's own name, as of a cut
+    return f"{feature}{words.known(kind)}{number}"
 
 
 def shown_unit(one: Characteristic) -> tuple[str, float]:

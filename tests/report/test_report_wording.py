@@ -15,6 +15,7 @@ from core.report.wording import (
     grouped,
     limits_of_thickness,
     points_counted,
+    shown_name,
     thickness_line,
     tolerance_words,
     uncertainty_sentence,
@@ -130,3 +131,18 @@ def test_very_small_values_are_said_with_a_power_of_ten():
         "1·10⁹",
         "20.4",
     ]
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "german"),
+    [
+        ("thickness", "thickness", "Dicke"),
+        ("top flatness", "flatness", "top Ebenheit"),
+        ("stairs height 2", "height", "stairs Höhe 2"),
+        ("the height of all", "height", "the height of all"),
+        ("outheight", "height", "outheight"),
+        ("profile 1 groove", "height", "profile 1 groove"),
+    ],
+)
+def test_what_a_result_is_stands_in_the_reports_language_and_names_that_people_gave_stay(name, kind, german):
+    assert shown_name(Characteristic(name, kind, 1.0, 0.1), Words.of("de")) == german

@@ -61,10 +61,10 @@ _DEVIATION = (
     ),
 )  # fmt: skip
 
-_DIAMETER = ResultKind("diameter", expands=True)
-_FORM = ResultKind("form", one_sided=True)
-_HEIGHT = ResultKind("height", expands=True)
-_DISTANCE = ResultKind("distance", expands=True)
+_DIAMETER = ResultKind(label("diameter"), expands=True)
+_FORM = ResultKind(label("form"), one_sided=True)
+_HEIGHT = ResultKind(label("height"), expands=True)
+_DISTANCE = ResultKind(label("distance"), expands=True)
 
 KINDS: tuple[FeatureKind, ...] = (
     FeatureKind(
@@ -73,7 +73,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Plane, flatness"),
         label("A plane fitted to a face: its flatness, and what other features are measured from"),
         "mdi6.square-outline",
-        results=(ResultKind("flatness", one_sided=True),),
+        results=(ResultKind(label("flatness"), one_sided=True),),
         element="plane",
         automatic="numbered",
     ),
@@ -110,7 +110,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Thickness of two faces"),
         label("The distance of two parallel faces, as the thickness above, with regions of its own"),
         "mdi6.ruler-square",
-        results=(ResultKind("thickness", expands=True),),
+        results=(ResultKind(label("thickness"), expands=True),),
         automatic="numbered",
         most_regions=2,
         region_titles=(label("Upper face"), label("Lower face")),
@@ -121,7 +121,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Step heights"),
         label("The heights of many parallel faces over the lowest or the previous one"),
         "mdi6.stairs",
-        results=(ResultKind("height", expands=True, numbered=True),),
+        results=(ResultKind(label("height"), expands=True, numbered=True),),
         automatic="numbered",
         most_regions=MOST_FACES,
         fields=(
@@ -154,7 +154,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Angle of two features"),
         label("Between the planes or axes of two features that are in the list"),
         "mdi6.angle-acute",
-        results=(ResultKind("angle", "angle"),),
+        results=(ResultKind(label("angle"), "angle"),),
         made_of=2,
     ),
     FeatureKind(
@@ -163,7 +163,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Cross-section"),
         label("A profile across the surface, with heights, distances and radii measured in it"),
         "mdi6.chart-line-variant",
-        results=(_HEIGHT, _DISTANCE, ResultKind("radius", expands=True)),
+        results=(_HEIGHT, _DISTANCE, ResultKind(label("radius"), expands=True)),
         automatic="all points",
         settings="section",
         fields=_SECTION,
@@ -175,7 +175,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Deviation from a nominal surface"),
         label("How far the surface lies off a nominal one from an STL file in mm"),
         "mdi6.compare",
-        results=(ResultKind("profile", one_sided=True), ResultKind("mean")),
+        results=(ResultKind(label("profile"), one_sided=True), ResultKind(label("mean"))),
         automatic="all points",
         settings="deviation",
         fields=_DEVIATION,

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from core.inspect.conformity import Verdict
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of
-from core.report.wording import decision_sentence, grouped, shown_unit, value_line, with_uncertainty
+from core.report.wording import decision_sentence, grouped, shown_name, shown_unit, value_line, with_uncertainty
 from workbench.language import number, text_of, tr
 from workbench.pages.words import wording
 from workbench.views.lists.value_rows import ValueRow
@@ -45,7 +45,7 @@ def value(row: Characteristic) -> str:
 
 def tip(row: Characteristic) -> str:
     """All about one result: value with k, the decision and why, what was measured."""
-    lines = [f"{row.name}: {value_line(row, wording())}"]
+    lines = [f"{shown_name(row, wording())}: {value_line(row, wording())}"]
     if row.verdict:
         lines.append(decision_sentence(row, wording()))
     if row.rule:
@@ -55,7 +55,7 @@ def tip(row: Characteristic) -> str:
 
 def short_name(row: Characteristic, feature: str) -> str:
     """What a result is called under its feature."""
-    return row.name.removeprefix(feature).strip() or row.kind
+    return shown_name(row, wording()).removeprefix(feature).strip() or row.kind
 
 
 def verdict(feature: ShownFeature) -> Verdict:
