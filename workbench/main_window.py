@@ -26,6 +26,7 @@ from workbench.menus import Menus
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.project.actions import ProjectActions
+from workbench.pages.project.audit import ask_reason
 from workbench.pages.project.double_click import choose_double_click
 from workbench.pages.project.welcome_page import WelcomePage
 from workbench.pages.step_page import StepPage
@@ -207,6 +208,7 @@ class MainWindow(QMainWindow):
             "pack": projects.pack.pack,
             "unpack": projects.pack.choose,
             "audit": projects.show_audit_trail,
+            "sign in": projects.sign_in,
             "close": projects.close_project,
             "quit": self.leave,
             **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},
@@ -234,6 +236,7 @@ class MainWindow(QMainWindow):
         self.model.results_changed.connect(self._refreshing.soon)
         self.model.modified.connect(self._show_name)
         self.model.failed.connect(self.bench.notices.failed)
+        self.model.ask_reason = partial(ask_reason, self)
         for presenter in self.presenters.values():
             presenter.changed.connect(self._refreshing.soon)
             presenter.go_to.connect(self.go_to)

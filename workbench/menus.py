@@ -49,7 +49,20 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
 
 KEYS = {name: key for name, key, _ in SHORTCUTS}
 
-NEED_A_PROJECT = ("save", "copy", "pack", "audit", "close", "back", "next", "run", "accept", "live", "capture")
+NEED_A_PROJECT = (
+    "save",
+    "copy",
+    "pack",
+    "audit",
+    "sign in",
+    "close",
+    "back",
+    "next",
+    "run",
+    "accept",
+    "live",
+    "capture",
+)
 
 
 class Menus(QObject):
@@ -106,6 +119,7 @@ class Menus(QObject):
         self._add(file, "pack", tr("Pac&k into one file …"))
         self._add(file, "unpack", tr("&Unpack a project …"))
         self._add(file, "audit", tr("Au&dit trail …"))
+        self._add(file, "sign in", tr("S&ign in or out …"))
         self._add(file, "close", tr("&Close project"))
         self._add(file, "quit", tr("&Quit"))
 

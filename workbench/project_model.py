@@ -24,6 +24,7 @@ from core.files.project.folder import (
     write_project,
 )
 from core.files.project.lock import ProjectLock, held_by, take_lock
+from core.files.project.people import Person, Rules, read_rules, reason_wanted, refused, with_pin
 from core.messages import Message
 from workbench.step_state import StepState, step_states
 
@@ -108,6 +109,10 @@ class ProjectModel(QObject):
         self._file = ProjectFile(new_project(""))
         self._saved: ProjectFile | None = None
         self._complaint = ""
+        self.rules, self._why = Rules(), ""
+        self.signed_in: Person | None = None
+        self.ask_reason: Callable[[str], str] = lambda label: ""
+        """Asks for the reason of the edit of this name; nothing: it is not to be made."""
         self._lock: ProjectLock | None = None
         self._access = Access.ALONE
         self._states_of: ProjectFile | None = None
@@ -238,9 +243,37 @@ class ProjectModel(QObject):
         self._take(None, ProjectFile(new_project("")), saved=None, access=Access.READ_ONLY)
 
     def edit(self, label: str, after: Project, merge_key: str = "") -> None:
-        """Put `after` in force, undoable under the name `label`; nothing happens if it is the same."""
-        if after != self.project:
-            self.undo_stack.push(Edit(label, self.project, after, self._show, merge_key))
+        """Put `after` in force, undoable under the name `label`; nothing happens if it is the same.
+
+        Nor if whoever has signed in may not change it, which is told, or a reason is wanted and none is given.
+        """
+        if after == self.project:
+            return
+        refusal = refused(self.rules, self.signed_in, self.project, after)
+        wanted = refusal is None and reason_wanted(self.rules, self.results, self.project, after)
+        why = self.ask_reason(label) if wanted else ""
+        if refusal is not None or (wanted and not why):
+            if refusal is not None:
+                self.failed.emit(refusal)
+            self.changed.emit(self.project, self.project)  # editors show again what is in force
+            return
+        self.undo_stack.push(Edit(label, self.project, after, self._show, merge_key))
+        if why:
+            self._why = why
+            self.save_by_itself()  # the reason is nowhere else
+
+    def sign_in(self, name: str, pin: str) -> None:
+        """From now on this person changes the project; InputError if name and PIN do not belong together.
+
+        What was done before cannot be undone by somebody who may not.
+        """
+        self.signed_in = with_pin(self.rules, name, pin)
+        self.undo_stack.clear()
+
+    def sign_out(self) -> None:
+        """From now on nobody in particular."""
+        self.signed_in = None
+        self.undo_stack.clear()
 
     def record(self, step: str, done: Done | None) -> None:
         """A step has been measured (or its result is gone)."""
@@ -295,7 +328,8 @@ class ProjectModel(QObject):
         self._save.stop()
         if (refused := self.why_read_only()) is not None:
             raise refused
-        write_project(self.folder, self._file, keep_s=keep_s)
+        write_project(self.folder, self._file, keep_s=keep_s, why=self._why, by=self.signed_in)
+        self._why = ""
         remove_autosave(self.folder)
         self._saved = self._file
         self.modified.emit(False)
@@ -348,7 +382,7 @@ class ProjectModel(QObject):
             self.modified.emit(self.is_modified)
 
     def _take(self, folder: Path | None, file: ProjectFile, saved: ProjectFile | None, access: Access) -> None:
-        lock = None
+        lock, rules = None, Rules() if folder is None else read_rules(folder)
         if folder is not None and access is not Access.READ_ONLY and can_be_saved(folder):
             if self._lock is not None and self._lock.folder == folder and access is not Access.TAKE_OVER:
                 lock = self._lock  # the project that is open is opened once more
@@ -361,6 +395,7 @@ class ProjectModel(QObject):
             self._lock.release()
         self._lock, self._access = lock, access
         self.folder, self._file, self._saved, self._complaint = folder, file, saved, ""
+        self.rules, self.signed_in, self._why = rules, None, ""
         self.undo_stack.clear()
         self._accepted.clear()
         for step, done in file.results.items():

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from core.cli.bars import bars
 from core.cli.options import EPILOG, ExitCode, Json
+
+if TYPE_CHECKING:
+    from core.files.project.audit import Entry
 
 commands = typer.Typer()
 
@@ -85,6 +88,12 @@ def audit(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
     csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write it as a table, too.")] = None,
     remark: Annotated[str, typer.Option(metavar="TEXT", help="Add an entry with this text first.")] = "",
+    sign: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME", help="Sign the project as it is; the PIN is asked for, --remark says what it means."
+        ),
+    ] = "",
     json: Json = False,
 ) -> None:
     """Show a project's audit trail: who did what and when, old and new."""
@@ -92,14 +101,17 @@ def audit(
     from core.files.atomic import write_text
     from core.files.project.audit import append, read_trail, trail_table
     from core.files.project.folder import read_project
+    from core.files.project.people import sign as sign_project
 
     read_project(project)
-    if remark:
+    if sign:
+        sign_project(project, sign, _pin(sign), remark)
+    elif remark:
         append(project, "remark", why=remark)
     trail = read_trail(project)
     rows = []
     for entry in trail.entries:
-        rows.append((f"{entry.n}  {entry.at:%Y-%m-%d %H:%M:%S}", f"{entry.what} by {entry.who} on {entry.host}"))
+        rows.append((f"{entry.n}  {entry.at:%Y-%m-%d %H:%M:%S}", _told(entry)))
         rows += [("", f"{one.field}: {one.old or '–'} → {one.new or '–'}") for one in entry.changes]
         rows += [("", f"{name}: {digest}") for name, digest in entry.files.items()]
         rows += [("", entry.why)] if entry.why else []
@@ -111,3 +123,67 @@ def audit(
     ]
     files = {"table": csv} if csv is not None else {}
     Shown(rows, {"entries": entries, "head": trail.head}, trail.problems, files).show(as_json=json)
+
+
+@commands.command()
+def people(
+    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
+    add: Annotated[
+        str,
+        typer.Option(metavar="NAME", help="Name somebody, or change role and PIN, which is asked for."),
+    ] = "",
+    role: Annotated[str, typer.Option(metavar="ROLE", help="operator, inspector or administrator.")] = "operator",
+    remove: Annotated[str, typer.Option(metavar="NAME", help="Remove somebody.")] = "",
+    reasons: Annotated[
+        bool | None,
+        typer.Option("--reasons/--no-reasons", help="Ask why limits are changed after something was judged."),
+    ] = None,
+    by: Annotated[str, typer.Option("--by", metavar="NAME", help="The administrator; the PIN is asked for.")] = "",
+    reset: Annotated[
+        str, typer.Option(metavar="WHY", help="Everybody may do everything again; for lost PINs. The trail keeps why.")
+    ] = "",
+    json: Json = False,
+) -> None:
+    """Who may do what in a project, by names with PINs: off until the first administrator is named."""
+    from dataclasses import replace
+
+    from core.cli.measuring import Shown
+    from core.cli.output import one_of
+    from core.files.project.folder import read_project
+    from core.files.project.people import ROLES, Role, person, read_rules, reset_rules, with_pin, write_rules
+
+    read_project(project)
+    if reset:
+        reset_rules(project, reset)
+    rules = read_rules(project)
+    administrator = with_pin(rules, by, _pin(by)) if by else None
+    changed = rules if reasons is None else replace(rules, reasons=reasons)
+    if remove:
+        one_of(remove, [one.name for one in rules.people], "--remove")
+    left = [one for one in changed.people if one.name not in (add, remove)]
+    if add:
+        left.append(person(add, cast(Role, one_of(role, ROLES, "--role")), _pin(add)))
+    changed = replace(changed, people=tuple(left))
+    if changed != rules:
+        write_rules(project, changed, administrator)
+    rows: list[tuple[str, str]] = [(one.name, one.role) for one in changed.people] or [
+        ("people", "everybody may do everything")
+    ]
+    rows.append(("reasons", "asked for when limits change" if changed.reasons else "not asked for"))
+    values = {"people": [{"name": one.name, "role": one.role} for one in changed.people], "reasons": changed.reasons}
+    Shown(rows, values).show(as_json=json)
+
+
+def _told(entry: Entry) -> str:
+    signed = f", {entry.by} ({entry.role})" if entry.by else ""
+    return f"{entry.what} by {entry.who} on {entry.host}{signed}"
+
+
+def _pin(name: str) -> str:
+    """The PIN of somebody: asked for on a terminal without showing it, else a line of standard input."""
+    import getpass
+    import sys
+
+    if sys.stdin.isatty():
+        return getpass.getpass(f"PIN of {name}: ")
+    return sys.stdin.readline().rstrip("\n")

@@ -119,7 +119,10 @@ class ReportOptions:
 
     def said(self, content: ReportContent) -> ReportContent:
         """The content with all of it. InputError if a choice is not one, or the template cannot be read."""
-        language, paper = _one_of(self.language, LANGUAGES, "--language"), _one_of(self.paper, PAPERS, "--paper")
+        language, paper = (
+            output.one_of(self.language, LANGUAGES, "--language"),
+            output.one_of(self.paper, PAPERS, "--paper"),
+        )
         if self.template is not None:
             content = with_template(content, read_report_template(self.template))
         content = with_studies(content, self.studies)
@@ -163,15 +166,3 @@ def run_import(file: Path, out: Path) -> Shown:
     rows = [("picture", " × ".join(map(str, camera.image_size)) + " px"), ("focal length", f"{camera.focal:.2f} px")]
     values = output.camera_json(calibration)
     return Shown(rows, values, tuple(map(str, calibration.notes)), {"camera": out / "camera.json"})
-
-
-def _one_of(chosen: str, known: Sequence[str], where: str) -> str:
-    """One of `known`, in any case of letters; nothing stays nothing."""
-    by_lower = {one.lower(): one for one in known}
-    if chosen and chosen.lower() not in by_lower:
-        raise InputError(
-            Message("export.no_such_choice", 'there is no "{chosen}"', chosen=chosen),
-            where=where,
-            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(known)),
-        )
-    return by_lower.get(chosen.lower(), "")

@@ -8,7 +8,12 @@ PNG 3 (W3C, 2025), 11.2.1; BMP: BITMAPINFOHEADER and BITMAPCOREHEADER; TIFF 6.0 
 from __future__ import annotations
 
 import struct
+import warnings
 from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from PIL import Image
 
 from core.files import jpeg
 
@@ -19,6 +24,15 @@ _CORE_HEAD = 12
 """Bytes of the oldest head of a BMP, whose sides have two bytes."""
 _TABLES = 1000
 """More pictures than any TIFF of a camera has."""
+
+
+@contextmanager
+def opened_head(path: Path) -> Iterator[Image.Image]:
+    """A picture whose head alone is read, however many pixels it declares; raises as Pillow does."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # cameras have more pixels than it allows
+        with Image.open(path) as picture:
+            yield picture
 
 
 def declared_sizes(data: bytes) -> Iterator[tuple[int, int]]:

@@ -6,10 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtWidgets import (
+    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
     QFormLayout,
+    QInputDialog,
     QLabel,
     QLineEdit,
     QMessageBox,
@@ -61,6 +63,38 @@ def ask_name_and_folder(parent: QWidget | None, title: str, name: str, folder: P
     """Ask for a project's name and the folder it is to be put in, or None."""
     dialog = _NameAndFolder(parent, title, name, folder)
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
+
+
+def ask_line(parent: QWidget | None, title: str, text: str) -> str:
+    """Ask for one line; nothing if it is not given."""
+    line, given = QInputDialog.getText(parent, title, text)
+    return line.strip() if given else ""
+
+
+def ask_name_and_pin(parent: QWidget | None, title: str, names: Sequence[str]) -> tuple[str, str] | None:
+    """Ask for one of `names` and its PIN, or None."""
+    dialog = _NameAndPin(parent, title, names)
+    return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
+
+
+class _NameAndPin(QDialog):
+    def __init__(self, parent: QWidget | None, title: str, names: Sequence[str]) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(title)
+        self._name, self._pin = QComboBox(), QLineEdit()
+        self._name.addItems(list(names))
+        self._pin.setEchoMode(QLineEdit.EchoMode.Password)
+        buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self)
+        buttons.accepted.connect(self.accept)
+        buttons.rejected.connect(self.reject)
+        form = QFormLayout(self)
+        form.addRow(self.tr("Name"), self._name)
+        form.addRow(self.tr("PIN"), self._pin)
+        form.addRow(buttons)
+
+    def answer(self) -> tuple[str, str]:
+        """Name and PIN."""
+        return self._name.currentText(), self._pin.text()
 
 
 class _NameAndFolder(QDialog):

@@ -16,7 +16,7 @@ from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from datetime import datetime
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, Protocol
 
 from pydantic import ConfigDict, Field, RootModel
 
@@ -36,9 +36,18 @@ AUDIT = "audit.jsonl"
 START = "0" * 64
 """What the first entry says of the one before."""
 
-What = Literal["created", "saved", "taken over", "measured", "reported", "remark"]
+What = Literal["created", "saved", "taken over", "measured", "reported", "remark", "people", "people reset", "signed"]
 
 _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digits")]
+
+
+class Signed(Protocol):
+    """Somebody who has signed in."""
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def role(self) -> str: ...
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +72,8 @@ class Entry:
         SHA-256 in hex of the results that were made, by their names within the project.
     state
         SHA-256 in hex of project.json as it was saved; nothing where it was not.
+    by, role
+        Who had signed in, by `core.files.project.people`; nothing where nobody had.
     """
 
     n: Annotated[int, Field(ge=1, description="a whole number from 1")]
@@ -76,6 +87,8 @@ class Entry:
     why: str = ""
     files: Mapping[str, str] = field(default_factory=dict, hash=False)
     state: str = ""
+    by: str = ""
+    role: str = ""
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
 
 
@@ -105,6 +118,7 @@ def append(
     why: str = "",
     files: Mapping[str, str] | None = None,
     state: str = "",
+    by: Signed | None = None,
 ) -> Entry:
     """Add an entry to the trail of the project in `folder`, and wait until the disk holds it.
 
@@ -133,6 +147,7 @@ def append(
                 **({"why": why} if why else {}),
                 **({"files": dict(sorted(files.items()))} if files else {}),
                 **({"state": state} if state else {}),
+                **({"by": by.name, "role": by.role} if by else {}),
             }
             line = json.dumps({**values, "hash": _hash(values)}, ensure_ascii=False)
             os.lseek(handle, 0, os.SEEK_END)
@@ -173,11 +188,13 @@ def read_trail(folder: Path) -> Trail:
 
 def trail_table(trail: Trail) -> str:
     """The trail as CSV: one row a change, or one an entry without any."""
-    table: list[tuple[object, ...]] = [("n", "at", "who", "host", "what", "field", "old", "new", "why", "hash")]
+    table: list[tuple[object, ...]] = [
+        ("n", "at", "who", "host", "by", "role", "what", "field", "old", "new", "why", "hash")
+    ]
     for entry in trail.entries:
         rows = [(change.field, change.old, change.new) for change in entry.changes]
         rows += [(name, "", digest) for name, digest in entry.files.items()]
-        first = (entry.n, entry.at.isoformat(), entry.who, entry.host, entry.what)
+        first = (entry.n, entry.at.isoformat(), entry.who, entry.host, entry.by, entry.role, entry.what)
         table += [(*first, *row, entry.why, entry.hash) for row in rows or [("", "", "")]]
     return csv_text(table)
 

@@ -6,6 +6,7 @@ Layout::
     PROJECT/NAME.trisect            what a double click opens the project by; says nothing itself
     PROJECT/.lock.json              who has the project open
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
+    PROJECT/people.json             who may do what, by names with PINs; there only if it was set up
     PROJECT/audit.jsonl             who changed what and when, what was measured; only grows
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording
@@ -26,7 +27,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, vanished, write_bytes, write_text
-from core.files.project.audit import What, append
+from core.files.project.audit import Signed, What, append
 from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
@@ -88,7 +89,9 @@ def create_project(folder: Path, file: ProjectFile) -> None:
     _write(folder, file, keep_s=0.0)
 
 
-def write_project(folder: Path, file: ProjectFile, *, keep_s: float = 0.0) -> None:
+def write_project(
+    folder: Path, file: ProjectFile, *, keep_s: float = 0.0, why: str = "", by: Signed | None = None
+) -> None:
     """Write project.json, whole or not at all; what it said before goes to backups. Left alone if it says the same.
 
     Parameters
@@ -101,6 +104,8 @@ def write_project(folder: Path, file: ProjectFile, *, keep_s: float = 0.0) -> No
         version before, if it does not say; `saved` becomes now.
     keep_s
         Keep the version before only if none was kept within so many seconds.
+    why, by
+        For the audit trail: the reason for what is changed, and who has signed in.
 
     Raises
     ------
@@ -108,7 +113,7 @@ def write_project(folder: Path, file: ProjectFile, *, keep_s: float = 0.0) -> No
         If the folder is gone, nothing can be written there, or a value is not what it must be.
     """
     require_project_folder(folder)
-    _write(folder, file, keep_s)
+    _write(folder, file, keep_s, why, by)
 
 
 def require_project_folder(folder: Path) -> None:
@@ -117,7 +122,7 @@ def require_project_folder(folder: Path) -> None:
         raise vanished(folder)
 
 
-def _write(folder: Path, file: ProjectFile, keep_s: float) -> None:
+def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Signed | None = None) -> None:
     path = folder / PROJECT
     file = with_own_sources_relative(folder, file)
     before = _readable(path)
@@ -131,7 +136,8 @@ def _write(folder: Path, file: ProjectFile, keep_s: float) -> None:
             _keep(folder / BACKUPS, path, keep_s)
         # First the trail: a change that stands in it and was cut off is found again, one that does not never would be.
         told: What = "saved" if path.exists() else "created"
-        append(folder, told, differences(before, file), state=hashlib.sha256(text.encode()).hexdigest())
+        digest = hashlib.sha256(text.encode()).hexdigest()
+        append(folder, told, differences(before, file), why=why, state=digest, by=by)
         write_text(path, text)
     except (InputError, OSError) as error:
         raise _unsaved(path, error) from error

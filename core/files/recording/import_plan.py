@@ -21,6 +21,7 @@ from PIL import Image
 
 from core.errors import InputError
 from core.files.limits import check_file
+from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read
 from core.files.recording.set_listing import check_sizes, pictures_in
@@ -332,7 +333,7 @@ def _taken_at(path: Path) -> datetime | None:
     """When the camera says it took a picture (EXIF 2.32: DateTimeOriginal, else DateTime); None if it does not."""
     check_file(path)
     try:
-        with Image.open(path) as picture:
+        with opened_head(path) as picture:
             head = picture.getexif()
             own = head.get_ifd(_EXIF_TABLE)
             text = str(own.get(_TAKEN_AT) or head.get(_WRITTEN_AT) or "")

@@ -14,6 +14,7 @@ from PIL import Image
 
 from core.errors import InputError
 from core.files.limits import check_file
+from core.files.picture_size import opened_head
 from core.files.pictures import is_picture
 from core.messages import Message
 
@@ -125,7 +126,7 @@ def _size(path: Path) -> tuple[int, int] | None:
     """(width, height) from the head of a picture file, or None if it has none; reading it will tell why."""
     check_file(path)
     try:
-        with Image.open(path) as picture:
+        with opened_head(path) as picture:
             return picture.size
     except (OSError, SyntaxError, ValueError, Image.DecompressionBombError, TypeError, struct.error):
         return None

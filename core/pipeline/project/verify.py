@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, rests_on
+from core.files.project.people import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
@@ -92,6 +93,8 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
     for name, entry in known.items():
         problems += _results(folder, name, entry)
     inputs: dict[str, str] = {}
+    if message := _people(folder, trail):
+        problems.append(message)
     run = folder / RESULTS / FILES["run"]
     if run.exists():
         inputs = dict(read_run(run).inputs)
@@ -101,6 +104,16 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
             notes.append(Message("verify.outdated", "{step} is out of date: {names}", step=step, names=names))
     results = sum(len(entry.files) for entry in known.values())
     return Verified(trail, results, len(inputs), tuple(problems), tuple(notes))
+
+
+def _people(folder: Path, trail: Trail) -> Message | None:
+    """Whether people.json is another one than that which the audit trail tells of."""
+    told = [entry for entry in trail.entries if entry.what in ("people", "people reset")]
+    wanted = told[-1].files.get(PEOPLE, "") if told else ""
+    path = folder / PEOPLE
+    if wanted == (file_hash(path) if path.exists() else ""):
+        return None
+    return Message("verify.people", "{file} is not what the audit trail tells of", file=PEOPLE)
 
 
 def _results(folder: Path, name: str, entry: Entry) -> list[Message]:

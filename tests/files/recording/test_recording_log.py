@@ -1,11 +1,15 @@
 """The log of a recording: complete whenever the program dies, and when the disk is full."""
 
 import os
+import struct
 import subprocess
 import sys
 import threading
+import warnings
+import zlib
 from pathlib import Path
 
+import cv2
 import numpy as np
 import pytest
 
@@ -163,3 +167,17 @@ def test_a_recording_as_pgm_opens_as_a_recording_set_with_the_very_same_frames(t
         assert [path.name for path in frames] == [f"frame{number}{ending}" for number in range(4)]
         for path, one in zip(frames, levels, strict=True):
             assert np.array_equal(read_picture(path), one)
+
+
+def test_the_head_of_a_large_cameras_picture_is_read_without_a_warning(tmp_path):
+    """Found by `make fuzz`: Pillow warns from 89 million pixels on, and cameras have 151."""
+    cv2.imwrite(str(tmp_path / "a.png"), np.zeros((4, 4), np.uint8))
+    data = bytearray((tmp_path / "a.png").read_bytes())
+    data[16:24] = struct.pack(">II", 14204, 10652)
+    data[29:33] = struct.pack(">I", zlib.crc32(data[12:29]))
+    (tmp_path / "a.png").write_bytes(data)
+    cv2.imwrite(str(tmp_path / "b.png"), np.zeros((4, 4), np.uint8))
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        with pytest.raises(InputError, match="14204 × 10652"):
+            check_sizes([tmp_path / "b.png", tmp_path / "a.png"])

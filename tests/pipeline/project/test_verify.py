@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import io
 import json
 from dataclasses import replace
 from pathlib import Path
@@ -95,3 +96,21 @@ def test_the_trail_is_shown_and_exported_and_takes_remarks(project: Path, tmp_pa
     assert 'info.name: – → "Block"' in said.out
     assert "seen by the customer" in (tmp_path / "trail.csv").read_text()
     assert trisect("audit", tmp_path).code == 2
+
+
+def test_people_are_named_and_sign_on_the_command_line(project: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def say(*words: object, pins: str = "") -> str:
+        monkeypatch.setattr("sys.stdin", io.StringIO(pins))
+        said = trisect(*words)
+        return said.out if said.code == 0 else said.sentence
+
+    assert "everybody may do everything" in say("people", project)
+    anna = ("--add", "Anna", "--role", "administrator")
+    assert "administrator" in say("people", project, *anna, "--reasons", pins="anna-1\n")
+    assert "only an administrator" in say("people", project, "--add", "Ole", pins="0000\n")
+    assert "operator" in say("people", project, "--add", "Ole", "--by", "Anna", pins="anna-1\n0000\n")
+    assert "do not belong together" in say("audit", project, "--sign", "Ole", pins="1111\n")
+    signed = say("audit", project, "--sign", "Ole", "--remark", "measured by me", pins="0000\n")
+    assert "Ole (operator)" in signed and "measured by me" in signed
+    assert "everybody may do everything" in say("people", project, "--reset", "PIN lost")
+    assert verify(project).problems == ()

@@ -166,6 +166,31 @@ class ProjectActions(QObject):
                 self.save()
             AuditWindow(self.bench, self.model.folder, self._window).exec()
 
+    def sign_in(self) -> None:
+        """Sign in by name and PIN, or out if somebody has; what was changed before is saved by whom it was changed."""
+        names = [one.name for one in self.model.rules.people]
+        if not names:
+            text = tr(
+                "Nobody is named in this project, so everybody may do everything. The manual says how to name people."
+            )
+            self.bench.notices.info(text)
+            return
+        if not self.save():
+            return
+        if self.model.signed_in is not None:
+            self.model.sign_out()
+            self.bench.notices.info(tr("Signed out."))
+            return
+        given = ask.ask_name_and_pin(self._window, self.tr("Sign in"), names)
+        if given is None:
+            return
+        try:
+            self.model.sign_in(*given)
+        except InputError as error:
+            self.bench.notices.failed(error)
+            return
+        self.bench.notices.info(tr("{name} has signed in.", name=given[0]))
+
     def save(self) -> bool:
         """Save, with what is being typed; False if it could not be."""
         self._take_typed()

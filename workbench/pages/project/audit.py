@@ -9,11 +9,20 @@ from PySide6.QtWidgets import QDialog, QInputDialog, QPlainTextEdit, QPushButton
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.project.audit import Entry, Trail, append, read_trail, trail_table
+from core.files.project.people import ROLE_NAMES, sign
 from core.messages import visible
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, in_column, in_row, muted
+
+
+def ask_reason(parent: QWidget | None, label: str) -> str:
+    """Ask why limits are changed after something was judged by them; nothing: they are not to be changed."""
+    text = tr(
+        "Something was judged by these limits already. Why are they changed ({what})? It stays for good.", what=label
+    )
+    return ask.ask_line(parent, tr("Reason"), text)
 
 
 class AuditWindow(QDialog):
@@ -32,6 +41,10 @@ class AuditWindow(QDialog):
         self.remark = QPushButton(self.tr("Add a remark …"))
         self.remark.clicked.connect(self._ask_for_remark)
         self.remark.setEnabled(not bench.model.is_read_only)
+        self.sign = QPushButton(self.tr("Sign …"))
+        self.sign.setToolTip(self.tr("Sign the project as it is, by name and PIN."))
+        self.sign.clicked.connect(self._ask_for_signature)
+        self.sign.setEnabled(bool(bench.model.rules.people) and not bench.model.is_read_only)
         self.export = QPushButton(self.tr("Export …"))
         self.export.clicked.connect(self._export)
         close = QPushButton(self.tr("Close"))
@@ -39,7 +52,7 @@ class AuditWindow(QDialog):
         in_column(
             self.state,
             (self.entries, 1),
-            in_row(self.remark, self.export, STRETCH, close),
+            in_row(self.remark, self.sign, self.export, STRETCH, close),
             on=self,
             margins=(14, 10, 14, 12),
         )
@@ -50,6 +63,17 @@ class AuditWindow(QDialog):
         if text.strip():
             try:
                 append(self._folder, "remark", why=text.strip())
+            except InputError as error:
+                self._bench.notices.failed(error)
+            self._show()
+
+    def _ask_for_signature(self) -> None:
+        names = [one.name for one in self._bench.model.rules.people]
+        given = ask.ask_name_and_pin(self, self.tr("Sign"), names)
+        meaning = "" if given is None else ask.ask_line(self, self.tr("Sign"), self.tr("What the signature means:"))
+        if given is not None and meaning:
+            try:
+                sign(self._folder, *given, meaning)
             except InputError as error:
                 self._bench.notices.failed(error)
             self._show()
@@ -88,8 +112,12 @@ def _in_words(entry: Entry) -> str:
         "measured": tr("measured"),
         "reported": tr("report made"),
         "remark": tr("remark"),
+        "people": tr("people changed"),
+        "people reset": tr("people reset"),
+        "signed": tr("signed"),
     }[entry.what]
     lines = [f"{entry.n}  {entry.at.astimezone():%Y-%m-%d %H:%M:%S}  {entry.who}@{entry.host}  {what}"]
+    lines += [f"    {entry.by} ({tr(ROLE_NAMES[entry.role])})"] if entry.role in ROLE_NAMES else []
     lines += [f"    {one.field}: {one.old or '–'} → {one.new or '–'}" for one in entry.changes]
     lines += [f"    {name}  {digest}" for name, digest in entry.files.items()]
     lines += [f"    {entry.why}"] if entry.why else []

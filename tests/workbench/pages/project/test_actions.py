@@ -16,6 +16,7 @@ from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project, recoverable, write_autosave
 from core.files.project.lock import take_lock
+from core.files.project.people import Rules, person, write_rules
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.actions import ProjectActions
@@ -599,3 +600,29 @@ def test_the_audit_trail_is_shown_remarked_on_and_exported(
     audit = folder / "audit.jsonl"
     audit.write_text(audit.read_text().replace("Other", "Another"))
     assert "was changed" in AuditWindow(projects.bench, folder).state.text()
+
+
+def test_somebody_signs_in_changes_limits_signs_and_signs_out(
+    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = project(tmp_path / "block")
+    projects.open_project(folder)
+    projects.sign_in()
+    assert "everybody may do everything" in projects.bench.notices.all[-1].text
+    assert not AuditWindow(projects.bench, folder).sign.isEnabled()
+    write_rules(folder, Rules((person("Anna", "administrator", "anna-1"),)))
+    projects.close_project()
+    projects.open_project(folder)
+    given = [("Anna", "wrong"), ("Anna", "anna-1"), ("Anna", "anna-1")]
+    monkeypatch.setattr(ask, "ask_name_and_pin", lambda parent, title, names: given.pop(0))
+    monkeypatch.setattr(ask, "ask_line", lambda *_: "released")
+    projects.sign_in()
+    assert "do not belong together" in projects.bench.notices.all[-1].text
+    projects.sign_in()
+    assert projects.bench.notices.all[-1].text == "Anna has signed in."
+    window = AuditWindow(projects.bench, folder)
+    window.sign.click()
+    assert "Anna (administrator)" in window.entries.toPlainText()
+    assert [(one.what, one.by, one.why) for one in read_trail(folder).entries][-1] == ("signed", "Anna", "released")
+    projects.sign_in()
+    assert projects.model.signed_in is None

@@ -1,0 +1,205 @@
+"""Who may do what in a project, by names with PINs; and whether changed limits want a reason. Off until it is set up.
+
+people.json says it, each change of it is in the audit trail. It is an agreement between people who share a project and
+a help to know who did what; it keeps nobody out who may write to the folder. Whoever has lost the last administrator's
+PIN resets it (`reset_rules`), which stays in the trail for good.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import hmac
+import secrets
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, replace
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, RootModel
+
+from core.errors import InputError
+from core.files.atomic import remove, write_text
+from core.files.complaints import checked_json
+from core.files.json_text import to_json
+from core.files.project.audit import Entry, append
+from core.files.project.changes import Change
+from core.files.project.data import Done, Project
+from core.files.reading import read_json
+from core.messages import Message, label
+
+PEOPLE = "people.json"
+Role = Literal["operator", "inspector", "administrator"]
+ROLES: tuple[Role, ...] = ("operator", "inspector", "administrator")
+"""Each may do what those before it may: run the plan; edit; change limits, the report's template and the people."""
+ROLE_NAMES: Mapping[str, str] = {
+    "operator": label("operator"),
+    "inspector": label("inspector"),
+    "administrator": label("administrator"),
+}
+SHORTEST_PIN = 4
+_SCRYPT = {"n": 1 << 14, "r": 8, "p": 1, "dklen": 32}
+_JUDGED = ("inspect", "features", "report")
+_CHECKED = ConfigDict(extra="forbid", strict=True)
+
+
+@dataclass(frozen=True, slots=True)
+class Person:
+    """Somebody with a role; of the PIN there is a salt and what scrypt makes of both (RFC 7914), in hex."""
+
+    name: Annotated[str, Field(min_length=1, max_length=100, description="a name")]
+    role: Annotated[Role, Field(description=" or ".join(f'"{one}"' for one in ROLES))]
+    salt: Annotated[str, Field(pattern="^[0-9a-f]{32}$", description="32 hex digits")]
+    hash: Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digits")]
+    __pydantic_config__ = _CHECKED
+
+
+@dataclass(frozen=True, slots=True)
+class Rules:
+    """The people of a project, and whether limits that change after a result want a reason; nobody: all may do all."""
+
+    people: Annotated[tuple[Person, ...], Field(max_length=500, description="a list of people")] = ()
+    reasons: bool = False
+    __pydantic_config__ = _CHECKED
+
+
+class _PeopleFile(RootModel[Rules]):
+    pass
+
+
+def read_rules(folder: Path) -> Rules:
+    """The rules of a project; InputError if their file is damaged."""
+    path = folder / PEOPLE
+    return checked_json(_PeopleFile, read_json(path), path).root if path.exists() else Rules()
+
+
+def person(name: str, role: Role, pin: str) -> Person:
+    """A person with a PIN; InputError if that is too short."""
+    if len(pin) < SHORTEST_PIN:
+        raise InputError(
+            Message("people.pin_short", "the PIN has fewer than {n} characters", n=SHORTEST_PIN), where=name
+        )
+    salt = secrets.token_bytes(16)
+    return Person(name, role, salt.hex(), _hash(pin, salt))
+
+
+def with_pin(rules: Rules, name: str, pin: str) -> Person:
+    """The person of this name, who has shown it by the PIN; InputError if there is none, or the PIN is another."""
+    found = next((one for one in rules.people if one.name == name), None)
+    if found is None or not hmac.compare_digest(_hash(pin, bytes.fromhex(found.salt)), found.hash):
+        raise InputError(Message("people.wrong_pin", "name and PIN do not belong together"), where=name)
+    return found
+
+
+def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
+    """Put rules in force, and the change into the audit trail, which comes first.
+
+    Raises
+    ------
+    InputError
+        If there are people already and `by` is no administrator of them, no administrator would be left, a name is
+        there twice, or nothing can be written.
+    """
+    before = read_rules(folder)
+    if before.people and (by not in before.people or by is None or by.role != "administrator"):
+        raise InputError(
+            Message("people.administrator_needed", "only an administrator may change the people"), where=folder
+        )
+    if rules.people and all(one.role != "administrator" for one in rules.people):
+        raise InputError(
+            Message("people.no_administrator", "there would be no administrator, and nobody could change that"),
+            where=folder,
+            todo=Message("people.advice_administrator", "name an administrator first, or remove everybody"),
+        )
+    if len({one.name for one in rules.people}) < len(rules.people):
+        raise InputError(Message("people.name_twice", "a name is there twice"), where=folder)
+    text = to_json(asdict(rules))
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    append(folder, "people", _changes(before, rules), files={PEOPLE: digest}, by=by)
+    write_text(folder / PEOPLE, text)
+
+
+def reset_rules(folder: Path, why: str) -> None:
+    """Let everybody do everything again, whoever asks: the way back if PINs are lost; the reason stays in the trail.
+
+    Raises
+    ------
+    InputError
+        If no reason is given, or nothing can be written.
+    """
+    if not why.strip():
+        raise InputError(
+            Message("people.reason_needed", "a reason must be given, it stays in the audit trail"), where=folder
+        )
+    append(folder, "people reset", why=why.strip())
+    remove(folder / PEOPLE)
+
+
+def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
+    """Sign the project as it is: an entry of the audit trail by somebody who has just shown the PIN, with the meaning.
+
+    Raises
+    ------
+    InputError
+        If name and PIN do not belong together, or nothing can be written.
+    """
+    return append(folder, "signed", why=meaning.strip(), by=with_pin(read_rules(folder), name, pin))
+
+
+def refused(rules: Rules, by: Person | None, before: Project, after: Project) -> InputError | None:
+    """Why somebody may not change a project so; None if it may be. Who has not signed in is an operator."""
+    role: Role = "operator" if by is None else by.role
+    needed = needed_role(before, after)
+    if not rules.people or ROLES.index(role) >= ROLES.index(needed):
+        return None
+    return InputError(
+        Message("people.role_needed", "only an {role} may change this", role=ROLE_NAMES[needed]),
+        todo=Message("people.advice_sign_in", "sign in (File, Sign in)"),
+    )
+
+
+def needed_role(before: Project, after: Project) -> Role:
+    """Who may make this change: operators say what is measured of which pictures; limits are the administrator's."""
+    if limits_changed(before, after) or before.report.template != after.report.template:
+        return "administrator"
+    run = replace(before, info=after.info, sources=after.sources, repeats=after.repeats)
+    return "operator" if run == after else "inspector"
+
+
+def limits_changed(before: Project, after: Project) -> bool:
+    """Whether a nominal value, a limit or a tolerance is another one."""
+    return _limits(before) != _limits(after)
+
+
+def reason_wanted(rules: Rules, results: Mapping[str, Done], before: Project, after: Project) -> bool:
+    """Whether a change wants a reason: limits are changed after something was judged by them."""
+    return rules.reasons and any(step in results for step in _JUDGED) and limits_changed(before, after)
+
+
+def _limits(project: Project) -> tuple[object, ...]:
+    gauge = project.rig.gauge
+    features = {
+        one.name: (
+            one.limits,
+            one.nominal_heights,
+            None if one.deviation is None else (one.deviation.nominal, one.deviation.tolerance_mm),
+        )
+        for one in project.inspection.features
+        if one.limits or one.nominal_heights or one.deviation is not None
+    }
+    return (None if gauge is None else (gauge.nominal_mm, gauge.tolerance_mm)), features
+
+
+def _changes(before: Rules, after: Rules) -> tuple[Change, ...]:
+    old, new = ({f"people.{one.name}": one for one in rules.people} for rules in (before, after))
+    found = [
+        Change(name, old[name].role if name in old else "", new[name].role if name in new else "")
+        for name in dict.fromkeys((*old, *new))
+        if old.get(name) != new.get(name)
+    ]
+    if before.reasons != after.reasons:
+        found.append(Change("reasons", str(before.reasons).lower(), str(after.reasons).lower()))
+    return tuple(found)
+
+
+def _hash(pin: str, salt: bytes) -> str:
+    return hashlib.scrypt(pin.encode(), salt=salt, **_SCRYPT).hex()
