@@ -16,13 +16,16 @@ from core.acquire.source import Frame, Picture
 from core.compiled import keep_complete
 from core.files.recording.options import Options
 from core.image.stripes.centreline import Centreline
+from core.image.stripes.extraction import extract_centrelines
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 from core.pipeline.live.preview import ScanPreviewer
 from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingWindow
-from core.scan.features.extraction import extract_features
-from core.scan.features.reference import FeatureOptions
+from core.scan.features.extraction import extract_features, saturated_pixels
+from core.scan.features.reference import FeatureOptions, picture_difference
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
@@ -90,8 +93,8 @@ def stages() -> Stages:
 
 
 def shares() -> tuple[Stages, Stages]:
-    """The stages in two shares, for two processes: they compile little twice."""
-    return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface)
+    """The stages in two shares of about the same length, for two processes: they compile little twice."""
+    return (lambda: _stripes(np.uint8), lambda: _stripes(np.uint16)), (_crossings, _surface, _whole_numbers)
 
 
 def _stripes(levels: PixelType) -> None:
@@ -99,6 +102,13 @@ def _stripes(levels: PixelType) -> None:
     reference = _picture(levels, rows=_FAN_PX)
     frames = [(f"{number}", _picture(levels, rows=_FAN_PX, column=place)) for number, place in enumerate(_SWEEPS_PX)]
     extract_features(reference, frames, len(frames), FeatureOptions(camera=CAMERA))
+
+
+def _whole_numbers() -> None:
+    """A frame of 8 bits minus its reference, in whole numbers: what `_stripes` comes to last."""
+    reference, frame = _picture(np.uint8, rows=_FAN_PX), _picture(np.uint8, rows=_FAN_PX, column=_SWEEPS_PX[0])
+    stripe, noise = StripeSettings(WIDTH_IN_SIGMA * 2.0, 100.0), NoiseModel(1.0)
+    extract_centrelines(picture_difference(frame, reference), stripe, noise=noise, saturated=saturated_pixels(frame))
 
 
 def _picture(levels: PixelType, rows: tuple[float, ...], column: float | None = None) -> Picture:
