@@ -2,6 +2,10 @@
 
 variance(level) = read² + k·level, with k in grey levels per electron: the photon transfer line.
 
+Structure in a picture adds to what is measured. Most of it is kept out by a mask that sees no edges along the axes and
+by believing the quieter tiles. Small squares leave no tile quiet, but some places of 3 × 3 px are flat: what a plane
+leaves of these is χ² with six degrees of freedom about σ², and the lowest peak of it is at σ².
+
 References
 ----------
 Immerkær, J., Fast noise variance estimation, CVIU 64 (1996), doi:10.1006/cviu.1996.0060: the mask that sees neither
@@ -34,6 +38,12 @@ _QUARTER = 0.3186  # standard deviations that the quieter quarter of Gaussian no
 _STRUCTURED = 1.5  # times another estimate's variance: noise alone never reaches 1.2 over a picture's tiles
 _LEAST_CONTRAST = 20.0  # times the noise between darkest and brightest level; with less no slope is fitted
 _LEAST_APART = 0.05  # share of that range between two levels that give a slope
+_MOST_PLACES = 300_000  # of 3 × 3 px looked at, about
+_GROUPS, _LEAST_PER_GROUP = 32, 200  # of places by their grey level: few of them are flat, and these are alike
+_BIN, _SMOOTH = 0.05, 0.2  # of the logarithm of a variance: χ² of six degrees of freedom is 0.6 wide
+_PEAK = 0.05  # of the highest peak's height: a lower one is chance
+_LOWER = 0.06  # share of the groups below the line of the flat ones
+_SAME_LINE = 1.7  # times its variance: a group of more is no flat one
 _BACKGROUND_PX = 15  # side of the mean that a difference of two pictures is freed of
 
 
@@ -107,14 +117,16 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
 
     Texture can only add to what is measured, so the quieter half of the tiles of each grey level is believed. Where
     structure is in every tile (small squares, edges all over) it still rules their mean squares; then the quieter
-    quarter of each tile's pixels is believed instead, which is less exact for noise alone.
+    quarter of each tile's pixels or the flat places are believed instead, which are less exact for noise alone.
     Where the picture has too few levels for a slope (a difference picture), the shot noise comes out as zero and
     `read_grey` is the scatter of the background.
     """
     residual = np.asarray(cv2.filter2D(picture, cv2.CV_32F, _MASK), dtype=np.float32)
     level, variance, quiet = _tile_statistics(picture, residual, ignore)
-    noise, least = _photon_transfer(level, variance), _photon_transfer(level, quiet)
-    return free_of_structure(noise, least, float(np.median(level)) if level.size else 0.0)
+    middle = float(np.median(level)) if level.size else 0.0
+    noise = free_of_structure(_photon_transfer(level, variance), _photon_transfer(level, quiet), middle)
+    flat = _flat_places(picture, ignore)
+    return noise if flat is None else free_of_structure(noise, flat, middle)
 
 
 def free_of_structure(noise: NoiseModel, other: NoiseModel, level: float) -> NoiseModel:
@@ -178,3 +190,70 @@ def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
         slope = max(0.0, float(np.median((variances[j] - variances[i])[apart] / (levels[j] - levels[i])[apart])))
     floor = np.median(variances - slope * np.maximum(levels, 0))
     return NoiseModel(float(np.sqrt(max(float(floor), ROUNDING_VARIANCE))), slope)
+
+
+def _flat_places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> NoiseModel | None:
+    """The noise of the flat places of a picture, None where it has too few that are not clipped."""
+    level, variance = _places(picture, ignore)
+    if level.size < _LEAST_PER_GROUP * _GROUPS:
+        return None
+    groups = np.array_split(np.argsort(level), _GROUPS)
+    levels = np.array([np.median(level[g]) for g in groups])
+    variances = np.array([_lowest_peak(np.log(variance[g])) for g in groups]) - ROUNDING_VARIANCE
+    return _lower_line(np.maximum(levels, 0.0), np.maximum(variances, ROUNDING_VARIANCE))
+
+
+def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> tuple[Array, Array]:
+    """Mean level of places of 3 × 3 px all over a picture, and the variance that a plane leaves of each.
+
+    None of those that touch the darkest or the brightest value, where noise may be clipped, or what is to be ignored;
+    none at all where these are half of the places or more.
+    """
+    rows, columns = (size - 2 for size in picture.shape)
+    if min(rows, columns) < 1:
+        return np.zeros(0), np.zeros(0)
+    stride = max(1, int(np.sqrt(rows * columns / _MOST_PLACES)))
+    parts = [[picture[v : v + rows : stride, u : u + columns : stride] for u in range(3)] for v in range(3)]
+    pixels = np.array(parts, dtype=np.float64).reshape(3, 3, -1)
+    keep = (pixels.min(axis=(0, 1)) > picture.min()) & (pixels.max(axis=(0, 1)) < picture.max())
+    if ignore is not None:
+        keep &= ~ignore[1 : 1 + rows : stride, 1 : 1 + columns : stride].ravel()
+    if np.count_nonzero(keep) < keep.size / 2:
+        return np.zeros(0), np.zeros(0)
+    pixels = pixels[:, :, keep]
+    # whole grey levels would give peaks of their own; what this adds is taken off again
+    pixels += np.random.default_rng(0).uniform(-0.5, 0.5, pixels.shape)
+    level = pixels.mean(axis=(0, 1))
+    across, down = (pixels[:, 2] - pixels[:, 0]).sum(axis=0), (pixels[2] - pixels[0]).sum(axis=0)
+    squares = ((pixels - level) ** 2).sum(axis=(0, 1)) - (across**2 + down**2) / 6
+    return level, squares / 6
+
+
+def _lowest_peak(logarithms: Array) -> float:
+    """Variance at the lowest peak of the density of its logarithms that is one of any height."""
+    low, high = float(logarithms.min()) - 1, float(logarithms.max()) + 1
+    count, edges = np.histogram(logarithms, int((high - low) / _BIN) + 1, (low, high))
+    reach = np.arange(-4 * _SMOOTH, 4 * _SMOOTH + _BIN / 2, _BIN)
+    density = np.convolve(count, np.exp(-0.5 * (reach / _SMOOTH) ** 2), "same")
+    peak = (density[1:-1] >= density[:-2]) & (density[1:-1] > density[2:]) & (density[1:-1] > _PEAK * density.max())
+    first = int(np.argmax(peak)) + 1 if peak.any() else int(np.argmax(density))
+    return float(np.exp(0.5 * (edges[first] + edges[first + 1])))
+
+
+def _lower_line(levels: Array, variances: Array) -> NoiseModel:
+    """The photon transfer line along the lower side of groups: most may be of edges, the flat ones are on one line."""
+    i, j = np.triu_indices(len(levels), 1)
+    apart = levels[j] - levels[i] > _LEAST_CONTRAST * np.sqrt(ROUNDING_VARIANCE)
+    i, j = i[apart], j[apart]
+    slopes = np.concatenate(
+        [np.zeros(len(levels)), np.maximum((variances[j] - variances[i]) / (levels[j] - levels[i]), 0)]
+    )
+    floors = np.concatenate([variances, variances[i]]) - slopes * np.concatenate([levels, levels[i]])
+    slopes, floors = slopes[floors >= ROUNDING_VARIANCE], floors[floors >= ROUNDING_VARIANCE]
+    if not len(floors):
+        return NoiseModel(float(np.sqrt(ROUNDING_VARIANCE)))
+    above = np.log(variances / (floors[:, None] + slopes[:, None] * levels))
+    best = int(np.argmin(np.where(above > 0, _LOWER * above, (_LOWER - 1) * above).sum(axis=1)))
+    times = np.exp(above[best])
+    raised = float(np.median(times[times < _SAME_LINE]))
+    return NoiseModel(float(np.sqrt(max(raised * floors[best], ROUNDING_VARIANCE))), raised * float(slopes[best]))

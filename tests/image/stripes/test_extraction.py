@@ -383,7 +383,7 @@ def test_noise_is_estimated() -> None:
     assert NoiseModel(1.5).of_difference().read_grey == pytest.approx(1.5 * np.sqrt(2))
 
 
-@pytest.mark.parametrize(("cell_px", "most"), [(40.0, 1.15), (20.0, 1.6), (8.0, 3.5)])
+@pytest.mark.parametrize(("cell_px", "most"), [(40.0, 1.15), (20.0, 1.15), (10.0, 1.15), (8.0, 1.35)])
 def test_structure_does_not_pass_for_noise(cell_px: float, most: float) -> None:
     """Small squares fill the picture; a pair of pictures of them is free of structure."""
     rng = np.random.default_rng(1)
