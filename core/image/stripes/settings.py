@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from core.image.stripes.noise import estimate_noise
 from core.image.stripes.precision import response_noise
 from core.image.stripes.profile import measure_profiles
-from core.image.stripes.runs import cut_ends
+from core.image.stripes.runs import arc_length, cut_ends
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
@@ -23,6 +25,7 @@ _BLOCKS = (1, 2, 3, 4, 6, 9, 13)
 
 _REDUCED = (4, 8, 16)
 """Factors of the reduced pictures: grains up to so many px are averaged."""
+_MORE_LIGHT, _SHORT, _MOSTLY = 4.0, 0.3, 0.8  # times the light of grains; their length over it, and share within it
 _SMALLEST_REDUCED = 24  # px that a reduced picture must have each way
 
 # Held by tests/image/stripes/test_extraction.py (settings are chosen) on rendered stripes of σ 0.9 to 5 px, of several
@@ -56,29 +59,54 @@ def choose_settings(
     The first guess of the width is the block size at which the strongest crests answer best: with the response
     divided by the square root of the block size (Lindeberg's normalisation of ridges, γ = 3/4), that is where block
     and stripe σ agree. Then stripes are traced, their cross-sections fitted, and the width corrected until it stays.
-    A wide speckled stripe falls apart into its grains, and none is long enough. So where nothing is found, the same is
-    done in pictures reduced until the grains are averaged.
+    A wide speckled stripe falls apart into its grains. So the same is done in pictures reduced until grains are
+    averaged. What is found there counts where nothing was found before, or only grains of it: a small part of its
+    light.
 
     References
     ----------
     Lindeberg, T., Edge detection and ridge detection with automatic scale selection, IJCV 30 (1998),
     doi:10.1023/A:1008097225773.
     """
-    found = _chosen(picture, full_scale, mask)
+    found = _chosen(picture, full_scale, mask, 1)
     for factor in _REDUCED:
         size = (picture.shape[1] // factor, picture.shape[0] // factor)
-        if found is not None or min(size) < _SMALLEST_REDUCED:
+        if min(size) < _SMALLEST_REDUCED:
             break
         small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
         covered = None if mask is None else cv2.resize(mask.astype(np.uint8), size, interpolation=cv2.INTER_AREA) > 0
-        found = _chosen(small, full_scale, covered)
-        if found is not None:
-            found = StripeSettings(factor * found.width_px, found.contrast)
-    return found
+        wider = _chosen(small, full_scale, covered, factor)
+        if wider is not None and (found is None or wider.is_made_of(found)):
+            found = wider
+    return None if found is None else found.settings
 
 
-def _chosen(picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None) -> StripeSettings | None:
-    """Choose settings at one size of the picture; None when it shows no stripe there."""
+@dataclass(frozen=True, eq=False, slots=True)
+class _Stripes:
+    """The long stripes at one size of the picture, in px of the whole one.
+
+    `uv` (N, 2) are points along them, `longest` and `length` are that of one and of all, and `light` is the sum of
+    height times width along them.
+    """
+
+    settings: StripeSettings
+    uv: Array
+    longest: float
+    length: float
+    light: float
+
+    def is_made_of(self, finer: _Stripes) -> bool:
+        """Whether what was found in a finer picture are grains of these: short, little of their light, within them."""
+        if self.light < _MORE_LIGHT * finer.light or _SHORT * self.length < finer.longest:
+            return False
+        distance = cKDTree(self.uv).query(finer.uv)[0]
+        return float(np.mean(distance < self.settings.width_px)) > _MOSTLY
+
+
+def _chosen(
+    picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None, factor: int
+) -> _Stripes | None:
+    """Choose settings in a picture reduced by a factor; None when it shows no stripe there."""
     state = np.where(picture >= full_scale, np.uint8(SATURATED), np.uint8(0))
     if mask is not None:
         state[mask] |= IGNORED
@@ -91,7 +119,7 @@ def _chosen(picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bo
         if height < faintest:
             return None
         faintest = max(faintest, _SHARE_OF_STRONGEST * height)
-        sections = _sections(
+        sections, lengths = _sections(
             picture,
             state,
             stripe_px,
@@ -105,7 +133,14 @@ def _chosen(picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bo
         stripe_px, height = width, float(np.quantile(sections[0], _STRONG_QUANTILE))
         if settled:
             break
-    return StripeSettings(WIDTH_IN_SIGMA * stripe_px, float(np.quantile(sections[0], CONTRAST_QUANTILE)))
+    contrast = float(np.quantile(sections[0], CONTRAST_QUANTILE))
+    return _Stripes(
+        StripeSettings(factor * WIDTH_IN_SIGMA * stripe_px, contrast),
+        factor * sections[2:].T,
+        factor * max(lengths),
+        factor * sum(lengths),
+        factor**2 * sum(lengths) * float(np.mean(sections[0] * sections[1])),
+    )
 
 
 def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, float]:
@@ -127,9 +162,9 @@ def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, flo
 
 def _sections(
     picture: NDArray[np.float32], state: NDArray[np.uint8], stripe_px: float, filter_px: float, limits: Hysteresis
-) -> Array:
-    """Heights and widths (2, N) along all long stripes within the `limits`."""
-    sections = [np.empty((2, 0))]
+) -> tuple[Array, list[float]]:
+    """Heights, widths, u and v (4, N) along all long stripes within the `limits`, and how long each of these is."""
+    sections, lengths = [np.empty((4, 0))], []
     for traced in link(picture, state, stripe_px, filter_px, limits):
         if len(traced) < _LONG * filter_px:
             continue
@@ -137,5 +172,6 @@ def _sections(
         if len(run) > 1:
             profiles = measure_profiles(picture, state, run, stripe_px, filter_px)
             seen = profiles.height > 0
-            sections.append(np.array([profiles.height[seen], profiles.width[seen]]))
-    return np.hstack(sections)
+            sections.append(np.vstack([profiles.height[seen], profiles.width[seen], run[seen, :2].T]))
+            lengths.append(float(arc_length(run)[-1]))
+    return np.hstack(sections), lengths

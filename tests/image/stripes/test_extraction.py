@@ -359,6 +359,29 @@ def test_settings_are_chosen_from_a_difference_with_speckle() -> None:
     assert 55 < chosen.contrast < 100
 
 
+@pytest.mark.parametrize(("width_px", "contrast", "grain_px"), [(60.0, 0.3, 2.0), (80.0, 0.3, 5.0), (100.0, 0.6, 3.0)])
+def test_the_grains_of_a_wide_stripe_are_not_taken_for_stripes(
+    width_px: float, contrast: float, grain_px: float
+) -> None:
+    rng, shape, truth = np.random.default_rng(1), (1000, 1300), straight((650.0, 500.0), 0.3)
+    light = draw(shape, truth, width_px / 4, 120.0, 1) * speckle(shape, contrast, grain_px, rng)
+    picture = np.clip(np.round(expose(20 + light, rng)), 0, 255).astype(np.float32)
+    chosen = choose_settings(picture, 255.0)
+    assert chosen is not None
+    assert chosen.width_px == pytest.approx(width_px, rel=0.1)
+    (line,) = extract_centrelines(picture, chosen, noise=estimate_noise(picture))
+    assert len(line) > 0.7 * (1300 / np.cos(0.3) - 2 * width_px)
+    assert np.abs(np.median(errors(line, truth))) < 1.0
+
+
+def test_a_narrow_line_along_a_bright_band_is_no_grain_of_it() -> None:
+    rng, truth = np.random.default_rng(2), straight((300.0, 200.0), 0.0)
+    light = 20 + draw((400, 600), truth, 25.0, 120.0) + draw((400, 600), truth, 1.5, 60.0, 2)
+    chosen = choose_settings(expose(light, rng).astype(np.float32), 255.0)
+    assert chosen is not None
+    assert chosen.width_px < 10
+
+
 def test_a_wide_speckled_stripe_is_found_though_its_grains_are_no_stripes() -> None:
     rng, shape, truth = np.random.default_rng(1), (900, 1200), straight((600.0, 440.3), 0.2)
     light = draw(shape, truth, 20.0, 120.0, 2) * speckle(shape, 0.5, 4.0, rng)
