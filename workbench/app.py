@@ -62,6 +62,28 @@ def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow
     return window
 
 
+def speak(app: QApplication, window: MainWindow, name: str, put: Callable[[], MainWindow]) -> None:
+    """Replace the window by one that speaks another language and shows the same step; `put` builds and shows it.
+
+    All texts are told when a widget is made, so it is the widgets that are made anew; project, undo, processes and
+    messages are not the window's and stay.
+    """
+    step, quits = window.current, app.quitOnLastWindowClosed()
+    app.setQuitOnLastWindowClosed(False)
+    window.dismiss()
+
+    def go_on() -> None:
+        choose(language(name), app)
+        app.setStyleSheet("")  # see `build_window`
+        new = put()
+        new.model.opened.emit()
+        if step:
+            new.go_to(step)
+        app.setQuitOnLastWindowClosed(quits)
+
+    QTimer.singleShot(0, app, go_on)  # when the old one is gone
+
+
 def main(argv: Sequence[str] | None = None) -> int:
     """Open the workbench; returns the exit code."""
     parser = argparse.ArgumentParser("trisect-workbench", description=tr("The Trisect inspection workbench."))
@@ -83,9 +105,15 @@ def main(argv: Sequence[str] | None = None) -> int:
     wanted = (given.language, bench.settings.language, os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
-    window = app.window = build_window(app, bench, given.theme)
-    window.log_file = log_file
-    window.show()
+
+    def put() -> MainWindow:
+        made = app.window = build_window(app, bench, given.theme)
+        made.log_file = log_file
+        made.language_wanted.connect(lambda name: speak(app, made, name, put))
+        made.show()
+        return made
+
+    window = put()
     gc.freeze()  # what is there now stays: later collections need not go through it, and are short
     QTimer.singleShot(0, window, lambda: _after_start(window, given.path))
     try:

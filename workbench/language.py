@@ -1,7 +1,7 @@
 """The language of the window: every text that a technician reads goes through here.
 
-One catalogue serves core's messages, the window's own words and what Qt asks for (`QObject.tr`). It is chosen once,
-when the program starts.
+One catalogue serves core's messages, the window's own words and what Qt asks for (`QObject.tr`). It is chosen before
+a window is built: where another one is chosen, the window is replaced.
 """
 
 from __future__ import annotations
@@ -64,16 +64,21 @@ def _for_the_window(language: Language) -> Language:
 
 
 _chosen = _for_the_window(Language())
+_translators: list[QTranslator] = []
 
 
 def choose(language: Language, parent: QObject) -> None:
-    """Have the window speak `language` from now on; what is shown already stays as it is."""
+    """Have windows that are built from now on speak `language`; what is shown already stays as it is."""
     global _chosen
     _chosen = _for_the_window(language)
+    while _translators:
+        QCoreApplication.removeTranslator(_translators.pop())
     of_qt = QTranslator(parent)
     if of_qt.load(f"qtbase_{language.name}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
-        QCoreApplication.installTranslator(of_qt)
-    QCoreApplication.installTranslator(_Catalogue(parent))
+        _translators.append(of_qt)
+    _translators.append(_Catalogue(parent))
+    for translator in _translators:
+        QCoreApplication.installTranslator(translator)
 
 
 def chosen() -> Language:

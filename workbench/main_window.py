@@ -7,7 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSize, Qt, QTimer, QUrl
+from PySide6.QtCore import QSize, Qt, QTimer, QUrl, Signal
 from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import (
     QApplication,
@@ -44,6 +44,9 @@ from workbench.work.tasks import Task
 
 class MainWindow(QMainWindow):
     """The workbench's one window."""
+
+    language_wanted = Signal(str)
+    """Nothing runs and all is saved: the window can be replaced by one that speaks this language."""
 
     def __init__(self, bench: Bench) -> None:
         super().__init__()
@@ -145,11 +148,23 @@ class MainWindow(QMainWindow):
             self.projects.leave(self._leave_now)
         return self._left
 
-    def _leave_now(self) -> None:
+    def dismiss(self) -> None:
+        """Go, for another window to take this one's place: what is open stays open."""
+        self._left = True
+        self._close_pages()
+        for presenter in self.presenters.values():
+            presenter.deleteLater()
+        self.hide()
+        self.deleteLater()
+
+    def _close_pages(self) -> None:
         self.bench.settings.keep_layout("window", self.saveGeometry())
         self.bench.settings.flush()
         for page in self.pages.values():
             page.close()
+
+    def _leave_now(self) -> None:
+        self._close_pages()
         self.bench.close()
         self._left = True
         self.close()
@@ -295,9 +310,13 @@ class MainWindow(QMainWindow):
         self.setWindowModified(self.model.is_modified)
 
     def _on_language(self, name: str) -> None:
-        if name != spoken():
-            said = tr("The window speaks {language} when it is opened the next time.", language=own_name(name))
-            self.bench.notices.info(said)
+        if name == spoken():
+            return
+        if self.bench.measuring.current is None and not self.model.is_recording:
+            self.projects.leave(partial(self.language_wanted.emit, name))
+            return
+        said = tr("The window speaks {language} when it is opened the next time.", language=own_name(name))
+        self.bench.notices.info(said)
 
     def _on_notice(self, notice: Notice) -> None:
         self.notice_list.add(str(notice.level), notice.text, notice.details, notice.at.strftime("%H:%M:%S"))

@@ -32,8 +32,8 @@ WITH_WINDOWS = ("xcb", "wayland", "wayland-egl", "windows", "cocoa")
 SURFACES = "workbench.views.scene.surfaces"
 """The module that draws; run as a program it tries whether pictures can be rendered."""
 
-TRIAL_MS = 30_000
-"""A driver that has drawn nothing by then never will; a busy machine takes a few seconds."""
+TRIAL_MS = 60_000
+"""A driver that has drawn nothing by then never will; a very busy machine may take half a minute."""
 
 LOOK_MS = 30
 """How often is looked whether the libraries are there."""
