@@ -7,7 +7,7 @@ of the source's own. A source that is unplugged raises :class:`Unplugged` once a
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, Protocol
+from typing import Literal, Protocol, runtime_checkable
 
 import numpy as np
 from numpy.typing import NDArray
@@ -28,6 +28,7 @@ __all__ = [
     "SourceSettings",
     "Step",
     "Unplugged",
+    "WaitingSource",
 ]
 
 Step = Literal["camera", "planes", "scan", "check"]
@@ -129,3 +130,11 @@ class FrameSource(Protocol):
 
     def close(self) -> None:
         """Let go of it; harmless when it is closed already."""
+
+
+@runtime_checkable
+class WaitingSource(FrameSource, Protocol):
+    """A source that waits with what is before it until that was dealt with."""
+
+    def go_on(self, frame: Frame) -> None:
+        """What a frame shows was taken, or is of no use."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.acquire.source import Frame, Lasers
-from core.calibrate.camera.capture import TAKEN, CaptureJudge
+from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge
 from core.errors import InputError
 from core.image.sharpness import edge_blur_px
 from core.image.targets import Target, detect
@@ -76,6 +76,8 @@ class LiveCamera:
             self._take(look.frame, look.view, self._judge)
         elif self._capture:
             self._context.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
+        elif not verdict.take and verdict.sentence not in (HOLD_STILL, TAKEN):
+            self._context.dealt_with(look.frame)
         elif verdict.take:
             self._sentence = Message("live.press_capture_view", "Press Take picture to take this view.")
         self._capture = False
@@ -122,6 +124,7 @@ class LiveCamera:
         judge.taken(named(view, name), frame.time_s)
         self._sentence, self._missing = TAKEN, judge.missing()
         self._context.took(name, frame.picture)
+        self._context.dealt_with(frame)
 
 
 def nothing_taken(why: Message) -> Message:

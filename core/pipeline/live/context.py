@@ -6,7 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
 from typing import Any, Protocol
 
-from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture
+from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture, WaitingSource
 from core.files.pictures import write_picture
 from core.messages import Message
 from core.pipeline.live.commands import Command, LiveRequest
@@ -106,6 +106,11 @@ class LiveContext:
         """Want the lasers like this from now on; True if the source switches them itself."""
         self.lasers = lasers
         return self.source.lasers(lasers)
+
+    def dealt_with(self, frame: Frame) -> None:
+        """What a frame shows was taken, or is of no use: a source that waits for that need not."""
+        if isinstance(self.source, WaitingSource):
+            self.source.go_on(frame)
 
     def ask(self, sentence: Message, button: str, answer: Command) -> None:
         """Ask a person to do something."""

@@ -1,4 +1,4 @@
-"""Exposure times of a simulated camera that runs at a fixed rate, and the exposures it misses."""
+"""Exposure times of a simulated camera: in a time of its own, or at a fixed rate with exposures that are missed."""
 
 from __future__ import annotations
 
@@ -10,9 +10,11 @@ RATE_HZ = 12.0
 
 
 class ExposureTimer:
-    """Counts the exposures of a camera that runs at a fixed rate.
+    """Counts the exposures of a camera.
 
-    With a rate of 0 it has a time of its own, that goes on by 1/12 s with each frame that is delivered.
+    It has a time of its own, that goes on by 1/12 s with each frame that is delivered, and no faster than the clock:
+    where machine or reader are slow, so is that time, and nothing is missed. With a rate of 0 it goes on as fast as
+    frames are delivered. With any other rate its time is the clock's, as a real camera's is.
 
     Parameters
     ----------
@@ -23,10 +25,11 @@ class ExposureTimer:
     def __init__(self, clock: Callable[[], float]) -> None:
         self._clock = clock
         self._origin = clock()
-        self._rate, self._paced = RATE_HZ, True
+        self._rate, self._paced, self._hurried = RATE_HZ, False, False
         self._base_number, self._base_s = 0, 0.0
         self._last = self._delivered = -1
         self._forgiven = True
+        self._exposed_at = float("-inf")
 
     def start(self) -> None:
         """Restart: the next exposure is number 0, at 0 s."""
@@ -36,11 +39,11 @@ class ExposureTimer:
         self._forgiven = True
 
     def set_rate(self, rate_hz: float) -> None:
-        """Change the rate in Hz; 0: frames in a time of their own."""
+        """Change the rate in Hz; 0: as fast as frames are delivered."""
         self.skip()
         now = self.now()
         self._base_number, self._base_s = self._last + 1, now
-        self._rate, self._paced = rate_hz or RATE_HZ, rate_hz > 0
+        self._rate, self._paced, self._hurried = rate_hz or RATE_HZ, rate_hz > 0, rate_hz == 0
         self._origin = self._clock() - now
 
     def now(self) -> float:
@@ -53,7 +56,9 @@ class ExposureTimer:
 
     def wait_s(self) -> float:
         """Time in s to the next exposure; 0 or less if it is due."""
-        return self.time_of(self._last + 1) - self.now() if self._paced else 0.0
+        if self._paced:
+            return self.time_of(self._last + 1) - self.now()
+        return 0.0 if self._hurried else self._exposed_at + 1 / self._rate - self._clock()
 
     def expose(self) -> tuple[int, int]:
         """The number of the exposure that is due, and how many were missed since the last one."""
@@ -62,7 +67,7 @@ class ExposureTimer:
             due = self._base_number + floor((self.now() - self._base_s) * self._rate)
             number = max(number, due)
         lost = 0 if self._forgiven else number - self._last - 1
-        self._last, self._forgiven = number, False
+        self._last, self._forgiven, self._exposed_at = number, False, self._clock()
         return number, lost
 
     def delivered(self) -> None:

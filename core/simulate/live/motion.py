@@ -50,11 +50,20 @@ class PlateMotion:
         """The pose at a time from the beginning of the first rest, and the number of the rest, or None in a move."""
         number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
         rest = int(number) % len(self.poses)
-        if within < self.rest_s:
+        if within <= self.rest_s:
             return self.poses[rest], rest
         share = (within - self.rest_s) / self.move_s
         eased = share**3 * (10 - 15 * share + 6 * share**2)
         return self._between(self.poses[rest], self.poses[(rest + 1) % len(self.poses)], eased), None
+
+    def rest_at(self, time_s: float) -> int | None:
+        """How many rests there have been before that of this time; None in a move."""
+        number, within = divmod(max(time_s, 0.0), self.rest_s + self.move_s)
+        return int(number) if within <= self.rest_s else None
+
+    def end_of_rest(self, number: int) -> float:
+        """The last time in s at which the plate rests at its pose `number`, counted from 0."""
+        return number * (self.rest_s + self.move_s) + (1 - 1e-9) * self.rest_s
 
     def _between(self, first: Pose, second: Pose, share: float) -> Pose:
         turns = Rotation.from_matrix(np.stack([first.rotation, second.rotation]))

@@ -34,8 +34,7 @@ from core.simulate.sweep import sweep_range
 CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
 PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
 CHECK_RESTS = 5
-"""Poses at which a plate is held still, and the times in s of a rest and of a move: more poses than a calibration asks
-for, rests long enough for a view to be taken (for two pictures of the plane target, fan on and off)."""
+"""Poses at which a plate rests, more than a calibration asks for; times in s of a rest, at least, and of a move."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -99,7 +98,7 @@ class LiveScene:
             "planes": printed(plane_target or PLATES[scenario.plane_target]),
         }
         self._plates["check"] = self._plates["planes"]
-        self._motions = {
+        self._motions: dict[Step, PlateMotion] = {
             "camera": self._camera_motion(),
             "planes": self._plane_motion(PLANE_RESTS, "live plane poses"),
             "check": self._plane_motion(CHECK_RESTS, "live check poses"),
@@ -128,6 +127,10 @@ class LiveScene:
         rng = generator(self._scenario.seed, f"live {moment.step}", moment.number)
         light = self._scan_light(moment, rng) if moment.step == "scan" else self._plate_light(moment, rng)
         return replace(self._sensor, exposure=exposure, gain=gain).expose(light, rng)
+
+    def motion(self, step: Step) -> PlateMotion | None:
+        """How the plate of this step is moved; None where there is no plate."""
+        return self._motions.get(step)
 
     def _scan_light(self, moment: Moment, rng: np.random.Generator) -> Map:
         assert self._stage is not None

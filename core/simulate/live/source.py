@@ -1,8 +1,10 @@
 """The simulated rig as a live source: a camera in real time, without a camera.
 
-Pictures are made on a thread of its own, one ahead of whoever reads them. A frame belongs to the instant at which the
-camera would have exposed it; instants for which nobody was ready (the reader was busy, or the machine too slow) are
-lost and counted, as with a real camera.
+Pictures are made on a thread of its own, one ahead of whoever reads them. Time goes on with the frames that are read,
+so a slow machine slows the hand down and loses nothing. At a rate that was set it is a real camera's: instants for
+which nobody was ready (the reader was busy, or the machine too slow) are lost and counted.
+
+The hand that holds a plate waits for who takes the pictures: each pose is held until a frame of it was dealt with.
 """
 
 from __future__ import annotations
@@ -10,10 +12,11 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step
 from core.simulate.live.exposure_timer import ExposureTimer
+from core.simulate.live.motion import PlateMotion
 from core.simulate.live.scene import LiveScene, LiveTruth, Moment
 
 EXPOSURE_MS = 8.0
@@ -21,6 +24,9 @@ EXPOSURE_MS = 8.0
 
 CAPABILITIES = Capabilities(exposure_ms=(0.01, 1000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
 """Wider than any camera's: the twin has no limits of its own."""
+
+_REMEMBERED = 240
+"""Frames of which it is known what they show; who looks at one is not so far behind."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -36,18 +42,50 @@ class _State:
     def lit(self, lasers: Lasers, now_s: float) -> _State:
         return replace(self, lasers=lasers, swept_s=self._sweep(now_s), lit_s=now_s)
 
-    def at(self, number: int, time_s: float) -> Moment:
-        return Moment(self.step, self.lasers, max(0.0, time_s - self.began_s), self._sweep(time_s), number)
+    def at(self, number: int, time_s: float, plate_s: float) -> Moment:
+        return Moment(self.step, self.lasers, plate_s, self._sweep(time_s), number)
 
     def _sweep(self, time_s: float) -> float:
         return self.swept_s + (max(0.0, time_s - self.lit_s) if self.lasers.hand else 0.0)
 
 
+@dataclass(slots=True)
+class _Hand:
+    """Holds a plate: `held` is the pose it does not leave yet, `waited_s` how long it has waited so far.
+
+    `seen` says in which rest each of the last frames was exposed.
+    """
+
+    motion: PlateMotion | None
+    held: int = 0
+    waited_s: float = 0.0
+    seen: dict[int, int | None] = field(default_factory=dict)
+
+    def plate_s(self, time_s: float) -> float:
+        """The plate's own time, `time_s` after the step began."""
+        if self.motion is None:
+            return time_s
+        late_s = time_s - self.waited_s - self.motion.end_of_rest(self.held)
+        self.waited_s += max(0.0, late_s)
+        return time_s - self.waited_s
+
+    def shows(self, index: int, plate_s: float) -> None:
+        """The frame of this index was exposed at a time of the plate."""
+        self.seen[index] = None if self.motion is None else self.motion.rest_at(plate_s)
+        if len(self.seen) > _REMEMBERED:
+            del self.seen[min(self.seen)]
+
+    def go_on(self, index: int) -> None:
+        """The frame of this index has been dealt with."""
+        if self.seen.get(index) == self.held:
+            self.held += 1
+
+
 class SimulatedSource:
     """The simulated rig behind :class:`core.acquire.source.FrameSource`.
 
-    With a rate of 0 it has a time of its own: every frame is there as soon as it can be made, 1/12 s after the last
-    one, none is lost, and the same calls give the same pictures.
+    With a rate of 0 every frame is there as soon as it can be made, 1/12 s after the last one, and the same calls give
+    the same pictures.
 
     Parameters
     ----------
@@ -66,6 +104,7 @@ class SimulatedSource:
         self._scene = scene
         self._timer = ExposureTimer(clock)
         self._state = _State("camera", Lasers(fan=False, hand=False))
+        self._hand = _Hand(None)
         self._exposure = self._gain = 1.0
         self._changed = threading.Condition()
         self._thread: threading.Thread | None = None
@@ -92,11 +131,12 @@ class SimulatedSource:
             self._delivered = self._lost = 0
             self._timer.start()
             self._state = _State(self._state.step, self._state.lasers)
+            self._hand = _Hand(self._scene.motion(self._state.step))
         self._thread = threading.Thread(target=self._expose, name="simulated rig", daemon=True)
         self._thread.start()
 
     def configure(self, settings: SourceSettings) -> None:
-        """Set exposure (usual: 8 ms), gain (usual: 0 dB) and rate (usual: 12 Hz; 0: as fast as it is read)."""
+        """Set exposure (usual: 8 ms), gain (usual: 0 dB) and rate (usual: up to 12 Hz; 0: as fast as it is read)."""
         CAPABILITIES.check(settings, self.name)
         with self._changed:
             if settings.exposure_ms is not None:
@@ -112,6 +152,7 @@ class SimulatedSource:
         with self._changed:
             now = self._timer.now()
             self._state = _State(step, self._state.lasers, began_s=now, lit_s=now)
+            self._hand = _Hand(self._scene.motion(step))
             self._ordered()
 
     def lasers(self, lasers: Lasers) -> bool:
@@ -120,6 +161,11 @@ class SimulatedSource:
             self._state = self._state.lit(lasers, self._timer.now())
             self._ordered()
         return True
+
+    def go_on(self, frame: Frame) -> None:
+        """Hold the plate's pose in a frame no longer than its rest: it was taken, or is of no use."""
+        with self._changed:
+            self._hand.go_on(frame.index)
 
     def read(self, timeout_s: float) -> Frame | None:
         """The next frame, exposed after the last order was given; None if there is none within the time."""
@@ -167,6 +213,7 @@ class SimulatedSource:
                         self._lost += lost
                         when = self._timer.time_of(moment.number)
                         self._waiting = Frame(picture, self._delivered + self._lost, when, self._lost)
+                        self._hand.shows(self._waiting.index, moment.time_s)
                         self._changed.notify_all()
         except Exception as problem:  # noqa: BLE001 (told to the reader, whose thread it concerns)
             with self._changed:
@@ -185,6 +232,8 @@ class SimulatedSource:
                     self._changed.wait(wait_s)
                     continue
                 number, lost = self._timer.expose()
-                moment = self._state.at(number, self._timer.time_of(number))
+                time_s = self._timer.time_of(number)
+                plate_s = self._hand.plate_s(max(0.0, time_s - self._state.began_s))
+                moment = self._state.at(number, time_s, plate_s)
                 return self._orders, moment, lost, self._exposure, self._gain
         return None

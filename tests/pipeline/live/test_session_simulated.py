@@ -20,9 +20,7 @@ CHOICE = SourceChoice("simulated", "scale = 0.25")
 def test_the_growing_cloud_of_a_block_is_true(tmp_path):
     truth = make_source(CHOICE, RIG).truth
     window = Window(lambda event: Stop() if isinstance(event, LiveView) and event.recorded >= 60 else None)
-    request = LiveRequest(
-        "scan", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "scan", camera=truth.camera, fan=truth.fan
-    )
+    request = LiveRequest("scan", CHOICE, SourceSettings(), RIG, tmp_path / "scan", camera=truth.camera, fan=truth.fan)
     ended = run_live(request, window.next_command, window.hear, window.ready)
     assert ended.error is None
     assert ended.recorded >= 60
@@ -46,7 +44,7 @@ def heights_above_table(points):
 
 def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
     window = Window(lambda event: Stop() if isinstance(event, LiveTaken) and event.name == "view02" else None)
-    request = LiveRequest("camera", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "camera")
+    request = LiveRequest("camera", CHOICE, SourceSettings(), RIG, tmp_path / "camera")
     ended = run_live(request, window.next_command, window.hear, window.ready)
     assert ended.recorded == 3
     assert {"Hold still.", "Taken."} <= {str(detail.sentence) for detail in window.details}
@@ -56,7 +54,7 @@ def test_the_pictures_of_a_check_are_taken_by_themselves_and_end(tmp_path):
     truth = make_source(CHOICE, RIG).truth
     window = Window()
     request = LiveRequest(
-        "check", CHOICE, SourceSettings(rate_hz=12), RIG, tmp_path / "check", camera=truth.camera, fan=truth.fan
+        "check", CHOICE, SourceSettings(), RIG, tmp_path / "check", camera=truth.camera, fan=truth.fan
     )
     ended = run_live(request, window.next_command, window.hear, window.ready)
     assert ended.error is None

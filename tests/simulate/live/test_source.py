@@ -11,7 +11,7 @@ from core.acquire.source import Lasers, SourceSettings
 from core.errors import InputError
 from core.image.targets import BlackSquare, Checkerboard
 from core.simulate.calibration import CAMERA_GREY
-from core.simulate.live.exposure_timer import ExposureTimer
+from core.simulate.live.exposure_timer import RATE_HZ, ExposureTimer
 from core.simulate.live.motion import CROSSING_S, PASS_S, HandPath
 from core.simulate.live.scene import LiveScene, Moment
 from core.simulate.live.source import SimulatedSource
@@ -58,6 +58,7 @@ class Clock:
 def test_a_camera_at_12_hz_that_is_always_ready_misses_nothing():
     clock = Clock()
     timer = ExposureTimer(clock)
+    timer.set_rate(RATE_HZ)
     numbers = []
     for _ in range(30):
         clock.now += max(timer.wait_s(), 0.0) + 1e-9
@@ -69,6 +70,7 @@ def test_a_camera_at_12_hz_that_is_always_ready_misses_nothing():
 def test_exposures_that_come_while_the_last_one_is_made_are_missed_and_counted():
     clock = Clock()
     timer = ExposureTimer(clock)
+    timer.set_rate(RATE_HZ)
     assert timer.expose() == (0, 0)
     clock.now += 3.5 / 12
     assert timer.wait_s() < 0
@@ -80,6 +82,7 @@ def test_exposures_that_come_while_the_last_one_is_made_are_missed_and_counted()
 def test_exposures_before_an_order_are_not_missed():
     clock = Clock()
     timer = ExposureTimer(clock)
+    timer.set_rate(RATE_HZ)
     timer.expose()
     clock.now += 1.0
     timer.skip()
@@ -90,6 +93,7 @@ def test_exposures_before_an_order_are_not_missed():
 def test_time_goes_on_when_the_rate_is_changed():
     clock = Clock()
     timer = ExposureTimer(clock)
+    timer.set_rate(RATE_HZ)
     timer.expose()
     clock.now += 2.0
     timer.set_rate(50.0)
@@ -101,6 +105,48 @@ def test_time_goes_on_when_the_rate_is_changed():
     timer.delivered()
     timer.set_rate(0)
     assert timer.now() == pytest.approx(2.1, abs=1e-6)
+
+
+def test_where_nobody_is_ready_time_waits_and_it_never_runs_faster_than_the_clock():
+    clock = Clock()
+    timer = ExposureTimer(clock)
+    assert timer.expose() == (0, 0)
+    timer.delivered()
+    assert timer.wait_s() == pytest.approx(1 / 12)
+    clock.now += 3.0
+    assert timer.wait_s() < 0
+    assert timer.expose() == (1, 0)
+    assert timer.time_of(1) == pytest.approx(1 / 12)
+
+
+@pytest.mark.parametrize("rate", [0, 12])
+def test_a_pose_is_held_until_a_frame_of_it_was_dealt_with(scene, rate):
+    """However long that takes; then the next one is held."""
+    source = SimulatedSource(scene, clock=(clock := Clock()))
+    source.configure(SourceSettings(rate_hz=rate))
+    source.open()
+    try:
+        source.prepare("camera")
+        seen = [rest_of(source, clock) for _ in range(60)]
+        assert [rest for _, rest in seen] == [0] * 60
+        source.go_on(seen[3][0])
+        later = [rest_of(source, clock) for _ in range(60)]
+        assert later[-1][1] == 1
+        assert None in [rest for _, rest in later]
+        source.go_on(seen[5][0])  # said of the pose before: it does not count for this one
+        assert [rest_of(source, clock)[1] for _ in range(60)] == [1] * 60
+    finally:
+        source.close()
+
+
+def rest_of(source, clock):
+    """The next frame, 0.1 s later, and the pose that is held in it, None in a move."""
+    clock.now += 0.1
+    frame = None
+    while frame is None:
+        frame = source.read(0.01)
+        clock.now += 0.0 if frame is not None else 0.01
+    return frame, source._hand.seen[frame.index]
 
 
 def test_the_plate_rests_and_moves_without_a_jump(scene):
