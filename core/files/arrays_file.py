@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import io
 import math
+import re
 import zipfile
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 from tokenize import TokenError
@@ -21,13 +23,18 @@ from core.files.atomic import write_bytes
 from core.files.limits import LARGEST
 from core.files.reading import MISSING, read_bytes
 from core.image.stripes.centreline import Centreline
-from core.messages import Message, as_text, from_text
+from core.messages import Message, as_text, from_text, label
 
 Arrays = Mapping[str, NDArray[Any]]
 
 _KINDS = "biufU"
 """Numpy's letters of truth values, whole and real numbers, and texts."""
 _HEADS = {(1, 0): npy.read_array_header_1_0, (2, 0): npy.read_array_header_2_0}
+_KIND_WORDS = {
+    "f": label("real numbers"), "i": label("whole numbers"), "u": label("whole numbers"), "b": label("true or false"),
+    "U": label("texts"),
+}  # fmt: skip
+_NUMBER = re.compile(r"_[0-9]+$")
 _LAST_CHARACTER = 0x10FFFF
 _HALVES = (0xD800, 0xDFFF)
 """Of Unicode: its last character, and the codes that are halves of one in UTF-16."""
@@ -44,13 +51,56 @@ def write_arrays(path: Path, arrays: Arrays) -> None:
     write_bytes(path, data.getvalue())
 
 
-def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
-    """Read all arrays, of which `names` must be there.
+@dataclass(frozen=True, slots=True)
+class Member:
+    """What an array of a file must be.
+
+    Parameters
+    ----------
+    kinds
+        Numpy's letters of what it may hold; an array of nothing may be of any.
+    shape
+        Numbers, or names of numbers that are the same wherever they stand in the file; None: any number.
+    optional
+        Whether files of earlier versions, or of less, have none.
+    """
+
+    kinds: str
+    shape: tuple[int | str | None, ...] = ()
+    optional: bool = False
+
+
+Schema = Mapping[str, Member]
+"""What the arrays of a file must be, by their names; those whose names end in _0, _1 … stand there as name_*."""
+
+
+def real(*shape: int | str | None, optional: bool = False) -> Member:
+    """Real numbers, all of them finite."""
+    return Member("f", shape, optional)
+
+
+def whole(*shape: int | str | None, optional: bool = False) -> Member:
+    """Whole numbers."""
+    return Member("i", shape, optional)
+
+
+def truth(*shape: int | str | None, optional: bool = False) -> Member:
+    """True or false."""
+    return Member("b", shape, optional)
+
+
+def texts(*shape: int | str | None, optional: bool = False) -> Member:
+    """Texts; without a shape a single one."""
+    return Member("U", shape, optional)
+
+
+def read_arrays(path: Path, schema: Schema, *, todo: Message) -> Arrays:
+    """Read the arrays of `schema`; others are left out.
 
     Raises
     ------
     InputError
-        If the file is missing or damaged, lacks an array, or holds numbers that are not finite.
+        If the file is missing or damaged, lacks an array, or one is not what it must be, or not finite.
     """
     if not path.exists():
         raise InputError(MISSING, where=path, todo=todo)
@@ -60,23 +110,41 @@ def read_arrays(path: Path, names: Sequence[str], *, todo: Message) -> Arrays:
     except (zipfile.BadZipFile, ValueError, EOFError, OSError, KeyError, NotImplementedError, RuntimeError) as error:
         what = Message("file.no_whole_arrays", "this is no whole file of arrays ({reason})", reason=str(error))
         raise InputError(what, where=path, todo=todo) from error
-    for name in names:
-        if name not in arrays:
+    sizes: dict[str, int] = {}
+    for name in schema:
+        if name not in arrays and not schema[name].optional and not name.endswith("*"):
             raise InputError(_missing(name), where=path, todo=todo)
-    for name, array in arrays.items():
-        if array.dtype.kind == "f" and not (np.abs(array) <= min(LARGEST, float(np.finfo(array.dtype).max))).all():
-            what = Message("file.array_not_finite", "the array {name} holds values that are not finite", name=name)
-            raise InputError(what, where=path, todo=todo)
-    return arrays
+    known = {name: member for name in arrays if (member := schema.get(_NUMBER.sub("_*", name), schema.get(name)))}
+    for name, member in known.items():
+        if (wrong := _wrong(name, arrays[name], member, sizes)) is not None:
+            raise InputError(wrong, where=path, todo=todo)
+    return {name: arrays[name] for name in known}
 
 
-def whole_numbers(arrays: Arrays, name: str, path: Path, *, todo: Message) -> NDArray[np.int64]:
-    """A row of whole numbers among `arrays`; InputError if it is something else."""
-    array = arrays[name]
-    if array.ndim != 1 or array.dtype != np.int64:
-        what = Message("file.array_of_no_numbers", "the array {name} is no row of whole numbers", name=name)
-        raise InputError(what, where=path, todo=todo)
-    return array
+def _wrong(name: str, array: NDArray[Any], member: Member, sizes: dict[str, int]) -> Message | None:
+    """What is wrong with an array, if anything; `sizes` gathers the numbers that have names."""
+    if array.size and array.dtype.kind not in member.kinds:
+        return Message(
+            "file.array_kind", "the array {name} holds {found}, not {wanted}",
+            name=name, found=_KIND_WORDS[array.dtype.kind], wanted=_KIND_WORDS[member.kinds[0]],
+        )  # fmt: skip
+    wanted = tuple(sizes.get(one, one) if isinstance(one, str) else one for one in member.shape)
+    if len(wanted) != array.ndim or any(
+        isinstance(one, int) and one != found for one, found in zip(wanted, array.shape, strict=True)
+    ):
+        return wrong_shape(name, array, wanted)
+    sizes |= {one: found for one, found in zip(wanted, array.shape, strict=True) if isinstance(one, str)}
+    if array.dtype.kind == "f" and not (np.abs(array) <= min(LARGEST, float(np.finfo(array.dtype).max))).all():
+        return Message("file.array_not_finite", "the array {name} holds values that are not finite", name=name)
+    return None
+
+
+def wrong_shape(name: str, array: NDArray[Any], wanted: Sequence[int | str | None]) -> Message:
+    """The sentence for an array of another shape than `wanted`; None in it: any number."""
+    return Message(
+        "file.array_shape", "the array {name} has shape {shape}, not {wanted}",
+        name=name, shape=str(array.shape), wanted=" × ".join("n" if one is None else str(one) for one in wanted),
+    )  # fmt: skip
 
 
 def _members(data: bytes) -> dict[str, NDArray[Any]]:
@@ -151,17 +219,43 @@ def pack_centrelines(prefix: str, groups: Sequence[Sequence[Centreline]]) -> dic
     return packed
 
 
+def centreline_members(prefix: str, groups: str | int) -> Schema:
+    """What `pack_centrelines` packs of so many groups."""
+    pieces, points = f"{prefix} pieces", f"{prefix} points"
+    return {
+        f"{prefix}_counts": whole(groups),
+        f"{prefix}_lengths": whole(pieces),
+        f"{prefix}_correlation_px": real(pieces),
+        f"{prefix}_uv": real(points, 2),
+        f"{prefix}_normal": real(points, 2),
+        f"{prefix}_width": real(points),
+        f"{prefix}_strength": real(points),
+        f"{prefix}_sigma": real(points),
+        f"{prefix}_saturated": truth(points),
+        f"{prefix}_{_SINCE_LATER}": real(points, optional=True),
+    }
+
+
 def unpack_centrelines(prefix: str, arrays: Arrays) -> tuple[tuple[Centreline, ...], ...]:
     """The groups that `pack_centrelines` packed; KeyError or ValueError if the arrays do not fit together."""
-    ends = np.cumsum(arrays[f"{prefix}_lengths"])[:-1]
+    lengths, counts = arrays[f"{prefix}_lengths"], arrays[f"{prefix}_counts"]
+    check_parts(lengths, len(arrays[f"{prefix}_uv"]))
+    check_parts(counts, len(lengths))
+    ends = np.cumsum(lengths)[:-1]
     known = [name for name in _POINTS if name != _SINCE_LATER or f"{prefix}_{name}" in arrays]
     columns = {name: np.split(arrays[f"{prefix}_{name}"], ends) for name in known}
     pieces = [
         Centreline(**{name: column[i] for name, column in columns.items()}, correlation_px=correlation)
         for i, correlation in enumerate(arrays[f"{prefix}_correlation_px"].tolist())
     ]
-    starts = np.concatenate([[0], np.cumsum(arrays[f"{prefix}_counts"])])
+    starts = np.concatenate([[0], np.cumsum(counts)])
     return tuple(tuple(pieces[a:b]) for a, b in pairwise(starts.tolist()))
+
+
+def check_parts(lengths: NDArray[Any], total: int) -> None:
+    """ValueError unless parts of these lengths, end to end, are `total` long."""
+    if np.any(lengths < 0) or np.any(lengths > total) or int(lengths.sum()) != total:
+        raise ValueError(f"its parts do not make {total}")
 
 
 def pack_messages(messages: Sequence[Message | None]) -> NDArray[Any]:

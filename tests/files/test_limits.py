@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.arrays_file import read_arrays, write_arrays
+from core.files.arrays_file import read_arrays, real, texts, truth, whole, write_arrays
 from core.files.limits import DEPTH, PIXELS, check_depth
 from core.files.pictures import read_picture
 from core.files.reading import csv_rows, json_of, read_bytes, read_text, toml_of
@@ -108,25 +108,50 @@ def npz(path, *, declared, packed=zipfile.ZIP_STORED, data=b"\0" * 64):
 def test_arrays_that_declare_more_than_they_hold_are_refused(tmp_path, given, said):
     npz(tmp_path / "a.npz", **given)
     with pytest.raises(InputError, match=said):
-        read_arrays(tmp_path / "a.npz", ("a",), todo=NOTHING)
+        read_arrays(tmp_path / "a.npz", {"a": real(None)}, todo=NOTHING)
 
 
 def test_arrays_of_numbers_truths_and_texts_come_back(tmp_path):
     given = {
         "a": np.arange(6.0).reshape(2, 3).T, "b": np.array("ü"), "c": np.zeros((0, 2), np.int64), "d": np.array([True])
     }  # fmt: skip
+    schema = {"a": real("n", "m"), "b": texts(), "c": whole(None, "m"), "d": truth(1)}
     write_arrays(tmp_path / "a.npz", given)
-    back = read_arrays(tmp_path / "a.npz", tuple(given), todo=NOTHING)
+    back = read_arrays(tmp_path / "a.npz", schema, todo=NOTHING)
     for name, array in given.items():
         assert back[name].dtype == array.dtype
         assert np.array_equal(back[name], array)
+
+
+@pytest.mark.parametrize(
+    ("name", "array", "said"),
+    [
+        ("a", np.zeros((3, 2)), r"the array a has shape \(3, 2\), not n"),
+        ("a", np.zeros(4), r"the array b has shape \(3,\), not 4"),
+        ("a", np.array(["1", "2", "3"]), "the array a holds texts, not real numbers"),
+        ("a", np.array([1, 2, 3]), "the array a holds whole numbers, not real numbers"),
+        ("a", np.array([1.0, np.nan, 2.0]), "the array a holds values that are not finite"),
+        ("a", np.array([1.0, 1e100, 2.0]), "the array a holds values that are not finite"),
+        ("b", np.array([True, False, True]), "the array b holds true or false, not whole numbers"),
+        ("c_1", np.zeros((2, 3)), r"the array c_1 has shape \(2, 3\), not n × 2"),
+        ("b", None, "the array b is missing"),
+    ],
+)
+def test_an_array_that_is_not_what_it_must_be_is_told(tmp_path, name, array, said):
+    good = {"a": np.zeros(3), "b": np.arange(3), "c_0": np.zeros((5, 2)), "c_1": np.zeros((0, 2)), "more": np.zeros(9)}
+    schema = {"a": real("n"), "b": whole("n"), "c_*": real(None, 2), "d": texts(optional=True)}
+    write_arrays(tmp_path / "a.npz", good)
+    assert set(read_arrays(tmp_path / "a.npz", schema, todo=NOTHING)) == {"a", "b", "c_0", "c_1"}
+    write_arrays(tmp_path / "a.npz", {key: one for key, one in (good | {name: array}).items() if one is not None})
+    with pytest.raises(InputError, match=said):
+        read_arrays(tmp_path / "a.npz", schema, todo=NOTHING)
 
 
 @pytest.mark.parametrize("array", [np.zeros(2, complex), np.zeros(2, ">f8"), np.zeros(1, "V4")])
 def test_arrays_of_other_types_are_refused(tmp_path, array):
     write_arrays(tmp_path / "a.npz", {"a": array})
     with pytest.raises(InputError, match="an array is of type"):
-        read_arrays(tmp_path / "a.npz", ("a",), todo=NOTHING)
+        read_arrays(tmp_path / "a.npz", {"a": real(None)}, todo=NOTHING)
 
 
 def chunk(kind, data):

@@ -13,19 +13,42 @@ from core.calibrate.camera.views import SeenView, SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.arrays_file import (
     Arrays,
+    centreline_members,
+    check_parts,
     pack_centrelines,
     pack_messages,
     pack_texts,
     read_arrays,
+    real,
+    texts,
+    truth,
     unpack_centrelines,
     unpack_messages,
     unpack_texts,
     unpacking,
+    whole,
     write_arrays,
 )
 from core.image.targets.target_view import TargetView
 from core.messages import Command, Message, as_text, from_text
 
+_OF_VIEWS = {
+    "names": texts("pictures"),
+    "reasons": texts("pictures"),
+    "view_lengths": whole("pictures"),
+    "view_points": real("points", 3),
+    "view_uv": real("points", 2),
+    "view_sigma": real("points"),
+    "view_shares_errors": truth("pictures", optional=True),
+    "view_covariance": real(None, optional=True),
+}
+_VIEWS = {**_OF_VIEWS, "key": texts(), "where": texts(), "sizes": whole("pictures", 2)}
+_POSES = {
+    **_OF_VIEWS,
+    "fan_id": texts(),
+    "notes": texts("pictures", optional=True),
+    **centreline_members("stripe", "pictures"),
+}
 _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
 
 
@@ -52,7 +75,7 @@ def read_views(path: Path, key: str) -> SeenViews | None:
     """
     if not path.exists():
         return None
-    arrays = read_arrays(path, ("key", "names"), todo=_TODO)
+    arrays = read_arrays(path, _VIEWS, todo=_TODO)
     if str(arrays["key"]) != key:
         return None
     with unpacking(path, todo=_TODO):
@@ -94,7 +117,7 @@ def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
     """
     if not path.exists():
         return ()
-    arrays = read_arrays(path, ("fan_id", "names"), todo=_PLANES_TODO)
+    arrays = read_arrays(path, _POSES, todo=_PLANES_TODO)
     if str(arrays["fan_id"]) != fan_id:
         return ()
     with unpacking(path, todo=_PLANES_TODO):
@@ -134,7 +157,9 @@ def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:
 
 def unpack_views(names: Sequence[str], arrays: Arrays) -> tuple[TargetView | None, ...]:
     """The views that `pack_views` packed, under `names`; KeyError or ValueError if the arrays do not fit together."""
-    lengths = arrays["view_lengths"].tolist()
+    found = arrays["view_lengths"]
+    check_parts(found[found != _NO_VIEW], len(arrays["view_points"]))
+    lengths = found.tolist()
     sharing = arrays.get("view_shares_errors", np.zeros(len(lengths), dtype=np.bool_)).tolist()  # earlier versions
     views: list[TargetView | None] = []
     first = square = 0

@@ -12,7 +12,7 @@ from pydantic import BeforeValidator, Field
 
 from core import __version__
 from core.errors import InputError
-from core.files.arrays_file import read_arrays, whole_numbers, write_arrays
+from core.files.arrays_file import read_arrays, whole, write_arrays
 from core.files.atomic import write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
@@ -30,6 +30,9 @@ _TODO = Message(
     "measure the thickness first{command}",
     command=Command("trisect gauge SET --out DIR"),
 )
+
+
+_MEMBERS = {"upper": whole(None), "lower": whole(None)}
 
 
 class _Pair(ResultFile):
@@ -170,8 +173,8 @@ def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float, cloud: Cl
 
 def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:
     """Indices of the points of each face, checked against a cloud of `count` points."""
-    arrays = read_arrays(path, ("upper", "lower"), todo=_TODO)
-    members = {name: whole_numbers(arrays, name, path, todo=_TODO) for name in ("upper", "lower")}
+    arrays = read_arrays(path, _MEMBERS, todo=_TODO)
+    members = {name: np.asarray(arrays[name], dtype=np.int64) for name in _MEMBERS}
     for name, indices in members.items():
         if len(indices) and (indices.min() < 0 or indices.max() >= count):
             raise InputError(

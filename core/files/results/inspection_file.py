@@ -14,7 +14,7 @@ from pydantic import Field
 
 from core import __version__
 from core.errors import InputError
-from core.files.arrays_file import read_arrays, whole_numbers, write_arrays
+from core.files.arrays_file import read_arrays, real, whole, write_arrays
 from core.files.atomic import remove, write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
@@ -29,6 +29,14 @@ from core.messages import Command, Message
 NAME = "inspection.json"
 """Among the results of a scan."""
 SCHEMA = 1
+MEMBERS = {
+    "points_*": whole(None),
+    "residuals_*": real(None),
+    "profile_*": real(None, 2),
+    "deviation_*": real(None, 4),
+}
+"""What inspection.npz holds of each feature: indices in the cloud, residuals in mm, and of some a profile (position and
+height) or a comparison with a nominal surface (place and deviation)."""
 _TODO = Message(
     "advice.inspect_scan_first",
     "inspect the scan first{command}",
@@ -151,9 +159,9 @@ def read_inspection(path: Path) -> InspectionFile:
     tables = read_json(path, todo=_TODO)
     file = checked(_InspectionFile, tables, path)
     members = path.with_suffix(".npz")
-    arrays = read_arrays(members, (), todo=_TODO) if members.exists() else {}
+    arrays = read_arrays(members, MEMBERS, todo=_TODO) if members.exists() else {}
     points = {
-        feature.name: whole_numbers(arrays, f"points_{number}", members, todo=_TODO)
+        feature.name: np.asarray(arrays[f"points_{number}"], dtype=np.int64)
         for number, feature in enumerate(file.features)
         if f"points_{number}" in arrays
     }

@@ -16,15 +16,21 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.files.arrays_file import (
     Arrays,
+    centreline_members,
     pack_centrelines,
     pack_messages,
     pack_texts,
     read_arrays,
+    real,
+    texts,
+    truth,
     unpack_centrelines,
     unpack_messages,
     unpack_texts,
     unpacking,
+    whole,
     write_arrays,
+    wrong_shape,
 )
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.uncertainty.causes import CALIBRATIONS
@@ -44,6 +50,46 @@ _OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
 """Files of earlier versions call them as budgets do."""
 _SPECKLE = tuple(one.name for one in fields(FanSpeckle))
 _CROSSINGS = tuple(one.name for one in fields(CrossingTable))
+
+
+_MEMBERS = {
+    "calibration_id": texts(),
+    "features_key": texts(optional=True),
+    "image_size": whole(2),
+    "pis": real("sweeps", None),
+    "covariance": real("planes", "planes"),
+    "sweep_frames": whole("sweeps"),
+    "fan_line": whole("fan pieces"),
+    "shown": whole(),
+    "crossings_used": real(None, 2),
+    "frame_names": texts("frames"),
+    "frame_reasons": texts("frames"),
+    "frame_shift_px": real("frames"),
+    "notes": texts(None),
+    "stripes": real(2, 2),
+    "change_p": real(optional=True),
+    "doubt": texts(None, optional=True),
+    "frame_fan_shifts_px": real("frames", None, optional=True),
+    "frame_fan_known": truth("frames", optional=True),
+    "common_sources": texts(None, optional=True),
+    "common_cameras": real("displaced", 10, optional=True),
+    "common_fans": real("displaced", None, 3, optional=True),
+    "common_sweeps": real("displaced", None, None, optional=True),
+    "common_bends": real("displaced", None, 3, 3, optional=True),
+    "speckle_uv": real("speckle points", 2, optional=True),
+    "speckle_cell": whole("speckle points", optional=True),
+    "speckle_members": whole("cells", optional=True),
+    "speckle_first": whole("speckle points", optional=True),
+    "speckle_shares": real("speckle points", None, optional=True),
+    "speckle_covariance": real(None, "cells", optional=True),
+    "crossing_half_length_px": real(),
+    **{f"crossing_{name}": real("crossings", 2) for name in ("uv", "tangent_a", "tangent_b")},
+    **{f"crossing_{name}": real("crossings") for name in ("sigma_a", "sigma_b", "along_a", "along_b")},
+    **{f"crossing_{name}": whole("crossings") for name in ("a", "b", "piece_a", "piece_b", "cell_a", "cell_b")},
+    **{f"crossing_{name}": real("crossings", None) for name in ("share_a", "share_b")},
+    **centreline_members("fan", 1),
+    **centreline_members("sweep", "frames"),
+}
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -136,16 +182,12 @@ def read_scan(path: Path) -> ScanFile:
     InputError
         If it is missing, damaged, lacks an array, or holds values that are not finite or of a wrong shape.
     """
-    arrays = read_arrays(path, ("calibration_id", "pis", "covariance", "sweep_frames", "image_size"), todo=_TODO)
-    sweeps = len(arrays["sweep_frames"])
-    size = 3 * max(1, arrays["pis"].size // max(3 * sweeps, 1))
+    arrays = read_arrays(path, _MEMBERS, todo=_TODO)
+    sweeps, size = arrays["pis"].shape
+    size = 3 * max(1, size // 3)
     for name, shape in (("pis", (sweeps, size)), ("covariance", (size * sweeps, size * sweeps))):
         if arrays[name].shape != shape:
-            what = Message(
-                "file.array_shape", "the array {name} has shape {shape}, not {wanted}",
-                name=name, shape=str(arrays[name].shape), wanted=" × ".join(map(str, shape)),
-            )  # fmt: skip
-            raise InputError(what, where=path, todo=_TODO)
+            raise InputError(wrong_shape(name, arrays[name], shape), where=path, todo=_TODO)
     with unpacking(path, todo=_TODO):
         return _unpacked(arrays)
 

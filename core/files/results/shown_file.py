@@ -15,7 +15,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.files.arrays_file import Arrays, pack_texts, read_arrays, write_arrays
+from core.files.arrays_file import (
+    Arrays,
+    Member,
+    check_parts,
+    pack_texts,
+    read_arrays,
+    real,
+    texts,
+    whole,
+    write_arrays,
+)
 from core.files.json_text import to_json
 from core.files.reading import read_bytes, read_json
 from core.files.results.inspection_file import read_inspection
@@ -28,6 +38,17 @@ from core.messages import as_text, from_text, plain
 NAME = "shown.npz"
 """Among the results of a scan."""
 _PROFILE = ("position", "height", "mean_position", "mean_height", "mean_piece")
+_MEMBERS = {
+    "about": texts(1),
+    "places_*": real(None, 3),
+    "uv_*": real(None, 2),
+    **{f"{name}_*": real(None) for name in _PROFILE[:-1]},
+    **{f"{name}_*": whole(None) for name in (_PROFILE[-1], "classes", "drawn")},
+    "shares_*": real(None),
+    "deviating_*": real(None, 3),
+    "edges_*": real(None),
+    "counts_*": Member("if", (None,)),
+}
 
 
 def write_shown(inspection: Path, shown: ShownInspection) -> None:
@@ -69,7 +90,7 @@ def read_shown(inspection: Path, plan: Mapping[str, Any]) -> ShownInspection | N
     if read_json(inspection).get("plan") != json.loads(to_json(plan)):
         return None
     try:
-        arrays = read_arrays(path, ("about",), todo=plain(""))
+        arrays = read_arrays(path, _MEMBERS, todo=plain(""))
         about = json.loads(str(arrays["about"][0]))
         if about["of"] != _hash(inspection):
             return None
@@ -113,6 +134,7 @@ def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[
 
 
 def _deviations(number: int, tolerance_mm: float, arrays: Arrays) -> ShownDeviations:
+    check_parts(arrays[f"drawn_{number}"], len(arrays[f"deviating_{number}"]))
     ends = np.cumsum(arrays[f"drawn_{number}"])[:-1]
     places = np.split(arrays[f"deviating_{number}"], ends)
     numbers, shares = arrays[f"classes_{number}"].tolist(), arrays[f"shares_{number}"].tolist()

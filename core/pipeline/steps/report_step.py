@@ -23,7 +23,7 @@ from core.files.recording.rig import Rig, rig_to_toml
 from core.files.results.camera_file import camera_id
 from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_gauge
-from core.files.results.inspection_file import NAME, InspectionFile, read_inspection
+from core.files.results.inspection_file import MEMBERS, NAME, InspectionFile, read_inspection
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
@@ -334,7 +334,7 @@ def _deviations(path: Path, file: InspectionFile, camera: Camera) -> tuple[Devia
     compared = [(number, name) for number, (name, kind) in enumerate(file.kinds.items()) if kind == "deviation"]
     if not compared or not arrays_path.exists():
         return ()
-    arrays, plan = read_arrays(arrays_path, (), todo=_AGAIN), read_json(path).get("plan")
+    arrays, plan = read_arrays(arrays_path, MEMBERS, todo=_AGAIN), read_json(path).get("plan")
     shown = []
     for number, name in compared:
         table = arrays.get(f"deviation_{number}", np.zeros((0, 4)))
