@@ -51,6 +51,7 @@ from workbench.main_window import MainWindow
 from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.views import ask
+from workbench.views.stage_card import StageCard
 from workbench.work.process import WorkerProcess
 
 KEYS = (
@@ -146,6 +147,7 @@ class Monkey(QObject):
             self._click: 40, self._key: 12, self._go: 8, self._drag: 5, self._tab: 5, self._undo: 5, self._wheel: 4,
             self._resize: 2, self._theme: 1, self._cancel: 4, self._menu: 3, self._close_and_open: 1, self._type: 3,
         }  # fmt: skip
+        self._look_at_the_cards()
         deed = self.random.choices(list(deeds), list(deeds.values()))[0]
         self.played.deeds[deed.__name__.strip("_")] += 1
         self._depth += 1
@@ -153,6 +155,19 @@ class Monkey(QObject):
             deed()
         finally:
             self._depth -= 1
+
+    def _look_at_the_cards(self) -> None:
+        """A grey button says why; the one that is the next thing to do can be pressed, and is the only one."""
+        for card in self.window.findChildren(StageCard):
+            if not card.isVisible():
+                continue
+            buttons = [button for button in card.buttons.values() if button.isVisible()]
+            silent = [button.text() for button in buttons if not button.isEnabled() and not button.toolTip()]
+            if silent:
+                self.note(f"on the page {self.window.current} {silent} are grey and do not say why")
+            primary = [button for button in buttons if button.property("primary")]
+            if len(primary) > 1:
+                self.note(f"on the page {self.window.current} two buttons are the next thing to do")
 
     def _wait_until_left(self) -> None:
         """A recording is being ended: the window takes no input, for a moment."""

@@ -16,7 +16,7 @@ from workbench.language import tr
 from workbench.pages.calibration.acceptance import Acceptance
 from workbench.pages.calibration.current_picture import CurrentPicture
 from workbench.pages.calibration.history import StoredCalibrations
-from workbench.pages.calibration.stage import Facts, Stage, stage_of
+from workbench.pages.calibration.stage import Facts, Stage, WhyNot, buttons_of, stage_of
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.live.presenter import LivePresenter
@@ -109,21 +109,24 @@ class CalibrationPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the calibration is."""
-        work, project, accepted = self.work, self.project, self.acceptance.accepted
-        return stage_of(
-            Facts(
-                live=self.live.running,
-                searching=work.searching,
-                solving=work.found is not None and work.solving,
-                accepted=accepted,
-                candidate=self.candidate,
-                current=self._is_current(),
-                rejected=self.acceptance.is_rejected(self.candidate),
-                camera_missing=self.step == "planes" and not project.accepted.camera,
-                failed=bool(work.problem),
-                source=bool(getattr(project.sources, self.step)),
-                empty=work.pictures == (),
-            )
+        return stage_of(self._facts())
+
+    def _facts(self) -> Facts:
+        work, project = self.work, self.project
+        return Facts(
+            live=self.live.running,
+            searching=work.searching,
+            solving=work.solving,
+            accepted=self.acceptance.accepted,
+            candidate=self.candidate,
+            current=self._is_current(),
+            rejected=self.acceptance.is_rejected(self.candidate),
+            camera_missing=self.step == "planes" and not project.accepted.camera,
+            failed=bool(work.problem),
+            source=bool(getattr(project.sources, self.step)),
+            empty=work.pictures == (),
+            calibration=work.calibration is not None,
+            keeping=self.acceptance.keeping,
         )
 
     @property
@@ -137,37 +140,31 @@ class CalibrationPresenter(StepPresenter):
     @property
     def can_search(self) -> str:
         """Why the pictures cannot be searched now, or ""."""
-        if self.live.running:
-            return tr("Stop the live source first.")
-        if self.step == "planes" and not self.project.accepted.camera:
-            return tr("Accept a camera calibration first.")
-        if not getattr(self.project.sources, self.step):
-            return tr("Choose or record pictures first.")
-        if self.work.searching or self.work.solving:
-            return self._missing()[Stage.SEARCHING if self.work.searching else Stage.SOLVING]
-        return ""
+        return self._sentence(buttons_of(self._facts()).run)
 
     @property
     def can_accept(self) -> str:
         """Why nothing can be accepted now, or ""."""
-        if self.live.running:
-            return tr("Stop the live source first.")
-        if self.work.calibration is None or self.work.solving or self.acceptance.keeping:
-            return tr("There is no calibration yet.")
-        if self.candidate == self.acceptance.accepted and self._is_current():
-            return self._accepted_already()
-        return ""
+        return self._sentence(buttons_of(self._facts()).accept)
 
     @property
     def can_reject(self) -> str:
         """Why nothing can be rejected now, or ""."""
-        if self.live.running:
-            return tr("Stop the live source first.")
-        if not self.candidate or self.work.solving:
-            return tr("There is no calibration yet.")
-        if self.acceptance.is_rejected(self.candidate) and self.candidate != self.acceptance.accepted:
-            return tr("This calibration is rejected already.")
-        return ""
+        return self._sentence(buttons_of(self._facts()).reject)
+
+    def _sentence(self, why: WhyNot) -> str:
+        missing = self._missing()
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.LIVE: tr("Stop the live source first."),
+            WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
+            WhyNot.NO_SOURCE: tr("Choose or record pictures first."),
+            WhyNot.SEARCHING: missing[Stage.SEARCHING],
+            WhyNot.SOLVING: missing[Stage.SOLVING],
+            WhyNot.NO_CALIBRATION: tr("There is no calibration yet."),
+            WhyNot.ACCEPTED: self._accepted_already(),
+            WhyNot.REJECTED: tr("This calibration is rejected already."),
+        }[why]
 
     # ---- pictures
 

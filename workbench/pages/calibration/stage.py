@@ -1,4 +1,4 @@
-"""How far a calibration is, told by plain facts: one rule for the camera's and the laser planes'."""
+"""How far a calibration is and what can be done, told by plain facts: one rule for camera and laser planes."""
 
 from __future__ import annotations
 
@@ -24,6 +24,28 @@ class Stage(StrEnum):
     OTHER = "other"
 
 
+class WhyNot(StrEnum):
+    """Why something cannot be done now; nothing: it can."""
+
+    NOTHING = ""
+    LIVE = "live"
+    NO_CAMERA = "no camera"
+    NO_SOURCE = "no source"
+    SEARCHING = "searching"
+    SOLVING = "solving"
+    NO_CALIBRATION = "no calibration"
+    ACCEPTED = "accepted"
+    REJECTED = "rejected"
+
+
+class Buttons(NamedTuple):
+    """Why each button is grey."""
+
+    run: WhyNot
+    accept: WhyNot
+    reject: WhyNot
+
+
 class Facts(NamedTuple):
     """What the stage rests on."""
 
@@ -31,7 +53,7 @@ class Facts(NamedTuple):
     """Pictures are being taken."""
     searching: bool
     solving: bool
-    """What the pictures show is known, and is being solved."""
+    """What the pictures show is being solved."""
     accepted: str
     """Id of the accepted calibration, or ""."""
     candidate: str
@@ -47,6 +69,10 @@ class Facts(NamedTuple):
     """A folder of pictures is chosen."""
     empty: bool
     """It holds no pictures."""
+    calibration: bool
+    """There is one that could be accepted."""
+    keeping: bool
+    """It is being put into the project."""
 
 
 def stage_of(facts: Facts) -> Stage:
@@ -70,3 +96,36 @@ def stage_of(facts: Facts) -> Stage:
     if not facts.source:
         return Stage.NONE
     return Stage.EMPTY if facts.empty else Stage.FOUND
+
+
+def buttons_of(facts: Facts) -> Buttons:
+    """What can be done."""
+    return Buttons(_run(facts), _accept(facts), _reject(facts))
+
+
+def _run(facts: Facts) -> WhyNot:
+    if facts.live:
+        return WhyNot.LIVE
+    if facts.camera_missing:
+        return WhyNot.NO_CAMERA
+    if not facts.source:
+        return WhyNot.NO_SOURCE
+    if facts.searching:
+        return WhyNot.SEARCHING
+    return WhyNot.SOLVING if facts.solving else WhyNot.NOTHING
+
+
+def _accept(facts: Facts) -> WhyNot:
+    if facts.live:
+        return WhyNot.LIVE
+    if not facts.calibration or facts.solving or facts.keeping:
+        return WhyNot.NO_CALIBRATION
+    return WhyNot.ACCEPTED if facts.candidate == facts.accepted and facts.current else WhyNot.NOTHING
+
+
+def _reject(facts: Facts) -> WhyNot:
+    if facts.live:
+        return WhyNot.LIVE
+    if not facts.candidate or facts.solving:
+        return WhyNot.NO_CALIBRATION
+    return WhyNot.REJECTED if facts.rejected and facts.candidate != facts.accepted else WhyNot.NOTHING
