@@ -14,6 +14,7 @@ from typing import Any
 import cv2
 import numpy as np
 
+from core.calibrate.camera.views import SeenView, SeenViews
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import compression_of, read_picture
@@ -23,8 +24,9 @@ from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project
 from core.files.project.lock import held_by, take_lock
 from core.files.project.packing import pack_project, unpack_project
+from core.files.project.people import Rules, person, read_rules, write_rules
 from core.files.project.report_template import read_report_template
-from core.files.recording.features_file import read_poses
+from core.files.recording.features_file import read_poses, read_views, write_views
 from core.files.recording.import_plan import _taken_at
 from core.files.recording.recording_log import read_log
 from core.files.recording.rig import read_rig
@@ -87,11 +89,13 @@ READERS = {
     "scenario": Reader("scenario.toml", Scenario.read),
     "project": Reader("project/project.json", read_project),
     "audit": Reader("project/audit.jsonl", lambda path: read_trail(path.parent)),
+    "people": Reader("project/people.json", lambda path: read_rules(path.parent)),
     "lock": Reader("project/.lock.json", lambda path: held_by(path.parent)),
     "packed": Reader("packed.trisectz", _packed),
     "camera": Reader("camera.json", read_camera),
     "planes": Reader("planes.json", lambda path: read_fan(path, _camera(path))),
     "poses": Reader("planes.npz", _poses),
+    "views": Reader("views.npz", lambda path: read_views(path, "key")),
     "scan": Reader("scan.npz", read_scan),
     "gauge": Reader("gauge.json", lambda path: read_gauge(path, read_cloud(path.with_name("cloud.ply")).cloud)),
     "thickness": Reader("gauge.json", read_thickness),
@@ -163,6 +167,10 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     create_project(folder / "project", ProjectFile(new_project("a")))
     pack_project(folder / "project", folder / "packed.trisectz")
     take_lock(folder / "project")
+    write_rules(folder / "project", Rules((person("Anna", "administrator", "anna-1"),), reasons=True))
+    poses = _poses(folder / "planes.npz")
+    seen = tuple(SeenView(pose.name, pose.view, None, (1024, 768)) for pose in poses)
+    write_views(folder / "views.npz", "key", SeenViews(seen, "camera"))
     mesh = read_mesh(folder / "mesh.ply")
     write_stl(folder / "part.stl", mesh)
     data = (folder / "cloud.ply").read_bytes()
