@@ -15,6 +15,7 @@ import cv2
 import numpy as np
 
 from core.calibrate.camera.views import SeenView, SeenViews
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import compression_of, read_picture
@@ -58,7 +59,7 @@ class Reader:
     read: Callable[[Path], Any]
 
 
-def _poses(path: Path) -> object:
+def _poses(path: Path) -> tuple[PoseFeatures, ...]:
     return read_poses(path, fan_id(read_fan(path.with_name("planes.json"), _camera(path)).fan))
 
 
