@@ -10,6 +10,7 @@ from typing import Any
 
 import cv2
 from matplotlib.figure import Figure
+from PIL import Image
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 
@@ -89,10 +90,9 @@ def _study_figure(look: ReportLook, study: Mapping[str, Any], width: float) -> F
 
 def image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:
     """A drawn figure, compressed without loss, or as JPEG with full colour resolution where it holds a photograph."""
-    bgr = figures.pixels(figure, decimal)[:, :, ::-1]
-    if photo:
-        how = [cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
-        _, data = cv2.imencode(".jpg", bgr, how)
-    else:
-        _, data = cv2.imencode(".png", bgr)
+    rgb = figures.pixels(figure, decimal)
+    if not photo:
+        return ImageReader(Image.fromarray(rgb))
+    how = [cv2.IMWRITE_JPEG_QUALITY, 93, cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_444]
+    _, data = cv2.imencode(".jpg", rgb[:, :, ::-1], how)
     return ImageReader(io.BytesIO(data.tobytes()))

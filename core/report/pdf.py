@@ -11,6 +11,7 @@ from typing import Any
 from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
+from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
 
 from core.progress import Progress, StepProgress, silent
@@ -30,6 +31,7 @@ from core.report.layout.style import (
     markup,
     prepare_reportlab,
 )
+from core.report.plots.figures import new_figure
 from core.report.sections.head import TITLE
 from core.report.sections.standard import story
 from core.report.template import Paper
@@ -59,6 +61,14 @@ LIMITS = (
     Limits(inputs=3, budgets=2, reasons=1, names=1, notes=2, settings=4, repeats=10, picture_scale=0.72),
 )
 """Tried in this order until the report has no more pages than it may."""
+
+
+def prepare() -> None:
+    """Load fonts and draw once: what takes time before a first report, and none before later ones."""
+    prepare_reportlab()
+    figure = new_figure(20, 20)
+    figure.add_axes((0.2, 0.2, 0.7, 0.7)).set_title("1")
+    image(figure, photo=False, decimal=".")
 
 
 def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
@@ -91,16 +101,14 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     for step_limits in LIMITS:
         progress(step, total - 2, total)
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
-        # most often it fills just what it may, and the foot of each page is right the first time
         longest = None if step_limits is LIMITS[-1] else most_pages
         try:
-            pages, data = _typeset(look, content, pictures, limits, most_pages, longest)
+            pages, _ = _typeset(look, content, pictures, limits, most_pages, longest, _Trial)
         except _TooLongError:
             continue
         break
     progress(step, total - 1, total)
-    if pages != most_pages:
-        _, data = _typeset(look, content, pictures, limits, pages)
+    _, data = _typeset(look, content, pictures, limits, pages)
     progress(step, total, total)
     return data
 
@@ -129,6 +137,13 @@ def _page_room(paper: Paper) -> float:
     return float(PAGE_SIZES[paper][1] - HEAD - FOOT)
 
 
+class _Trial(Canvas):  # type: ignore[misc]
+    """A canvas that leaves pictures out: to learn how many pages there are, they need not be compressed."""
+
+    def drawImage(self, *_: Any, **__: Any) -> None:
+        """Paint nothing."""
+
+
 class _TooLongError(Exception):
     """A report has begun a page more than it may have."""
 
@@ -140,6 +155,7 @@ def _typeset(
     limits: Limits,
     pages: int,
     most_pages: int | None = None,
+    canvas_kind: type[Canvas] = Canvas,
 ) -> tuple[int, bytes]:
     """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says.
 
@@ -184,7 +200,7 @@ def _typeset(
         _foot(canvas, look, content, pages, margin)
 
     document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
-    document.build(story(look, content, pictures, limits))
+    document.build(story(look, content, pictures, limits), canvasmaker=canvas_kind)
     return document.page, stream.getvalue()
 
 

@@ -108,9 +108,9 @@ def surface_picture(
         reach = int(np.clip(0.35 * np.sqrt(rows * width_px / len(corners)), 1, 6))
         _splat_points(corners, reach, layers)
     progress("surface", 1, 2)
-    shade = layers[2] * _edges(layers[0], scale)
+    layers[2] *= _edges(layers[0], scale)
     progress("surface", 2, 2)
-    return SurfacePicture(layers[1], shade, extent)
+    return SurfacePicture(layers[1], layers[2], extent)
 
 
 def _extent(seen: Array, aspect: float) -> tuple[float, float, float, float]:
@@ -146,8 +146,9 @@ def _edges(depth: Array, scale: float) -> Array:
         reach = max(1, round(share * len(depth)))
         around = cv2.blur(filled, (2 * reach + 1, 2 * reach + 1))
         shade += np.clip((around - filled) * scale / (6.0 * reach), 0.0, 1.0) / 2
-    darkening: Array = 1.0 - 0.5 * shade.astype(np.float64)
-    return darkening
+    darkening = shade.astype(np.float64)
+    darkening *= 0.5
+    return np.subtract(1.0, darkening, out=darkening)
 
 
 @compiled()
