@@ -15,8 +15,8 @@ IDLE_EVERY_S = 0.2
 """Time in s between calls of `idle` while a result is waited for: a job is cancelled within this."""
 MOST_WORKERS = 4
 """Threads that are used unless more are asked for: decoding and filtering gain little by more."""
-READ_AHEAD = 2
-"""Items for each worker that are begun before their turn."""
+READ_AHEAD = 1
+"""Items for each worker that are begun before their turn: each may hold a picture."""
 
 
 def ordered_map(
@@ -27,7 +27,7 @@ def ordered_map(
 ) -> Iterator[Result]:
     """Apply `function` to `items` in threads, yielding results in the order of the items.
 
-    At most two items per worker are read ahead, so memory does not grow with their number. Pictures are decoded and
+    At most one item per worker is read ahead, so memory does not grow with their number. Pictures are decoded and
     filtered outside Python's lock; so threads help. An exception is raised at its item's turn.
     While a result is waited for, `idle` is called now and then, on the caller's thread; when it raises, what is under
     way is left to end by itself.

@@ -15,8 +15,9 @@ EMVA 1288, release 4.0: photon transfer from pairs of pictures.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Final
+from typing import Any, Final
 
 import cv2
 import numpy as np
@@ -122,7 +123,7 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
     `read_grey` is the scatter of the background.
     """
     residual = np.asarray(cv2.filter2D(picture, cv2.CV_32F, _MASK), dtype=np.float32)
-    level, variance, quiet = _tile_statistics(picture, residual, ignore)
+    level, variance, quiet = _tile_statistics((picture,), residual, ignore)
     middle = float(np.median(level)) if level.size else 0.0
     noise = free_of_structure(_photon_transfer(level, variance), _photon_transfer(level, quiet), middle)
     flat = _flat_places(picture, ignore)
@@ -144,29 +145,36 @@ def estimate_noise_of_pair(
     """
     if first.shape != second.shape:
         raise ValueError(f"the pictures of a pair differ in size: {first.shape} and {second.shape}")
-    difference = (first - second) / np.float32(np.sqrt(2))
-    residual = np.asarray(difference - cv2.blur(difference, (_BACKGROUND_PX, _BACKGROUND_PX)), dtype=np.float32)
-    level, variance, _ = _tile_statistics((first + second) / np.float32(2), residual, ignore)
+    difference = first - second  # one picture of floats at a time: each is as large as four of a camera's
+    difference /= np.float32(np.sqrt(2))
+    difference -= cv2.blur(difference, (_BACKGROUND_PX, _BACKGROUND_PX))
+    level, variance, _ = _tile_statistics((first, second), difference, ignore)
     return _photon_transfer(level, variance)
 
 
 def _tile_statistics(
-    picture: NDArray[np.float32], residual: NDArray[np.float32], ignore: NDArray[np.bool_] | None
+    pictures: Sequence[NDArray[np.float32]], residual: NDArray[np.float32], ignore: NDArray[np.bool_] | None
 ) -> tuple[Array, Array, Array]:
-    """Mean level, variance of the residual, and that by its quieter quarter, one value a tile."""
-    rows, columns = (size // _TILE for size in picture.shape)
+    """Mean level of one picture or two, variance of the residual, and that by its quieter quarter, one value a tile."""
+    rows, columns = (size // _TILE for size in residual.shape)
     if rows == 0 or columns == 0:
         return np.zeros(1), np.array([float(np.var(residual))]), np.array([float(np.var(residual))])
 
-    def tiles(values: NDArray[np.generic]) -> NDArray[np.generic]:
+    def tiles(values: NDArray[Any]) -> NDArray[Any]:
         whole = values[: rows * _TILE, : columns * _TILE].reshape(rows, _TILE, columns, _TILE)
-        return whole.transpose(0, 2, 1, 3).reshape(rows * columns, _TILE * _TILE)
+        return whole.transpose(0, 2, 1, 3)
 
     stride = max(1, rows * columns // _MOST_TILES)
-    keep = np.ones(rows * columns, dtype=bool) if ignore is None else ~np.any(tiles(ignore), axis=1)
+    keep = np.ones(rows * columns, dtype=bool) if ignore is None else ~tiles(ignore).any(axis=(2, 3)).ravel()
     keep &= np.arange(keep.size) % stride == 0
-    level = np.asarray(tiles(picture)[keep], dtype=np.float64).mean(axis=1)
-    deviation = np.asarray(tiles(residual)[keep], dtype=np.float64)
+    kept = np.nonzero(keep.reshape(rows, columns))
+
+    def of_kept(values: NDArray[np.float32]) -> NDArray[np.float32]:
+        return tiles(values)[kept].reshape(-1, _TILE * _TILE)
+
+    mean = sum(map(of_kept, pictures[1:]), of_kept(pictures[0])) / np.float32(len(pictures))
+    level = np.asarray(mean, dtype=np.float64).mean(axis=1)
+    deviation = np.asarray(of_kept(residual), dtype=np.float64)
     if not len(deviation):
         return level, np.zeros(0), np.zeros(0)
     quarter = deviation.shape[1] // 4

@@ -31,6 +31,9 @@ SYSTEMATIC_SMOOTHED_PX = 0.015
 """What the pixels' phase leaves on perfect, sharp pictures, RMS per coordinate in windows of 23 pixels: as taken, and
 smoothed by 1 px. It grows with the root of a smaller window."""
 
+AT_A_TIME = 16
+"""Corners whose windows are looked at together: those of all of them would be many times the picture."""
+
 
 def spacing(grid: Array) -> Array:
     """Distance (R, C) in pixels from each corner of `grid` (R, C, 2) to its nearest neighbour."""
@@ -211,6 +214,12 @@ def corner_sigma(picture: Picture, corners: Array, half: int, noise: float, smoo
     smoothing
         σ in pixels of the Gaussian that `picture` was smoothed with.
     """
+    some = range(0, len(corners), AT_A_TIME)
+    parts = [_corner_sigma(picture, corners[k : k + AT_A_TIME], half, noise, smoothing) for k in some]
+    return np.concatenate([np.zeros(0), *parts])
+
+
+def _corner_sigma(picture: Array, corners: Array, half: int, noise: float, smoothing: float) -> Array:
     margin = 2 + round(3 * smoothing)
     span = np.arange(-half - margin, half + margin + 1)
     base = np.rint(corners).astype(int)

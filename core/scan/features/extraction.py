@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
-from itertools import chain
 
 import cv2
 import numpy as np
@@ -151,7 +150,7 @@ def extract_lines(
     sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.within_step)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times)
     found: list[FrameFeatures] = []
-    numbered = enumerate(chain(ahead, stream))
+    numbered = enumerate(_handed_on(ahead, stream))
     for features in ordered_map(reader, numbered, idle=lambda: told.within_step("frames", 0, total)):
         progress("frames", len(found), total)
         found.append(features)
@@ -215,6 +214,13 @@ def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
         if not wanted:
             break
     return ahead
+
+
+def _handed_on(ahead: list[Frame], frames: Iterator[Frame]) -> Iterator[Frame]:
+    """The frames that were looked at ahead, each forgotten as it is handed on, and the others."""
+    while ahead:
+        yield ahead.pop(0)
+    yield from frames
 
 
 def choose_sweep_stripe(

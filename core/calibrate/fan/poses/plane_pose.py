@@ -151,7 +151,8 @@ def _stripes(
         common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
         one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
         noise = replace(one, compression=compression).of_difference(common)
-        picture = picture - without
+        picture -= without
+        del without  # as large as four pictures of a camera, and so is each float picture that follows
     around = picture[_window(view, picture.shape, margin=1.0)]
     chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
     if chosen is None:
