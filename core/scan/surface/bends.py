@@ -12,7 +12,8 @@ on top, where the picture sees it as anything but one.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
+from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,6 +25,7 @@ from core.model.robust import MAD_TO_SD, TUKEY, tukey_weights
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fusion import fuse
 from core.scan.surface.normals import pixel_angle
+from core.threads import ordered_map
 
 # Nodes and their neighbours. Held by tests/scan/surface/test_bends.py on a ball, a cylinder and a flat face.
 NODES_ACROSS = 320
@@ -50,6 +52,8 @@ SIGNIFICANT = 2.0
 """Standard uncertainties below which a bend is none."""
 LARGEST_BEND = 2.0
 """Curvature times reach: what bends more is an edge, or a ball no larger than what it is fitted to."""
+AT_A_TIME = 1000
+"""Nodes, about, that one thread fits at a time."""
 OFF_SURFACE_MM = 0.5
 """Distance in mm from a node's quadric beyond which a point is on another surface."""
 
@@ -125,7 +129,17 @@ class _Quadrics:
 
     @classmethod
     def over(cls, axis: Array, away: Array, taper: Array, sigma: Array, seen: Array) -> _Quadrics:
-        """Fits over planes square to `axis` (M, 3) to neighbours that lie `away` (M, K, 3); `sigma` of their depth."""
+        """Fits over planes square to `axis` (M, 3) to neighbours that lie `away` (M, K, 3); `sigma` of their depth.
+
+        Several at a time: each node is fitted by itself.
+        """
+        edges = np.linspace(0, len(axis), max(1, len(axis) // AT_A_TIME) + 1).astype(np.int64)
+        parts = [slice(first, last) for first, last in pairwise(edges.tolist())]
+        fits = tuple(ordered_map(lambda p: cls._of(axis[p], away[p], taper[p], sigma[p], seen[p]), parts))
+        return cls(*(np.concatenate([getattr(fit, one.name) for fit in fits]) for one in fields(cls)))
+
+    @classmethod
+    def _of(cls, axis: Array, away: Array, taper: Array, sigma: Array, seen: Array) -> _Quadrics:
         first, second = np.moveaxis(square_to(axis), 2, 0)
         xi, eta, height = (np.einsum("mki,mi->mk", away, to) for to in (first, second, axis))
         design = np.stack([np.ones_like(xi), xi, eta, xi**2 / 2, xi * eta, eta**2 / 2], axis=2)
