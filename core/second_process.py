@@ -22,6 +22,7 @@ from queue import SimpleQueue
 from typing import Any, BinaryIO, Protocol, TypeVar
 
 from core.errors import InputError
+from core.memory import give_back
 from core.messages import Message
 from core.progress import Progress, silent
 from core.stage_times import StageTimes
@@ -82,15 +83,17 @@ class SecondProcess:
         """
         return self._calls.submit(self._done, call, item, progress)
 
-    def wait(self, future: Future[Result], progress: Progress) -> Result:
-        """The result of a future of `submit`; meanwhile `progress` hears how far the process is, and may cancel."""
-        return result_of(future, lambda: progress(*self._told) if self._told else None)
+    def wait(self, future: Future[Result], progress: Progress, step: str) -> Result:
+        """The result of a future of `submit`; meanwhile `progress` hears how far the process is, and may cancel.
+
+        `step` is what it hears where the process tells nothing.
+        """
+        return result_of(future, lambda: progress(*(self._told or (step, 0, 1))))
 
     def _done(self, call: Call[Item, Result], item: Item, progress: Progress) -> Result:
         assert self._process.stdin is not None and self._process.stdout is not None
-        body = pickle.dumps((call, item), pickle.HIGHEST_PROTOCOL)
         try:
-            _send(self._process.stdin, body)
+            _send(self._process.stdin, pickle.dumps((call, item), pickle.HIGHEST_PROTOCOL))
             while True:
                 kind, value = pickle.loads(_receive(self._process.stdout))
                 if kind != "told":
@@ -192,15 +195,20 @@ def _serve(modules: Sequence[str]) -> None:
     for module in modules:
         import_module(module)
     while True:
-        body = calls.get()
-        told = StageTimes(_Telling(answers))
-        try:
-            call, item = pickle.loads(body)
-            answer = "done", (call(item, progress=told), told.seconds())
-            body = pickle.dumps(answer, pickle.HIGHEST_PROTOCOL)
-        except Exception as error:  # noqa: BLE001  (raised again by who asked for the call)
-            body = pickle.dumps(("raised", (_movable(error), told.seconds())))
-        _send(answers, body)
+        _send(answers, _answer(calls.get(), _Telling(answers)))
+        give_back()  # nothing is kept while the next call is waited for
+
+
+def _answer(body: bytes, progress: Progress) -> bytes:
+    """Do a call; what is to be sent for it."""
+    told = StageTimes(progress)
+    try:
+        call, item = pickle.loads(body)
+        del body  # both may be large
+        answer = "done", (call(item, progress=told), told.seconds())
+        return pickle.dumps(answer, pickle.HIGHEST_PROTOCOL)
+    except Exception as error:  # noqa: BLE001  (raised again by who asked for the call)
+        return pickle.dumps(("raised", (_movable(error), told.seconds())))
 
 
 class _Telling:

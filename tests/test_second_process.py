@@ -49,6 +49,10 @@ def tell_and_sleep(item, /, *, progress=silent):
     time.sleep(item)
 
 
+def sleep(item, /, *, progress=silent):
+    time.sleep(item)
+
+
 def work(seconds, /, *, progress=silent):
     progress("poses", 0, 1)
     until = time.process_time() + seconds
@@ -98,15 +102,27 @@ def test_what_a_call_prints_is_no_answer(beside):
 def test_while_it_works_the_first_process_hears_how_far_it_is_and_can_cancel(beside):
     heard = []
 
-    def progress(*told):
+    def until_told(*told):
         heard.append(told)
+        if told != ("scan", 0, 1):
+            raise Cancelled
+
+    began = time.perf_counter()
+    with pytest.raises(Cancelled):
+        beside.wait(beside.submit(tell_and_sleep, 60), until_told, "scan")
+    assert time.perf_counter() - began < SOON_S
+    assert heard[-1] == ("frames", 3, 48)
+
+
+def test_who_waits_for_a_call_that_tells_nothing_can_cancel(beside):
+    def progress(*told):
+        assert told == ("scan", 0, 1)
         raise Cancelled
 
     began = time.perf_counter()
     with pytest.raises(Cancelled):
-        beside.wait(beside.submit(tell_and_sleep, 60), progress)
+        beside.wait(beside.submit(sleep, 60), progress, "scan")
     assert time.perf_counter() - began < SOON_S
-    assert heard == [("frames", 3, 48)]
 
 
 def test_what_it_costs_is_booked_to_the_stages(beside):

@@ -86,12 +86,14 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
     seen = _looking(found, options, progress, beside)
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress, beside)
-    if beside is not None:
-        beside.submit(prepare_report, None)
     check = measure_check(found, camera.camera, options, progress, beside) if found.check else None
     if check is not None:
         check_step(work, options, progress, poses=check)
-    measured = scan_step(work, options, progress, check=check, seen=seen)
+    if beside is not None:
+        beside.submit(prepare_report, None)
+    measured = scan_step(work, options, progress, check=check, seen=seen, beside=beside)
+    frames, points, triangles = measured.scan.frames, len(measured.scan.cloud), len(measured.mesh.triangles)
+    del seen, measured  # all else of it lies in the files
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
     asked = found.rig.gauge is not None
     gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]
@@ -99,9 +101,9 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
     return RunResult(
         camera=camera,
         fan=fan,
-        frames=measured.scan.frames,
-        points=len(measured.scan.cloud),
-        triangles=len(measured.mesh.triangles),
+        frames=frames,
+        points=points,
+        triangles=triangles,
         gauge=gauge,
         notes=work.record().all_notes,
         files=work.written(),
@@ -115,4 +117,4 @@ def _looking(
     if beside is None:
         return None
     seen = beside.submit(look_at_scan, (replace(found, hashes={}, chosen={}), options), progress)
-    return lambda: beside.wait(seen, progress)
+    return lambda: beside.wait(seen, progress, "frames")

@@ -26,6 +26,7 @@ def beside(monkeypatch):
         yield process
 
 
+@pytest.mark.accuracy
 def test_alone_and_with_a_second_process_the_results_are_the_same_bytes(tiny_set, beside, tmp_path):
     heard = []
     run(tiny_set, tmp_path / "alone", COARSE)

@@ -6,7 +6,6 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -84,14 +83,16 @@ def report_step(
         if beside is None:
             data = draw_report(content, progress=progress)
         else:
-            data = beside.wait(beside.submit(draw_report, content, progress), progress)
+            data = beside.wait(beside.submit(draw_report, content, progress), progress, "report")
         write_bytes(log.path("report"), data)
     return work.path("report")
 
 
 def prepare_report(_: object, /, *, progress: Progress = silent) -> None:
-    """Import what draws and typesets a report, for a process that has nothing else to do meanwhile."""
-    import_module("core.report.pdf")
+    """Make ready what draws and typesets a report, for a process that has nothing else to do meanwhile."""
+    from core.report.pdf import prepare
+
+    prepare()
 
 
 def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> bytes:

@@ -36,10 +36,12 @@ from core.scan.preview.shown import FramePreview
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.scan_evidence import scan_evidence
+from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
 from core.scan.surface.normals import with_normals
+from core.second_process import SecondProcess
 from core.stage_times import StageTimes, stage
 
 
@@ -59,6 +61,7 @@ def scan_step(
     earlier: Path | None = None,
     check: Sequence[PoseFeatures] | None = None,
     seen: Callable[[], SeenScan] | None = None,
+    beside: SecondProcess | None = None,
 ) -> Measured:
     """Measure the surface with the calibration in camera.json and planes.json.
 
@@ -75,6 +78,8 @@ def scan_step(
         The poses of the interim check, if they have been measured.
     seen
         Gives what the pictures show, if they are looked at already; there is nothing to watch then.
+    beside
+        A second process that takes the surface over.
 
     Raises
     ------
@@ -96,11 +101,12 @@ def scan_step(
         log.settings.update(found.laser_channel("scan").settings)
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
         even, scan = reconstruct_twice(features, camera, fan, solving, progress)
+        shaped = _begin((scan.cloud, camera.image_size), progress, beside)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
         change = since_calibration(found, calibration, options, progress, of_scan, check)
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
-        cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
-        scan = replace(scan, cloud=with_normals(cloud, progress=progress))
+        cloud, mesh = shaped()
+        scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
         doubt = MOVED_WITHIN if scan.moved else doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
@@ -109,12 +115,28 @@ def scan_step(
         left_out = left_out_notes(scan.frames)
         log.notes.extend((*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes))
         log.notes.extend(_lost(found))
-        surface = with_normals(fuse(scan.cloud, camera.image_size, progress=progress), progress=progress)
-        mesh = build_mesh(surface, progress=progress)
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
             _write(log, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
     return Measured(scan, mesh)
+
+
+def _begin(
+    scanned: tuple[Cloud, tuple[int, int]], progress: Progress, beside: SecondProcess | None
+) -> Callable[[], tuple[Cloud, Mesh]]:
+    """Have the surface made `beside`, if there is such a process; what is returned waits for it, or makes it."""
+    if beside is None:
+        return lambda: make_surface(scanned, progress=progress)
+    made = beside.submit(make_surface, scanned, progress)
+    return lambda: beside.wait(made, progress, "mesh")
+
+
+def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progress = silent) -> tuple[Cloud, Mesh]:
+    """Give a cloud its normals, and its mesh, for pictures of a size (width, height)."""
+    cloud, image_size = scanned
+    cloud = with_normals(cloud, progress=progress)
+    surface = with_normals(fuse(cloud, image_size, progress=progress), progress=progress)
+    return cloud, build_mesh(surface, progress=progress)
 
 
 def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:

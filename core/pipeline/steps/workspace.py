@@ -19,6 +19,7 @@ from core.files.recording.recording_set import RecordingSet
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.run_file import RunRecord, read_run, write_run
+from core.memory import give_back
 from core.messages import Command, Message
 from core.model import Camera
 from core.scan.results import FrameRecord
@@ -172,6 +173,7 @@ class Workspace:
             if log.frames:
                 record = replace(record, frames=tuple(log.frames))
             write_run(self.path("run"), record)
+        give_back()
 
 
 def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> None:

@@ -1,0 +1,14 @@
+"""Memory that is free again, given back to the system: C libraries keep it for what the process may ask for next."""
+
+from __future__ import annotations
+
+import ctypes
+import sys
+from contextlib import suppress
+
+
+def give_back() -> None:
+    """Give free memory back where the C library can be asked to (glibc); elsewhere it does so by itself, or never."""
+    if sys.platform == "linux":
+        with suppress(OSError, AttributeError):  # another library than glibc
+            ctypes.CDLL(None).malloc_trim(0)
