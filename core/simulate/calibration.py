@@ -16,7 +16,7 @@ from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
 from core.simulate.rig import FULL_SIZE, Rig
-from core.simulate.scenario import Scenario
+from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.rays import Map
@@ -37,9 +37,6 @@ PLATES: dict[str, Target] = {
     "black_square": BlackSquare(60.0),
 }
 """Plates by their kind, lengths in mm: the black square is the paper's, the others are about as large together."""
-
-GAUGE_TOLERANCE_MM = 0.2
-"""Stated in rig.toml for a simulated gauge block."""
 
 
 def rig_toml(scenario: Scenario) -> str:

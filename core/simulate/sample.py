@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from importlib.resources import files
 from pathlib import Path
 
@@ -10,9 +11,10 @@ import platformdirs
 
 import core
 from core.errors import InputError
+from core.files.project.data import Project, new_project
+from core.files.recording.rig import GaugeSpec
 from core.progress import Progress, silent
-from core.simulate.recording import simulate_set
-from core.simulate.scenario import Scenario
+from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 
 SAMPLE = "sample.toml"
 
@@ -20,6 +22,12 @@ SAMPLE = "sample.toml"
 def sample_scenario() -> Scenario:
     """Read the scenario of the sample."""
     return Scenario.from_toml((files("resources") / "sample" / SAMPLE).read_text(encoding="utf-8"), SAMPLE)
+
+
+def simulated_project(name: str) -> Project:
+    """Make a project with nothing measured for the simulated rig: what its gauge block should be is stated."""
+    project, gauge = new_project(name), GaugeSpec(float(sample_scenario().height_mm), GAUGE_TOLERANCE_MM)
+    return replace(project, rig=replace(project.rig, gauge=gauge))
 
 
 def sample_folder() -> Path:
@@ -37,6 +45,8 @@ def sample_set(progress: Progress = silent) -> Path:
     """
     folder = sample_folder()
     if not _whole(folder):
+        from core.simulate.recording import simulate_set  # with all that renders: not for who only asks what it shows
+
         try:
             simulate_set(sample_scenario(), folder, progress)
         except InputError:

@@ -22,6 +22,10 @@ YAW_DEG = 4.0
 """Degrees by which the object is turned on the table: nobody puts a part down quite straight."""
 
 
+GAUGE_TOLERANCE_MM = 0.2
+"""Stated for a simulated gauge block."""
+
+
 @dataclass(frozen=True, slots=True)
 class Scenario:
     """Description of a recording to be simulated.

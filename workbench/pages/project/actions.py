@@ -14,6 +14,7 @@ from core.errors import InputError
 from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
+from core.simulate.sample import simulated_project
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.project.audit import AuditWindow
@@ -157,7 +158,7 @@ class ProjectActions(QObject):
         base = self.bench.settings.projects_folder
         names = (self.tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         name = next(name for name in names if not (base / name).exists())
-        self._create(base / name, new_project, name, then=lambda: self.go_to.emit("camera"))
+        self._create(base / name, simulated_project, name, then=lambda: self.go_to.emit("camera"))
 
     def show_audit_trail(self) -> None:
         """Show who did what in the open project, and when; what is being changed is saved before."""

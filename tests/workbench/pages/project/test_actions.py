@@ -506,6 +506,9 @@ def test_trying_the_simulated_rig_makes_a_project_of_its_own_each_time(projects:
     assert first is not None
     assert projects.model.folder == first.parent / "Simulated rig 2"
     assert shown == ["camera", "camera"]
+    gauge = projects.model.project.rig.gauge
+    assert gauge is not None
+    assert (gauge.nominal_mm, gauge.tolerance_mm) == (50.0, 0.2)
 
 
 # ---- open elsewhere
