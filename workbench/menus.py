@@ -33,6 +33,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("accept", "Ctrl+Return", label("Accept a calibration")),
     ("live", "Ctrl+L", label("Start or stop the live source")),
     ("capture", "Ctrl+Space", label("Take a picture from the live source")),
+    ("presenter", "PgDown, PgUp", label("Live, by presenter or foot switch: take or go on; pause")),
     ("cancel", "Ctrl+.", label("Cancel the running job")),
     ("messages", "Ctrl+M", label("Show or hide the messages")),
     ("theme", "Ctrl+T", label("Light or dark theme")),

@@ -39,6 +39,7 @@ class PictureTab(QWidget):
         presenter.look.picture.connect(self._show_picture)
         presenter.live.show_by(self._draw_live)
         presenter.live.started.connect(self._live_started)
+        presenter.live.notice.connect(self.image.announce)
         self._empty()
 
     # ---- what differs
@@ -72,6 +73,7 @@ class PictureTab(QWidget):
             if self._name != LIVE and not live.live:
                 self.image.clear(live.state_text())
             return
+        self.image.announce("")
         if self._name == LIVE:
             self._name = ""
             self.image.clear_layers()
@@ -123,4 +125,5 @@ class PictureTab(QWidget):
         self._draw_more(detail)
         enough = () if detail.missing else (tr("Nothing is missing: press Stop, and it is calibrated."),)
         seen = () if detail.sentence is None else (detail.sentence,)
+        self.image.announce("".join(map(text_of, seen)))
         self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *enough])

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
+from PySide6.QtWidgets import QApplication
 
 from core.acquire.source import Step
 from core.errors import InputError
@@ -54,6 +55,12 @@ LOST_SHARE = 0.02
 """From this share of lost frames on, the rate is too high."""
 
 WELL_EXPOSED = LiveAdvice()
+
+SOUND = "live/sound"
+TWICE_MS = 250
+"""Between the two sounds that say a picture was refused; one says it was taken."""
+
+_REFUSED = ("live.pose_not_taken", "live.nothing_taken")
 
 
 class LivePresenter(QObject):
@@ -325,6 +332,25 @@ class LivePresenter(QObject):
         """Put a picture aside that has been taken."""
         self._send(Discard(name))
 
+    def go_on(self) -> None:
+        """What the one key of a foot switch or presenter means now: answer, else take the picture, else pause."""
+        if self._ask is not None:
+            self.answer()
+        elif self.step == "scan":
+            self.pause(not self.paused)
+        else:
+            self.capture()
+
+    @property
+    def sound(self) -> bool:
+        """Whether it is heard that a picture was taken or refused."""
+        return self.bench.settings.text(SOUND, "on") == "on"
+
+    def set_sound(self, on: bool) -> None:
+        """Have it heard that a picture was taken or refused, or not."""
+        self.bench.settings.keep_text(SOUND, "on" if on else "off")
+        self.changed.emit()
+
     def take_advice(self) -> None:
         """Tell the source how to expose the stripes better, as was advised."""
         if self.advice.settings is not None:
@@ -401,10 +427,14 @@ class LivePresenter(QObject):
                 self.settings.opened(self._source, event.capabilities)
                 self.started.emit(event)
             case LiveTaken():
+                self._sound()
                 self.taken.emit(event)
             case LiveAsk() | LiveAnswered():
                 self.asked.emit(*self.question)
             case LiveNotice():
+                if event.sentence.code in _REFUSED:
+                    self._sound()
+                    QTimer.singleShot(TWICE_MS, self, self._sound)
                 self.notice.emit(text_of(event.sentence))
                 self.bench.notices.info(text_of(event.sentence))
             case LiveSaving() if self.stopping:
@@ -416,6 +446,10 @@ class LivePresenter(QObject):
                 self.bench.notices.info(tr("{camera} is back; the recording goes on.", camera=self.name))
                 self.back.emit()
         self.changed.emit()
+
+    def _sound(self) -> None:
+        if self.sound:
+            QApplication.beep()
 
     def _on_ended(self, ended: LiveEnded) -> None:
         self._task = None

@@ -43,6 +43,8 @@ class ScanPicture(QWidget):
         in_column(self.image, on=self)
         nothing = np.zeros((1, 1), np.bool_)
         overlays.show_coverage(self.image, nothing, nothing)  # the first layers are the lowest
+        for live in (presenter.live, presenter.check_live):
+            live.notice.connect(self.image.announce)
         self._empty()
 
     def refresh(self) -> None:

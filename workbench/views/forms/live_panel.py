@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import Qt, QTimer
+from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
     QCheckBox,
     QFrame,
@@ -23,6 +24,9 @@ from workbench.views import ask
 from workbench.views.forms.live_form import SourceForm
 from workbench.views.layouts import in_column, in_row
 
+GO_ON, PAUSE = QKeySequence(Qt.Key.Key_PageDown), QKeySequence(Qt.Key.Key_PageUp)
+"""The two keys of presenters and of most foot switches; they mean something only while a source is live."""
+
 
 class LivePanel(QWidget):
     """Which source, its settings, start, pause, take, auto; and how many pictures there are.
@@ -38,7 +42,9 @@ class LivePanel(QWidget):
         self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
         self.auto = QCheckBox(self.tr("Take pictures automatically"))
         self.add = QCheckBox(self.tr("Add to the pictures that are there"))
+        self.sound = QCheckBox(self.tr("Sound"))
         self.state, self.counts = QLabel(), QLabel()
+        self._go_on, self._pause_key = QShortcut(GO_ON, self), QShortcut(PAUSE, self)
         self._dress()
         self._lay_out()
         self._connect()
@@ -64,11 +70,14 @@ class LivePanel(QWidget):
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))
         why_not = "" if going else self.tr("Start the live source first.")
         for button, does in (
-            (self.pause, self.tr("Record nothing for a while")),
-            (self.take, self.tr("Take this picture now, whatever is thought of it (Ctrl+Space)")),
+            (self.pause, self.tr("Record nothing for a while (Page Up)")),
+            (self.take, self.tr("Take this picture now, whatever is thought of it (Ctrl+Space, Page Down)")),
         ):
             button.setEnabled(going)
             button.setToolTip(why_not or does)
+        for key in (self._go_on, self._pause_key):
+            key.setEnabled(going)
+        self.sound.setChecked(live.sound)
         self.auto.blockSignals(True)
         self.auto.setChecked(live.auto)
         self.auto.blockSignals(False)
@@ -104,6 +113,7 @@ class LivePanel(QWidget):
         self.take.setIcon(icon("mdi6.camera-iris"))
         self.auto.setToolTip(self.tr("Takes a picture when it is still, sharp, and unlike those taken before"))
         self.add.setToolTip(self.tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
+        self.sound.setToolTip(self.tr("One sound says that a picture was taken, two that it was refused"))
         self.auto.setVisible(self.live.step != "scan")
         self.take.setVisible(self.live.step != "scan")
         self.state.setObjectName("heading")
@@ -117,7 +127,7 @@ class LivePanel(QWidget):
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
         buttons.addWidget(self.take, 1, 0, 1, 2)
-        in_column(self.form, buttons, self.auto, self.add, self.state, self.counts, on=self, spacing=6)
+        in_column(self.form, buttons, self.auto, self.add, self.sound, self.state, self.counts, on=self, spacing=6)
 
     def _connect(self) -> None:
         live = self.live
@@ -125,6 +135,9 @@ class LivePanel(QWidget):
         self.pause.clicked.connect(lambda: live.pause(not live.paused))
         self.take.clicked.connect(lambda: live.capture())
         self.auto.toggled.connect(live.set_auto)
+        self.sound.clicked.connect(lambda on: live.set_sound(on))
+        self._go_on.activated.connect(lambda: live.go_on())
+        self._pause_key.activated.connect(lambda: live.pause(not live.paused))
         self.add.clicked.connect(lambda on: live.set_adding(on))
         live.changed.connect(self.refresh)
         live.view.connect(self._on_view)

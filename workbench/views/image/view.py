@@ -16,6 +16,7 @@ from workbench.theme import is_dark
 from workbench.views.colours import COVERED, REGION, RESIDUAL, ColourLike, Symbol
 from workbench.views.common import copy_picture, draw_focus, save_picture
 from workbench.views.empty_state import EmptyState
+from workbench.views.image.announcement import Announcement
 from workbench.views.image.drawing import ARROWS, DrawingTool
 from workbench.views.image.layers import LayersMenu, LayerStack, Legend
 from workbench.views.image.overlays import (
@@ -73,6 +74,7 @@ class ImageView(QWidget):
             "background: rgba(12, 16, 20, 200); color: #F4F6F8; border-radius: 4px; padding: 5px 9px;"
         )
         self._hint.hide()
+        self._announcement = Announcement(self._canvas)
         self._empty = EmptyState(self._canvas)
         self._strip, self._tone = ToolStrip(), ToneMenu(self)
         self._layers_menu = LayersMenu(self._layers, self)
@@ -128,6 +130,15 @@ class ImageView(QWidget):
         self._empty.say(message, button, on_button)
         self._empty.show()
         self._arrange()
+
+    def announce(self, sentence: str) -> None:
+        """Say a sentence large in the picture, for two seconds at least; "": nothing any more."""
+        self._announcement.say(sentence)
+
+    @property
+    def announced(self) -> str:
+        """What is said large in the picture now."""
+        return "" if self._announcement.isHidden() else self._announcement.text()
 
     @property
     def has_picture(self) -> bool:
@@ -455,6 +466,7 @@ class ImageView(QWidget):
         if not self._empty.isHidden():
             self._empty.setGeometry(0, 0, size.width(), size.height())
         self._legend.move(8, 8)
+        self._announcement.place()
         self._hint.adjustSize()
         self._hint.move((size.width() - self._hint.width()) // 2, size.height() - self._hint.height() - 10)
 

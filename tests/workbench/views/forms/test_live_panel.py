@@ -13,11 +13,21 @@ from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
 from core.files.project.data import new_project
 from core.messages import Message, plain
 from core.pipeline.live.commands import Auto, Capture, Pause, Resume, TakeReference
-from core.pipeline.live.events import LiveAdvice, LiveAsk, LiveEnded, LiveStarted, LiveUnplugged, LiveView
+from core.pipeline.live.events import (
+    LiveAdvice,
+    LiveAsk,
+    LiveEnded,
+    LiveNotice,
+    LiveStarted,
+    LiveTaken,
+    LiveUnplugged,
+    LiveView,
+)
 from core.scan.preview.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.notices import Notices
+from workbench.pages.live import presenter
 from workbench.pages.live.presenter import LivePresenter
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
@@ -86,6 +96,37 @@ def test_take_pause_and_auto_are_sent(panel, lane, qtbot):
     qtbot.mouseClick(panel.pause, LEFT)
     panel.auto.click()
     assert [type(one) for one in lane.sent] == [Capture, Pause, Resume, Auto]
+
+
+def test_the_two_keys_of_a_presenter_take_and_pause_while_it_is_live(panel, lane, qtbot):
+    panel.activateWindow()
+    qtbot.waitUntil(panel.isActiveWindow)
+    qtbot.mouseClick(panel.start, LEFT)
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    assert lane.sent == []
+    open_source(lane)
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    qtbot.keyClick(panel, Qt.Key.Key_PageUp)
+    lane.current.reported.emit(LiveAsk(Message("t.leave", "Leave it."), "Continue", Resume()))
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    assert [type(one) for one in lane.sent] == [Capture, Pause, Resume]
+
+
+def test_taken_and_refused_are_heard_unless_the_sound_is_off(panel, live, lane, qtbot, monkeypatch):
+    heard = []
+    monkeypatch.setattr(QApplication, "beep", lambda: heard.append(1))
+    monkeypatch.setattr(presenter, "TWICE_MS", 1)
+    qtbot.mouseClick(panel.start, LEFT)
+    open_source(lane)
+    taken = LiveTaken("view00", np.zeros((2, 2), np.uint8))
+    lane.current.reported.emit(taken)
+    assert len(heard) == 1
+    lane.current.reported.emit(LiveNotice(Message("live.nothing_taken", "Nothing was taken. {why}", why="So.")))
+    qtbot.waitUntil(lambda: len(heard) == 3)
+    panel.sound.click()
+    lane.current.reported.emit(taken)
+    assert len(heard) == 3
+    assert not LivePresenter(live.bench, "planes").sound
 
 
 def test_a_scan_takes_no_single_pictures(live, qtbot):
