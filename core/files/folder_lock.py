@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import shutil
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -13,6 +14,8 @@ from pathlib import Path
 from core.errors import InputError
 from core.messages import Message
 
+NEW_FOLDER = ".new"
+"""The folder among results in which new ones are made."""
 HELD = ".held"
 """Among results, on Windows."""
 LEFTOVER = re.compile(r"^\..+\.[0-9a-f]{8}\.part$")
@@ -85,3 +88,13 @@ def sweep_leftovers(folder: Path) -> None:
         if LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):
                 path.unlink()
+        elif path.name == NEW_FOLDER:
+            shutil.rmtree(path, ignore_errors=True)
+
+
+def sweep_within(folder: Path) -> None:
+    """The same in the folders within `folder`, but for those that another program writes to."""
+    for path in folder.iterdir():
+        if path.is_dir() and not path.is_symlink():
+            with contextlib.suppress(InputError, OSError), alone_in(path):
+                pass

@@ -25,7 +25,7 @@ from pydantic import ConfigDict, Field, RootModel
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
 from core.files.complaints import checked_json
-from core.files.folder_lock import sweep_leftovers, wait_for
+from core.files.folder_lock import sweep_leftovers, sweep_within, wait_for
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.running import is_running
@@ -175,6 +175,7 @@ def _take(folder: Path, *, take_over: bool) -> ProjectLock:
             raise cannot_write(path, error) from error
         raise
     sweep_leftovers(folder)
+    sweep_within(folder)
     return ProjectLock(folder, holder, handle)
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import make_folder, make_inner_folder
+from core.files.folder_lock import alone_in
 from core.files.json_text import to_json
 from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
 from core.files.project.data import Project
@@ -148,6 +149,6 @@ def staged(results: Path, names: Collection[str]) -> Iterator[Path]:
         If nothing can be written there.
     """
     make_folder(results)
-    with made_beside(results) as beside:
+    with alone_in(results), made_beside(results) as beside:
         yield beside
         put_results(results, beside, names)

@@ -14,6 +14,7 @@ from typing import Any
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
+from core.files.folder_lock import NEW_FOLDER
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.camera_file import camera_id, read_camera
@@ -51,9 +52,6 @@ CLEARED = (
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
 _PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
 """And in which they come."""
-
-NEW_FOLDER = ".new"
-"""The folder among the results in which new ones are made."""
 
 _OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
 _OF_CLOUD = ("gauge", "faces", "inspection", "inspected")

@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from core.errors import InputError
+from core.files.folder_lock import alone_in
 from core.files.project import lock
 from core.files.project.lock import LOCK, ProjectInUse, held_by, take_lock, user_name
 
@@ -152,3 +153,18 @@ def test_who_looks_while_another_takes_the_project_does_not_take_it_as_well(
     others[0].join()
     assert len(taken) == 1
     taken[0].release()
+
+
+def test_what_a_killed_program_was_making_goes_when_the_project_is_opened_unless_another_one_is_making_it(
+    tmp_path: Path,
+) -> None:
+    for name in ("results", "check"):
+        (tmp_path / name / ".new").mkdir(parents=True)
+        (tmp_path / name / ".new" / "cloud.ply").write_bytes(b"half a cloud")
+    (tmp_path / "results" / ".gauge.json.0123abcd.part").write_text("half a gau")
+    (tmp_path / "results" / "gauge.json").write_text("{}")
+    with alone_in(tmp_path / "check"):
+        (tmp_path / "check" / ".new").mkdir(exist_ok=True)
+        take_lock(tmp_path).release()
+        assert (tmp_path / "check" / ".new").exists()
+    assert [path.name for path in (tmp_path / "results").iterdir()] == ["gauge.json"]
