@@ -136,5 +136,9 @@ class FrameSource(Protocol):
 class WaitingSource(FrameSource, Protocol):
     """A source that waits with what is before it until that was dealt with."""
 
+    @property
+    def waits(self) -> bool:
+        """Whether the next frame waits until it is read, now that it runs as it does."""
+
     def go_on(self, frame: Frame) -> None:
         """What a frame shows was taken, or is of no use."""

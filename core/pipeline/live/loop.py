@@ -7,7 +7,7 @@ from collections import deque
 from collections.abc import Callable
 
 from core.acquire.settings import TITLES
-from core.acquire.source import Ended, Frame, FrameSource, Unplugged
+from core.acquire.source import Ended, Frame, FrameSource, Unplugged, WaitingSource
 from core.errors import InputError
 from core.messages import Message
 from core.pipeline.live.commands import Command, Configure, Stop, Switch
@@ -105,7 +105,13 @@ class LiveLoop:
         self._source.configure(told)
 
     def _read(self) -> Frame | None:
-        """The next frame; one that is damaged is told and left out, unless all are."""
+        """The next frame; one that is damaged is told and left out, unless all are.
+
+        A source that waits is read when the last frame has been looked at: so every one is.
+        """
+        if self._context.worker.busy and isinstance(self._source, WaitingSource) and self._source.waits:
+            time.sleep(WORKING_LISTEN_S)
+            return None
         try:
             frame = self._source.read(WORKING_LISTEN_S if self._context.worker.busy else LISTEN_S)
         except Unplugged:

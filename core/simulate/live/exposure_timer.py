@@ -46,6 +46,11 @@ class ExposureTimer:
         self._rate, self._paced, self._hurried = rate_hz or RATE_HZ, rate_hz > 0, rate_hz == 0
         self._origin = self._clock() - now
 
+    @property
+    def is_paced(self) -> bool:
+        """Whether its time is the clock's."""
+        return self._paced
+
     def now(self) -> float:
         """The time in s since the start."""
         return self._clock() - self._origin if self._paced else self.time_of(self._delivered + 1)
@@ -59,6 +64,10 @@ class ExposureTimer:
         if self._paced:
             return self.time_of(self._last + 1) - self.now()
         return 0.0 if self._hurried else self._exposed_at + 1 / self._rate - self._clock()
+
+    def late_s(self) -> float:
+        """By how much in s the clock is ahead of this time since the last exposure, where this time waits."""
+        return 0.0 if self._paced or self._hurried or self._forgiven else max(0.0, -self.wait_s())
 
     def expose(self) -> tuple[int, int]:
         """The number of the exposure that is due, and how many were missed since the last one."""

@@ -1,8 +1,8 @@
 """The simulated rig as a live source: a camera in real time, without a camera.
 
 Pictures are made on a thread of its own, one ahead of whoever reads them. Time goes on with the frames that are read,
-so a slow machine slows the hand down and loses nothing. At a rate that was set it is a real camera's: instants for
-which nobody was ready (the reader was busy, or the machine too slow) are lost and counted.
+so a slow machine slows the sweeping hand down and loses nothing. At a rate that was set it is a real camera's: instants
+for which nobody was ready (the reader was busy, or the machine too slow) are lost and counted.
 
 The hand that holds a plate waits for who takes the pictures: each pose is held until a frame of it was dealt with.
 """
@@ -25,6 +25,8 @@ EXPOSURE_MS = 8.0
 CAPABILITIES = Capabilities(exposure_ms=(0.01, 1000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
 """Wider than any camera's: the twin has no limits of its own."""
 
+_LONGEST_STEP_S = 0.4
+"""A plate moves on so far, at most, between two frames more than it should: it is still seen to move."""
 _REMEMBERED = 240
 """Frames of which it is known what they show; who looks at one is not so far behind."""
 
@@ -61,10 +63,11 @@ class _Hand:
     waited_s: float = 0.0
     seen: dict[int, int | None] = field(default_factory=dict)
 
-    def plate_s(self, time_s: float) -> float:
-        """The plate's own time, `time_s` after the step began."""
+    def plate_s(self, time_s: float, slow_s: float) -> float:
+        """The plate's own time, `time_s` after the step began; it goes on while the machine is slow by `slow_s`."""
         if self.motion is None:
             return time_s
+        self.waited_s -= min(slow_s, _LONGEST_STEP_S)
         late_s = time_s - self.waited_s - self.motion.end_of_rest(self.held)
         self.waited_s += max(0.0, late_s)
         return time_s - self.waited_s
@@ -162,6 +165,11 @@ class SimulatedSource:
             self._ordered()
         return True
 
+    @property
+    def waits(self) -> bool:
+        """Whether the next frame waits until it is read: at a rate that was set it does not."""
+        return not self._timer.is_paced
+
     def go_on(self, frame: Frame) -> None:
         """Hold the plate's pose in a frame no longer than its rest: it was taken, or is of no use."""
         with self._changed:
@@ -231,9 +239,10 @@ class SimulatedSource:
                 if wait_s > 0:
                     self._changed.wait(wait_s)
                     continue
+                slow_s = self._timer.late_s()
                 number, lost = self._timer.expose()
                 time_s = self._timer.time_of(number)
-                plate_s = self._hand.plate_s(max(0.0, time_s - self._state.began_s))
+                plate_s = self._hand.plate_s(max(0.0, time_s - self._state.began_s), slow_s)
                 moment = self._state.at(number, time_s, plate_s)
                 return self._orders, moment, lost, self._exposure, self._gain
         return None

@@ -139,9 +139,23 @@ def test_a_pose_is_held_until_a_frame_of_it_was_dealt_with(scene, rate):
         source.close()
 
 
-def rest_of(source, clock):
-    """The next frame, 0.1 s later, and the pose that is held in it, None in a move."""
-    clock.now += 0.1
+def test_a_slow_machine_need_not_draw_every_picture_of_a_plate_being_moved(scene):
+    source = SimulatedSource(scene, clock=(clock := Clock()))
+    source.open()
+    try:
+        source.prepare("camera")
+        first, rest = rest_of(source, clock, 1.0)
+        source.go_on(first)
+        rests = [rest, *(rest_of(source, clock, 1.0)[1] for _ in range(8))]
+        assert rests[-1] == 1
+        assert 2 <= rests.count(None) <= 4
+    finally:
+        source.close()
+
+
+def rest_of(source, clock, later_s=0.1):
+    """The next frame, `later_s` later, and the pose that is held in it, None in a move."""
+    clock.now += later_s
     frame = None
     while frame is None:
         frame = source.read(0.01)
