@@ -104,13 +104,15 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
     tilt
         Used where the picture's own lines do not show how the faces are tilted; None: such a picture gives nothing.
     """
-    found = sorted(stretches(cloud, errors.speckle_px), key=lambda one: -one.length_mm)
+    # bent light draws arcs on plane faces, and at different heights: they are looked for within what it may do
+    bent = replace(cloud, sigma=np.hypot(cloud.sigma, errors.bent_light(cloud)))
+    found = sorted(stretches(bent, errors.speckle_px), key=lambda one: -one.length_mm)
     lines = {one.line for one in found}
-    pair = faces_of(cloud, found, None) if len(lines) > 1 else None
+    pair = faces_of(bent, found, None) if len(lines) > 1 else None
     hint: Array | None = None
     if pair is None and tilt is not None and found:
         hint = _hint(cloud, found[0].line, found[0].along, tilt)
-        pair = faces_of(cloud, found, hint)
+        pair = faces_of(bent, found, hint)
     if pair is None:
         return NO_FACES if tilt is not None or len(lines) > 1 else NO_TILT
     upper, lower = cloud.select(pair.upper), cloud.select(pair.lower)
@@ -122,7 +124,7 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
         robust = fit_parallel_planes(upper.points, lower.points, upper.sigma, lower.sigma, reference_normal=hint)
     if robust.thickness <= 0:
         return NO_FACES
-    if _others_on_part(cloud, found[0].along, pair, robust):
+    if _others_on_part(bent, found[0].along, pair, robust):
         return NOT_PLANE
     faces = fit_faces(upper, lower, robust, errors)
     of_step = effects(

@@ -77,6 +77,13 @@ class CommonErrors:
             variance += change[:, 2] ** 2
         return np.asarray(np.sqrt(variance), dtype=np.float64)
 
+    def sigma_of(self, source: Source, cloud: Cloud) -> Array:
+        """Standard uncertainty (N,) in mm of the depths of a cloud that is due to a source; 0 without it."""
+        variance = np.zeros(len(cloud))
+        for one, change in zip(self.sources, self.changes(cloud.uv, cloud.sweep), strict=True):
+            variance += change[:, 2] ** 2 if one == source else 0.0
+        return np.asarray(np.sqrt(variance), dtype=np.float64)
+
     def planes(self, uv: Array, sweep: Index, row: int = 0) -> Array:
         """Light planes (N, 3) in 1/mm of points seen at `uv` (N, 2) px in `sweep` (N,).
 

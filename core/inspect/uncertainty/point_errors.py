@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.deviations import Source
+from core.calibrate.deviations import UNEXPLAINED, Source
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.messages import Message
@@ -104,6 +104,12 @@ class PointErrors:
     def sources(self) -> tuple[Source, ...]:
         """(K,) the same as `core.calibrate.deviations` names them."""
         return () if self.common is None else self.common.sources
+
+    def bent_light(self, cloud: Cloud) -> Array:
+        """Standard uncertainty (N,) in mm of a cloud's depths by light that does not lie in planes; 0 if it does."""
+        if not self.knows(UNEXPLAINED) or self.common is None:
+            return np.zeros(len(cloud))
+        return self.common.sigma_of(UNEXPLAINED, cloud)
 
     def knows(self, source: Source) -> bool:
         """Whether the errors of that calibration are among them."""
