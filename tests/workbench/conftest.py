@@ -38,6 +38,8 @@ from workbench.work.tasks import Lane
 
 HANGS_AFTER_S = 180
 """A test that takes so long hangs: where every thread stands is told, and the test process ends."""
+PROOF_HANGS_AFTER_S = 1500
+"""The same for one that is marked `accuracy`."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -59,9 +61,11 @@ class SharedBench(Bench):
 
 
 @pytest.fixture(autouse=True)
-def nothing_hangs(pytestconfig: pytest.Config) -> Iterator[None]:
+def nothing_hangs(pytestconfig: pytest.Config, request: pytest.FixtureRequest) -> Iterator[None]:
     """Ends the test process where a test never comes back: a question nobody answers, a lock."""
-    faulthandler.dump_traceback_later(HANGS_AFTER_S, exit=True, file=pytestconfig.stash[SAID_ALOUD])
+    is_proof = request.node.get_closest_marker("accuracy") is not None
+    after_s = PROOF_HANGS_AFTER_S if is_proof else HANGS_AFTER_S
+    faulthandler.dump_traceback_later(after_s, exit=True, file=pytestconfig.stash[SAID_ALOUD])
     yield
     faulthandler.cancel_dump_traceback_later()
 

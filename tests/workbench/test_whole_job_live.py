@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import json
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -63,3 +67,65 @@ def test_from_the_simulated_rig_to_the_report(technician: Technician, tmp_path: 
     assert len(frames) >= seen
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert gauge["thickness_mm"] == pytest.approx(50.0, abs=0.3)
+
+
+BUSY, PATIENCE_S = 4, 360.0
+SWEEPS = 90
+
+
+@pytest.fixture
+def busy_machine() -> Iterator[None]:
+    """Processes beside this one that never rest."""
+    processes = [subprocess.Popen([sys.executable, "-c", "while True: pass"]) for _ in range(BUSY)]
+    yield
+    for process in processes:
+        process.kill()
+        process.wait()
+
+
+@pytest.mark.accuracy
+@pytest.mark.usefixtures("busy_machine")
+def test_beside_four_busy_processes_the_tour_ends_in_a_verdict(
+    technician: Technician, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Nobody does more than press the named buttons, and type nothing."""
+    t = technician
+    began = time.monotonic()
+    told: dict[str, float] = {}
+
+    def done(part: str) -> None:
+        told[part] = time.monotonic() - began - sum(told.values())
+
+    t.press(t.window.welcome.simulated)
+    t.until(lambda: t.window.current == "camera", "the camera page")
+    folder = t.model.folder
+    assert folder is not None
+    for part in ("camera", "planes"):
+        t.press("Live source")
+        t.press("Start live")
+        t.until(lambda: "Nothing is missing" in t.page().picture.hints.text, f"enough of {part}", PATIENCE_S)
+        t.press("Stop")
+        t.press("Accept", PATIENCE_S)
+        t.next(PATIENCE_S)
+        done(part)
+    t.until(lambda: t.presenter().work.fan is not None, "the calibrations to be read")
+    t.press("Live source")
+    t.press("Start live")
+    t.until(lambda: t.presenter().live.recorded >= SWEEPS, f"{SWEEPS} frames", PATIENCE_S)
+    t.press("Stop")
+    t.next(PATIENCE_S)
+    done("scan")
+    t.press("Add to repeats", PATIENCE_S)
+    t.next(PATIENCE_S)
+    t.press("Make the report")
+    t.until(lambda: "report" in t.model.results, "the report", PATIENCE_S)
+    done("report")
+    with capsys.disabled():
+        minutes = ", ".join(f"{part} {seconds / 60:.1f}" for part, seconds in told.items())
+        print(f"\nThe tour beside {BUSY} busy processes: {sum(told.values()) / 60:.1f} min ({minutes})")
+    assert t.errors() == []
+    gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
+    assert gauge["verdict"] == "conforming"
+    assert gauge["thickness_mm"] == pytest.approx(50.0, abs=0.1)
+    recorded = [path for path in (folder / t.model.project.sources.scan).iterdir() if path.name.startswith("frame")]
+    assert len(recorded) >= SWEEPS
