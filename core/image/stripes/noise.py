@@ -221,20 +221,32 @@ def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> t
     if min(rows, columns) < 1:
         return np.zeros(0), np.zeros(0)
     stride = max(1, int(np.sqrt(rows * columns / _MOST_PLACES)))
-    parts = [[picture[v : v + rows : stride, u : u + columns : stride] for u in range(3)] for v in range(3)]
-    pixels = np.array(parts, dtype=np.float64).reshape(3, 3, -1)
-    keep = (pixels.min(axis=(0, 1)) > picture.min()) & (pixels.max(axis=(0, 1)) < picture.max())
+    # one row for each of the nine pixels: sums of rows take a fifth of the time of sums over the pixels of each place
+    parts = [picture[v : v + rows : stride, u : u + columns : stride].ravel() for v in range(3) for u in range(3)]
+    pixels = np.array(parts)
+    keep = (pixels.min(axis=0) > picture.min()) & (pixels.max(axis=0) < picture.max())
     if ignore is not None:
         keep &= ~ignore[1 : 1 + rows : stride, 1 : 1 + columns : stride].ravel()
     if np.count_nonzero(keep) < keep.size / 2:
         return np.zeros(0), np.zeros(0)
-    pixels = pixels[:, :, keep]
     # whole grey levels would give peaks of their own; what this adds is taken off again
-    pixels += np.random.default_rng(0).uniform(-0.5, 0.5, pixels.shape)
-    level = pixels.mean(axis=(0, 1))
-    across, down = (pixels[:, 2] - pixels[:, 0]).sum(axis=0), (pixels[2] - pixels[0]).sum(axis=0)
-    squares = ((pixels - level) ** 2).sum(axis=(0, 1)) - (across**2 + down**2) / 6
+    places = np.random.default_rng(0).uniform(-0.5, 0.5, (9, np.count_nonzero(keep)))
+    for place, row in zip(places, pixels, strict=True):
+        place += row[keep]
+    level = _sum_of_nine(places) / 9
+    across = (places[2] - places[0]) + (places[5] - places[3]) + (places[8] - places[6])
+    down = (places[6] - places[0]) + (places[7] - places[1]) + (places[8] - places[2])
+    places -= level
+    places *= places
+    squares = _sum_of_nine(places) - (across**2 + down**2) / 6
     return level, squares / 6
+
+
+def _sum_of_nine(rows: Array) -> Array:
+    """Sum (N,) of nine rows (9, N), in pairs: so rounding grows least."""
+    a, b, c, d, e, f, g, h, last = rows
+    total: Array = ((a + b) + (c + d)) + ((e + f) + (g + h)) + last
+    return total
 
 
 def _lowest_peak(logarithms: Array) -> float:
