@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QSize, Qt, QTimer, QUrl, Signal
-from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent
+from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QApplication,
     QDockWidget,
@@ -41,6 +41,9 @@ from workbench.views.task_bar import TaskBar
 from workbench.work.remaining import Remaining, in_words
 from workbench.work.tasks import Task
 
+WIDE = 1120
+"""From this width on, in pixels, there is room for the titles of the steps beside each page."""
+
 
 class MainWindow(QMainWindow):
     """The workbench's one window."""
@@ -53,7 +56,7 @@ class MainWindow(QMainWindow):
         self.bench, self.model = bench, bench.model
         self._refreshing = Refresh(self._refresh, self)
         self.setWindowTitle("Trisect")
-        self.setMinimumHeight(680)  # how wide it must be, its pages know
+        self.setMinimumSize(1000, 680)
         self.resize(1280, 800)
         self.setAcceptDrops(True)
         self.projects = ProjectActions(bench, self)
@@ -174,6 +177,10 @@ class MainWindow(QMainWindow):
         event.setAccepted(self._left)
         if not self._left:
             QTimer.singleShot(0, self, self.leave)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.rail.set_narrow(self.width() < WIDE)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if _dropped(event):

@@ -18,7 +18,6 @@ from PySide6.QtWidgets import (
 )
 
 from core.inspect.shown.shown_scan import DEPTH
-from workbench.theme import icon
 from workbench.views.layouts import in_row
 
 if TYPE_CHECKING:
@@ -28,12 +27,6 @@ STEPS = 200
 """Of the slider from the smallest σ to the largest."""
 
 Shape = Literal["points", "mesh", "both"]
-
-SYMBOLS: dict[Shape, str] = {
-    "points": "mdi6.dots-hexagon",
-    "mesh": "mdi6.triangle-outline",
-    "both": "mdi6.vector-triangle",
-}
 
 
 class SurfaceChoices(QWidget):
@@ -51,7 +44,7 @@ class SurfaceChoices(QWidget):
         self.colours, self.limit, self.slider = QComboBox(), QDoubleSpinBox(), QSlider(Qt.Orientation.Horizontal)
         bar = in_row(on=self, spacing=4)
         self._make_shapes(bar)
-        bar.addSpacing(8)
+        bar.addSpacing(4)
         self._make_colours(bar)
         bar.addStretch(1)
         self._make_limit(bar)
@@ -96,7 +89,6 @@ class SurfaceChoices(QWidget):
             button.setCheckable(True)
             group.addButton(button)
             bar.addWidget(button)
-            button.setIcon(icon(SYMBOLS[name]))
             self.shapes[name] = button
         self.shapes["points"].setChecked(True)
         group.buttonToggled.connect(lambda _, on: self.changed.emit() if on else None)
@@ -104,7 +96,7 @@ class SurfaceChoices(QWidget):
     def _make_colours(self, bar: QHBoxLayout) -> None:
         self.colours.setAccessibleName(self.tr("Colour by"))
         self.colours.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.colours.setMinimumContentsLength(10)
+        self.colours.setMinimumContentsLength(7)
         self.colours.setToolTip(self.tr("What the colours of the surface mean"))
         for name, text in (
             ("faces", self.tr("points used")),
@@ -130,7 +122,7 @@ class SurfaceChoices(QWidget):
         self.limit.setSuffix(" mm")
         self.limit.setKeyboardTracking(False)
         self.slider.setRange(1, STEPS)
-        self.slider.setMinimumWidth(60)
+        self.slider.setMinimumWidth(30)
         self.slider.setMaximumWidth(150)
         label = QLabel(self.tr("σ up to"))
         label.setBuddy(self.limit)

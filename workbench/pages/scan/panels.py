@@ -239,8 +239,7 @@ class RunningPanel(QWidget):
         self.speed.setToolTip(self.tr("How far the stripe moves from one frame to the next"))
         self.covered, self.hints = QLabel(), HintBar(self.tr("What could be better is said here."))
         self.covered.setToolTip(self.tr("Share of the picture between all laser light in which there are points"))
-        widest = words.covered_sentence(1.0)
-        self.covered.setMinimumWidth(self.covered.fontMetrics().horizontalAdvance(widest))
+        self.covered.setWordWrap(True)
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 4, 0, 0)
         grid.setHorizontalSpacing(18)
@@ -248,8 +247,8 @@ class RunningPanel(QWidget):
         grid.addWidget(self.speed, 0, 1)
         grid.addWidget(self.covered, 0, 2, Qt.AlignmentFlag.AlignBottom)
         grid.addWidget(self.hints, 1, 0, 1, 3)
-        grid.setColumnStretch(0, 2)
-        grid.setColumnStretch(1, 2)
+        for column in range(3):
+            grid.setColumnStretch(column, 1)
         grid.setRowStretch(2, 1)
 
     def show_detail(self, detail: ScanDetail | None, width_px: float) -> None:

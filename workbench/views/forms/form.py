@@ -45,6 +45,7 @@ class SettingsForm(QWidget):
         """A heading over the settings that follow."""
         heading = QLabel(title)
         heading.setObjectName("heading")
+        heading.setWordWrap(True)
         heading.setContentsMargins(0, 8 if self._editors else 0, 0, 2)
         self._grid.addWidget(heading, self._grid.rowCount(), 0, 1, 2)
 

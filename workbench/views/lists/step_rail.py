@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtWidgets import QButtonGroup, QFrame, QLabel, QToolButton, QWidget
+from PySide6.QtWidgets import QButtonGroup, QFrame, QToolButton, QWidget
 
 from workbench.theme import icon
 from workbench.views.common import IconLabel
@@ -31,7 +31,6 @@ class StepRail(QFrame):
         self._states: dict[str, str] = dict.fromkeys((name for name, _, _ in steps), "todo")
         self._buttons: dict[str, QToolButton] = {}
         self._badges: dict[str, IconLabel] = {}
-        self._words: dict[str, QLabel] = {}
         group = QButtonGroup(self)
         layout = in_column(on=self, margins=(6, 10, 6, 10), spacing=4)
         for number, (name, title, symbol) in enumerate(steps, start=1):
@@ -43,16 +42,27 @@ class StepRail(QFrame):
             button.setIconSize(QSize(20, 20))
             button.setAccessibleName(title)
             button.clicked.connect(lambda _=False, step=name: self.chosen.emit(step))
-            button.setMinimumWidth(150)
             button.setMinimumHeight(36)
             group.addButton(button)
-            badge, words = IconLabel(16), QLabel()
-            words.setObjectName("help")
-            row = in_row((button, 1), badge, spacing=4)
-            layout.addLayout(row)
-            self._buttons[name], self._badges[name], self._words[name] = button, badge, words
+            badge = IconLabel(16)
+            layout.addLayout(in_row((button, 1), badge, spacing=4))
+            self._buttons[name], self._badges[name] = button, badge
         layout.addStretch(1)
+        self._titles = {name: title for name, title, _ in steps}
+        self._narrow = True
+        self.set_narrow(False)
         self._show_badges(self._badges)
+
+    def set_narrow(self, narrow: bool) -> None:
+        """Show icons alone, whose tips tell the titles; or icons with titles."""
+        if narrow == self._narrow:
+            return
+        self._narrow = narrow
+        style = Qt.ToolButtonStyle.ToolButtonIconOnly if narrow else Qt.ToolButtonStyle.ToolButtonTextBesideIcon
+        for button in self._buttons.values():
+            button.setToolButtonStyle(style)
+            button.setMinimumWidth(40 if narrow else 150)
+        self._set_tips()
 
     def set_current(self, name: str) -> None:
         """Mark the step whose page is shown."""
@@ -63,14 +73,19 @@ class StepRail(QFrame):
         others = [name for name, (state, _) in states.items() if state != self._states[name]]
         for name, (state, sentence) in states.items():
             self._states[name] = state
-            self._buttons[name].setToolTip(sentence)
             self._badges[name].setToolTip(sentence)
             self._buttons[name].setAccessibleDescription(sentence)
+        self._set_tips()
         self._show_badges(others)
 
     def state_of(self, name: str) -> str:
         """The state shown for a step."""
         return self._states[name]
+
+    def _set_tips(self) -> None:
+        for name, button in self._buttons.items():
+            sentence = button.accessibleDescription()
+            button.setToolTip(f"{self._titles[name]}\n{sentence}".strip() if self._narrow else sentence)
 
     def _show_badges(self, names: Iterable[str]) -> None:
         for name in names:
