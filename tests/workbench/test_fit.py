@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from PySide6.QtWidgets import QApplication, QToolButton
+from PySide6.QtWidgets import QApplication, QToolButton, QWidget
 
 from core.translations import language
 from workbench.app import build_window
@@ -15,6 +15,13 @@ from workbench.views.lists.step_rail import StepRail
 SMALLEST = 1000, 680
 
 
+def laid_out(widget: QWidget) -> None:
+    """What a widget wants is known once its layout is done."""
+    layout = widget.layout()
+    assert layout is not None
+    layout.activate()
+
+
 @pytest.mark.parametrize("name", ["en", "de", "zh_CN"])
 def test_every_page_has_room_in_the_smallest_window(bench: Bench, qapp: QApplication, qtbot, name: str) -> None:
     sheet = qapp.styleSheet()
@@ -24,7 +31,7 @@ def test_every_page_has_room_in_the_smallest_window(bench: Bench, qapp: QApplica
         qtbot.addWidget(window)
         window.resize(*SMALLEST)
         window.show()
-        window.rail.layout().activate()
+        laid_out(window.rail)
         assert window.rail.minimumSizeHint().width() < 100
         room = window.width() - window.rail.minimumSizeHint().width()
         wide = {step.name: window.pages[step.name].minimumSizeHint().width() for step in STEPS}
@@ -40,13 +47,13 @@ def test_a_narrow_rail_shows_icons_and_its_tips_tell_the_titles(qtbot) -> None:
     rail = StepRail([("scan", "Scan", "mdi6.line-scan"), ("report", "Report", "mdi6.file")])
     qtbot.addWidget(rail)
     rail.set_states({"scan": ("done", "12 frames."), "report": ("todo", "")})
-    rail.layout().activate()
+    laid_out(rail)
     wide = rail.minimumSizeHint().width()
     rail.set_narrow(True)
-    rail.layout().activate()
+    laid_out(rail)
     assert rail.minimumSizeHint().width() < 0.5 * wide
     assert [button.toolTip() for button in rail.findChildren(QToolButton)] == ["Scan\n12 frames.", "Report"]
     rail.set_narrow(False)
     assert [button.toolTip() for button in rail.findChildren(QToolButton)] == ["12 frames.", ""]
-    rail.layout().activate()
+    laid_out(rail)
     assert rail.minimumSizeHint().width() == wide

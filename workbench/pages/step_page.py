@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QEvent, QSize, Qt
+from PySide6.QtCore import QEvent, Qt
 from PySide6.QtGui import QResizeEvent
-from PySide6.QtWidgets import QFrame, QScrollArea, QSizePolicy, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
 from workbench.pages.presenter import StepPresenter
 from workbench.refresh import Refresh
 from workbench.theme import icon
-from workbench.views.layouts import holding, in_column
+from workbench.views.layouts import UpAndDown, holding, in_column
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 LIST_HEIGHT, LIST_SHARE = 240, 0.36
@@ -113,27 +113,6 @@ class StepPage(QWidget):
         self.side.addStretch(1)
         inside = holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self.scrolled = scroll = _SidePanel()
-        scroll.setWidget(inside)
-        scroll.setWidgetResizable(True)
-        scroll.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE)
         scroll.setAccessibleName(self.tr("Settings and quality"))
         return holding(in_column(self.pinned, (scroll, 1), spacing=0))
-
-
-class _SidePanel(QScrollArea):
-    """Scrolls up and down only: it is never narrower than what is in it, else that would be cut off."""
-
-    def minimumSizeHint(self) -> QSize:
-        hint = super().minimumSizeHint()
-        inside = self.widget()
-        needed = (
-            inside.minimumSizeHint().width() if inside is not None else 0
-        ) + self.verticalScrollBar().sizeHint().width()
-        return QSize(max(NARROWEST_SIDE, needed), hint.height())
-
-    def eventFilter(self, watched: Any, event: QEvent) -> bool:
-        if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
-            self.updateGeometry()
-        return super().eventFilter(watched, event)

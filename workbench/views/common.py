@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QRect, QSize
-from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent
-from PySide6.QtWidgets import QFileDialog, QLabel, QWidget
+from PySide6.QtCore import QLocale, QRect, QSize
+from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QValidator
+from PySide6.QtWidgets import QDoubleSpinBox, QFileDialog, QLabel, QWidget
 
-from workbench.language import tr
+from core.messages import MINUS
+from workbench.language import number, tr
 from workbench.theme import icon, shades
 
 
@@ -83,3 +84,28 @@ def save_picture(widget: QWidget, title: str, name: str) -> None:
 def breakable(path: str) -> str:
     """A path that can be wrapped after each separator."""
     return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
+
+
+class SpinBox(QDoubleSpinBox):
+    """A number as the window's language writes it; it can be typed with either decimal sign and either minus."""
+
+    def __init__(self, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setLocale(QLocale.c())  # which texts are numbers, once their signs are Qt's
+
+    def textFromValue(self, value: float) -> str:
+        return number(value, f".{self.decimals()}f")
+
+    def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:
+        state, _, _ = super().validate(_as_qt_reads(text), position)
+        return state, text, position
+
+    def valueFromText(self, text: str) -> float:
+        return super().valueFromText(_as_qt_reads(text))
+
+    def fixup(self, text: str) -> str:
+        return super().fixup(_as_qt_reads(text))
+
+
+def _as_qt_reads(text: str) -> str:
+    return text.replace(",", ".").replace(MINUS, "-")

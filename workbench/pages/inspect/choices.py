@@ -9,7 +9,6 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
     QComboBox,
-    QDoubleSpinBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
@@ -18,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.inspect.shown.shown_scan import DEPTH
+from workbench.views.common import SpinBox
 from workbench.views.layouts import in_row
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class SurfaceChoices(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
-        self.colours, self.limit, self.slider = QComboBox(), QDoubleSpinBox(), QSlider(Qt.Orientation.Horizontal)
+        self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
         bar = in_row(on=self, spacing=4)
         self._make_shapes(bar)
         bar.addSpacing(4)

@@ -5,12 +5,11 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from PySide6.QtCore import QEvent, QLocale, Qt, QTimer, Signal
+from PySide6.QtCore import QEvent, Qt, QTimer, Signal
 from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator, QWheelEvent
-from PySide6.QtWidgets import QCheckBox, QComboBox, QDoubleSpinBox, QLineEdit, QPlainTextEdit
+from PySide6.QtWidgets import QCheckBox, QComboBox, QLineEdit, QPlainTextEdit
 
-from core.messages import MINUS
-from workbench.language import number
+from workbench.views.common import SpinBox
 
 _STEPPING_MS = 400
 
@@ -26,11 +25,6 @@ def _is_for_the_window(event: QEvent, typing: bool) -> bool:
         return False
     event.ignore()
     return True
-
-
-def _plain(text: str) -> str:
-    """A number as somebody types it, with either decimal sign and either minus, as Qt reads it."""
-    return text.replace(",", ".").replace(MINUS, "-")
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,10 +44,12 @@ class NumberRange:
     first: float | None = None
 
 
-class NumberEditor(QDoubleSpinBox):
+class NumberEditor(SpinBox):
     """A number of a range, with its unit; whole, and told as int, if the range has no decimals."""
 
     committed = Signal()
+
+    _none_text: str | None = None  # asked for as soon as Qt makes the widget
 
     def __init__(self, within: NumberRange) -> None:
         super().__init__()
@@ -61,7 +57,6 @@ class NumberEditor(QDoubleSpinBox):
         self._first = within.minimum if within.first is None else within.first
         self._whole = within.decimals == 0
         self._told: float | None = None
-        self.setLocale(QLocale.c())  # which texts are numbers; they are shown in the window's language
         self.setDecimals(within.decimals)
         # the value below the smallest stands for none
         below = 0.0 if within.none_text is None else max(within.step, 10.0**-within.decimals)
@@ -108,19 +103,12 @@ class NumberEditor(QDoubleSpinBox):
     def validate(self, text: str, position: int) -> tuple[QValidator.State, str, int]:
         if self._none_text is not None and self._typed(text) in ("", self._none_text):
             return QValidator.State.Acceptable, text, position
-        state, _, _ = super().validate(_plain(text), position)
-        return state, text, position
+        return super().validate(text, position)
 
     def valueFromText(self, text: str) -> float:
         if self._none_text is not None and self._typed(text) in ("", self._none_text):
             return self.minimum()
-        return super().valueFromText(_plain(text))
-
-    def textFromValue(self, value: float) -> str:
-        return number(value, f".{self.decimals()}f")
-
-    def fixup(self, text: str) -> str:
-        return super().fixup(_plain(text))
+        return super().valueFromText(text)
 
     def wheelEvent(self, event: QWheelEvent) -> None:
         if self.hasFocus():

@@ -23,6 +23,7 @@ from core.pipeline.live.sources import SOURCES
 from workbench.language import text_of
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.common import SpinBox
 from workbench.views.layouts import in_column, in_row, say
 
 
@@ -104,7 +105,7 @@ class DeviceField(QWidget):
             self.chosen.emit(str(folder))
 
 
-class NumberField(QDoubleSpinBox):
+class NumberField(SpinBox):
     """A number with its unit; its lowest step is "as it is", which is None."""
 
     edited = Signal(object)

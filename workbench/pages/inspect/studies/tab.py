@@ -21,7 +21,7 @@ from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.layouts import in_column, in_row, muted, scrolling
+from workbench.views.layouts import UpAndDown, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 
@@ -43,7 +43,7 @@ class StudiesTab(QWidget):
         self.buttons: dict[str, QPushButton] = {}
         self.stack = QStackedWidget()
         self.stack.addWidget(self._kept())
-        self.stack.addWidget(scrolling(self.editor))
+        self.stack.addWidget(UpAndDown(self.editor))
         in_column(self.stack, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
