@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QObject, QTimer, Signal
-from PySide6.QtWidgets import QApplication
 
 from core.acquire.source import Step
 from core.errors import InputError
@@ -72,6 +71,9 @@ class LivePresenter(QObject):
     answered by one `shown()` when it is on the screen; no other comes before. When a recording ends, its folder
     becomes the step's source by an undoable edit, then `ended` is emitted.
     """
+
+    sounded = Signal()
+    """A sound is due."""
 
     changed = Signal()
     """State, choice or settings are others: draw the controls anew."""
@@ -449,7 +451,7 @@ class LivePresenter(QObject):
 
     def _sound(self) -> None:
         if self.sound:
-            QApplication.beep()
+            self.sounded.emit()
 
     def _on_ended(self, ended: LiveEnded) -> None:
         self._task = None

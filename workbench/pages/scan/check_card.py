@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent
-from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
@@ -44,12 +44,16 @@ class CheckCard(QFrame):
         self.choose.clicked.connect(self._choose)
         self.run.clicked.connect(self._run)
         live.other_running.connect(self._ask_to_stop_other)
+        live.sounded.connect(self._beep)
         light = in_row(self.sign, (self.word, 1), spacing=6)
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(self.tr("Check of camera and laser"))
         in_column(
             title, light, self.sentence, self.rows, self.chart, buttons, on=self, margins=(10, 8, 10, 10), spacing=5
         )
+
+    def _beep(self) -> None:
+        QApplication.beep()
 
     def _ask_to_stop_other(self, question: str) -> None:
         ask_to_stop_other(self, self._live, question)

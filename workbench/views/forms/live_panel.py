@@ -7,6 +7,7 @@ from typing import Any
 from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QKeySequence, QShortcut
 from PySide6.QtWidgets import (
+    QApplication,
     QCheckBox,
     QFrame,
     QGridLayout,
@@ -49,6 +50,9 @@ class LivePanel(QWidget):
         self._lay_out()
         self._connect()
         self.refresh()
+
+    def _beep(self) -> None:
+        QApplication.beep()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -136,6 +140,7 @@ class LivePanel(QWidget):
         self.take.clicked.connect(lambda: live.capture())
         self.auto.toggled.connect(live.set_auto)
         self.sound.clicked.connect(lambda on: live.set_sound(on))
+        live.sounded.connect(self._beep)
         self._go_on.activated.connect(lambda: live.go_on())
         self._pause_key.activated.connect(lambda: live.pause(not live.paused))
         self.add.clicked.connect(lambda on: live.set_adding(on))
