@@ -96,3 +96,18 @@ class Characteristic:
         if not self.complete or math.isnan(self.value) or math.isnan(self.u):
             return Verdict.NOT_PROVEN
         return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)
+
+    @property
+    def room(self) -> float:
+        """How far the deviation, enlarged by U, stays from the nearest limit, as a share of half of what is permitted.
+
+        Below 0 where a limit may be exceeded; infinite without limits, −inf where nothing is known.
+        """
+        if self.limits is None or self.deviation is None:
+            return math.inf
+        ends = [end for end in (self.limits.lower, self.limits.upper) if math.isfinite(end)]
+        if not ends:
+            return math.inf
+        half = 0.5 * (max(ends) - min(ends)) if len(ends) == 2 else abs(ends[0])
+        left = min(self.limits.upper - self.deviation, self.deviation - self.limits.lower) - self.U
+        return -math.inf if math.isnan(left) else left / (half or self.U or 1.0)

@@ -5,6 +5,7 @@ import math
 import numpy as np
 import pytest
 
+from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.conformity import Zones, decide_between, probability_of_conformity
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import CAMERA
@@ -88,3 +89,18 @@ def test_freedom_of_known_contributions_is_infinite_and_of_one_its_own():
     assert effective_dof([]) == math.inf
     with pytest.raises(ValueError, match="no coverage factor"):
         coverage_factor(0.5)
+
+
+@pytest.mark.parametrize(
+    ("value", "limits", "room"),
+    [
+        (50.1, Limits(50.0, -0.2, 0.2), 0.4),
+        (50.25, Limits(50.0, -0.2, 0.2), -0.35),
+        (0.03, Limits(0.0, -math.inf, 0.05), 0.0),
+        (50.0, Limits(50.0, -math.inf, math.inf), math.inf),
+        (50.0, None, math.inf),
+        (math.nan, Limits(50.0, -0.2, 0.2), -math.inf),
+    ],
+)
+def test_the_room_that_is_left_to_a_limit_tells_which_result_is_the_worst(value, limits, room):
+    assert Characteristic("one", "thickness", value, 0.01, limits=limits).room == pytest.approx(room)

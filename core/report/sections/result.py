@@ -83,11 +83,8 @@ def _facts(look: ReportLook, facts: dict[str, str], width: float) -> Table:
 
 def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     words, (unit, factor) = look.words, shown_unit(one)
-    value, _, rest = value_line(one, words).partition(" (")
-    rest = rest.replace(" ", "\u00a0")
-    said = f'{look.markup(value)} <font name="{SANS}" size="11">({markup(rest)}</font>'
     name = shown_name(one, words)
-    headline = [look.text(name[:1].upper() + name[1:], "label"), Paragraph(said, look.style("result"))]
+    headline = [look.text(name[:1].upper() + name[1:], "label"), _value(look, one)]
     parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
     decimals = max(decimals_of(factor * one.U), 0)
     facts = {}
@@ -104,6 +101,14 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     return [*parts, Spacer(0, 1.5 * mm), look.text(reason), look.text(meaning, "caption")]
 
 
+def _value(look: ReportLook, one: Characteristic) -> Paragraph:
+    """'50.012 mm ± 0.024 mm', large, and k."""
+    value, _, rest = value_line(one, look.words).partition(" (")
+    rest = rest.replace(" ", "\u00a0")
+    said = f'{look.markup(value)} <font name="{SANS}" size="11">({markup(rest)}</font>'
+    return Paragraph(said, look.style("result"))
+
+
 def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width: float) -> list[Flowable]:
     """A headline with the decision beside it, if there is one."""
     if not verdict:
@@ -114,15 +119,16 @@ def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width:
 
 
 def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
-    """How many of which decision; the worst of them is that of the part."""
+    """The worst characteristic, whose decision is that of the part, and how many of which decision there are."""
     words, found = look.words, content.characteristics
     counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
     worst = next(verdict for verdict in SHOWN_FIRST if counts[verdict])
     results = plural_message("report.characteristics", "{n:,} characteristic", "{n:,} characteristics", n=len(found))
-    headline: list[Flowable] = [
-        look.say("Result", "label"),
-        look.text(words(results), "result"),
-    ]
+    headline: list[Flowable] = [look.say("Result", "label"), look.text(words(results), "result")]
+    if worst:
+        nearest = min((one for one in found if one.verdict == worst), key=lambda one: one.room)
+        title = words("{name}: the worst of {all}", name=shown_name(nearest, words), all=words(results))
+        headline = [look.text(title[:1].upper() + title[1:], "label"), _value(look, nearest)]
     facts = {words(VERDICTS[verdict]): grouped(number) for verdict, number in counts.items() if number}
     said = words(
         "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
