@@ -1,7 +1,7 @@
 """The language of the window: every text that a technician reads goes through here.
 
-One catalogue serves core's messages, the window's own words and what Qt asks for (`QObject.tr`). It is chosen before
-a window is built: where another one is chosen, the window is replaced.
+One catalogue serves core's messages and the window's own words. It is chosen before a window is built: where another
+one is chosen, the window is replaced.
 """
 
 from __future__ import annotations
@@ -14,18 +14,6 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 from core.errors import InputError
 from core.messages import MINUS, Language, Message, label
 from workbench.work.worker import ENDED, Failure
-
-
-class _Catalogue(QTranslator):
-    """Answers Qt's own question for a text from the same catalogue; what it lacks, as words on buttons, Qt has."""
-
-    def translate(self, context: str, sourceText: str, disambiguation: str | None = None, n: int = -1) -> str | None:
-        told = _chosen.label(sourceText)
-        return told if told != sourceText else None
-
-    def isEmpty(self) -> bool:
-        return _chosen.name == "en"
-
 
 _FIELDS = {
     "[camera_target]": label("the target"),
@@ -64,21 +52,19 @@ def _for_the_window(language: Language) -> Language:
 
 
 _chosen = _for_the_window(Language())
-_translators: list[QTranslator] = []
+_of_qt: QTranslator | None = None
+"""Qt's own words, as on the buttons of its dialogs."""
 
 
 def choose(language: Language, parent: QObject) -> None:
     """Have windows that are built from now on speak `language`; what is shown already stays as it is."""
-    global _chosen
+    global _chosen, _of_qt
     _chosen = _for_the_window(language)
-    while _translators:
-        QCoreApplication.removeTranslator(_translators.pop())
-    of_qt = QTranslator(parent)
-    if of_qt.load(f"qtbase_{language.name}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
-        _translators.append(of_qt)
-    _translators.append(_Catalogue(parent))
-    for translator in _translators:
-        QCoreApplication.installTranslator(translator)
+    if _of_qt is not None:
+        QCoreApplication.removeTranslator(_of_qt)
+    _of_qt = QTranslator(parent)
+    if _of_qt.load(f"qtbase_{language.name}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
+        QCoreApplication.installTranslator(_of_qt)
 
 
 def chosen() -> Language:

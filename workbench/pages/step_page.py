@@ -9,6 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
+from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
 from workbench.refresh import Refresh
 from workbench.theme import icon
@@ -114,5 +115,5 @@ class StepPage(QWidget):
         inside = holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE)
-        scroll.setAccessibleName(self.tr("Settings and quality"))
+        scroll.setAccessibleName(tr("Settings and quality"))
         return holding(in_column(self.pinned, (scroll, 1), spacing=0))

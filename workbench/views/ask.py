@@ -88,8 +88,8 @@ class _NameAndPin(QDialog):
         buttons.accepted.connect(self.accept)
         buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
-        form.addRow(self.tr("Name"), self._name)
-        form.addRow(self.tr("PIN"), self._pin)
+        form.addRow(tr("Name"), self._name)
+        form.addRow(tr("PIN"), self._pin)
         form.addRow(buttons)
 
     def answer(self) -> tuple[str, str]:
@@ -104,7 +104,7 @@ class _NameAndFolder(QDialog):
         self.setMinimumWidth(480)
         self._name, self._folder = QLineEdit(name), QLineEdit(str(folder))
         self._name.selectAll()
-        browse = QPushButton(self.tr("Browse …"))
+        browse = QPushButton(tr("Browse …"))
         browse.clicked.connect(self._browse)
         place = in_row((self._folder, 1), browse)
         self._will = QLabel()
@@ -116,8 +116,8 @@ class _NameAndFolder(QDialog):
         self._buttons.accepted.connect(self.accept)
         self._buttons.rejected.connect(self.reject)
         form = QFormLayout(self)
-        form.addRow(self.tr("Name"), self._name)
-        form.addRow(self.tr("In folder"), place)
+        form.addRow(tr("Name"), self._name)
+        form.addRow(tr("In folder"), place)
         form.addRow(self._will)
         form.addRow(self._buttons)
         self._name.textChanged.connect(self._check)
@@ -129,7 +129,7 @@ class _NameAndFolder(QDialog):
         return self._name.text().strip(), Path(self._folder.text().strip())
 
     def _browse(self) -> None:
-        folder = choose_folder(self, self.tr("Folder for the project"), Path(self._folder.text()))
+        folder = choose_folder(self, tr("Folder for the project"), Path(self._folder.text()))
         if folder is not None:
             self._folder.setText(str(folder))
 
@@ -138,7 +138,7 @@ class _NameAndFolder(QDialog):
         target = folder / file_name(name)
         ok = self._buttons.button(QDialogButtonBox.StandardButton.Ok)
         if not name:
-            problem = self.tr("Give the project a name.")
+            problem = tr("Give the project a name.")
         elif target.exists():
             problem = tr("{folder} exists already; choose another name.", folder=target)
         else:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
+from workbench.language import tr
+
 
 class TaskBar(QWidget):
     """Shows one running job; hidden while there is none."""
@@ -20,7 +22,7 @@ class TaskBar(QWidget):
         self._bar.setFixedWidth(220)
         self._bar.setTextVisible(False)
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
-        self.cancel = QPushButton(self.tr("Cancel"))
+        self.cancel = QPushButton(tr("Cancel"))
         self.cancel.clicked.connect(self.cancel_pressed)
         row = QHBoxLayout(self)
         row.setContentsMargins(6, 1, 6, 1)
@@ -53,7 +55,7 @@ class TaskBar(QWidget):
     def cancelling(self) -> None:
         """Cancel was pressed."""
         self.cancel.setEnabled(False)
-        self._left.setText(self.tr("stopping …"))
+        self._left.setText(tr("stopping …"))
 
     def end(self) -> None:
         """The job is over."""

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import Project
 from core.files.project.keys import finished
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.project_model import CALIBRATIONS
 from workbench.work.jobs import Job
 
@@ -79,12 +80,12 @@ class Acceptance(QObject):
         """Names of the edits that accept and reject, and of the job."""
         if self._step == "camera":
             return (
-                self.tr("accept the camera calibration"),
-                self.tr("reject the camera calibration"),
-                self.tr("Keeping the calibration"),
+                tr("accept the camera calibration"),
+                tr("reject the camera calibration"),
+                tr("Keeping the calibration"),
             )
         return (
-            self.tr("accept the laser planes"),
-            self.tr("reject the laser planes"),
-            self.tr("Keeping the laser planes"),
+            tr("accept the laser planes"),
+            tr("reject the laser planes"),
+            tr("Keeping the laser planes"),
         )

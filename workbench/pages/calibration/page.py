@@ -12,7 +12,7 @@ from typing import Any, ClassVar
 
 from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
 
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.calibration.card import CalibrationCard
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.calibration.picture import PictureTab
@@ -102,12 +102,12 @@ class CalibrationPage(StepPage):
         self.tabs.currentChanged.connect(lambda _: self._refresh_tab())
         self.add_to_side(self.card)
         self.source = SourceChooser(self.live, what=folder)
-        self.pictures_fold = self.add_panel(self.tr("Pictures"), self.source)
+        self.pictures_fold = self.add_panel(tr("Pictures"), self.source)
         self.setup_folds = [self.add_panel(title, form) for title, form in self.setup]
         self.target_fold = self.setup_folds[0]
         self._one = one
         self.views_fold = self.add_list(views, self.views)
-        self.result_fold = self.add_panel(self.tr("Result"), self.result)
+        self.result_fold = self.add_panel(tr("Result"), self.result)
         self.source.folder_chosen.connect(p.use_folder)
         self.source.accept_drops_on(self)
         self.views.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
@@ -174,7 +174,7 @@ class CalibrationPage(StepPage):
         if shown != self._rows:
             self._rows = shown
             measured = self._work.calibration is not None and not self._is_live()
-            self.views.set_headers(self._one, f"{self.tr('RMS')} [{self.UNIT}]" if measured else "")
+            self.views.set_headers(self._one, f"{tr('RMS')} [{self.UNIT}]" if measured else "")
             self.views.set_rows(rows)
         if current and self.views.current() != current:
             self.views.set_current(current)
@@ -184,7 +184,7 @@ class CalibrationPage(StepPage):
         p, work = self.presenter, self._work
         if p.live.running:
             return [
-                ListRow(name, None, self.tr("taken"), thumbnail=picture, title=p.short(name))
+                ListRow(name, None, tr("taken"), thumbnail=picture, title=p.short(name))
                 for name, picture in p.live_views
             ]
         if work.calibration is not None:
@@ -215,7 +215,7 @@ class CalibrationPage(StepPage):
         threshold = self._threshold(bars)
         if bars and (bars, threshold) != self._bars:
             self._bars = bars, threshold
-            self.bars.set_bars(bars, label=self.tr("RMS"), unit=self.UNIT, threshold=threshold)
+            self.bars.set_bars(bars, label=tr("RMS"), unit=self.UNIT, threshold=threshold)
         self.bars.set_current(self.presenter.current)
 
 

@@ -9,6 +9,7 @@ from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
+from workbench.language import tr
 from workbench.pages.calibration.target import DICTIONARIES, PAPERS
 from workbench.theme import icon
 from workbench.views import ask
@@ -39,13 +40,13 @@ class TargetPanel(QWidget):
         self._holder.setContentsMargins(0, 0, 0, 0)
         self.form = SettingsForm()
         self._holder.addWidget(self.form)
-        self.paper, self.print = QComboBox(), QPushButton(icon("mdi6.printer-outline"), self.tr("Printable PDF …"))
+        self.paper, self.print = QComboBox(), QPushButton(icon("mdi6.printer-outline"), tr("Printable PDF …"))
         for paper in PAPERS:
             self.paper.addItem(paper, paper)
         self.paper.setCurrentText("A4")
-        self.paper.setToolTip(self.tr("Paper the target is printed on"))
-        self.paper.setAccessibleName(self.tr("Paper"))
-        self.print.setToolTip(self.tr("Write this target to scale as a PDF, with rulers to check the print"))
+        self.paper.setToolTip(tr("Paper the target is printed on"))
+        self.paper.setAccessibleName(tr("Paper"))
+        self.print.setToolTip(tr("Write this target to scale as a PDF, with rulers to check the print"))
         self.print.clicked.connect(lambda: self._print())
         row = in_row(self.paper, (self.print, 1))
         in_column(self._holder, row, on=self)
@@ -70,24 +71,22 @@ class TargetPanel(QWidget):
         old.deleteLater()
         form = self.form
         kinds = [(name, kind_in_words(name)) for name in self._kinds]
-        form.add_choice("kind", self.tr("Kind"), kinds, self.tr("What is printed on the target."))
+        form.add_choice("kind", tr("Kind"), kinds, tr("What is printed on the target."))
         if kind != "black_square":
             self._add_counts(form, kind)
-        length = {"circle_grid": self.tr("Pitch"), "black_square": self.tr("Side")}.get(kind, self.tr("Square"))
+        length = {"circle_grid": tr("Pitch"), "black_square": tr("Side")}.get(kind, tr("Square"))
         form.add_number(
             "size_mm",
             length,
             NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"),
-            self.tr("Measure it on the print: all lengths rest on it."),
+            tr("Measure it on the print: all lengths rest on it."),
         )
         if kind == "charuco":
-            form.add_number("marker_mm", self.tr("Marker"), NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"))
+            form.add_number("marker_mm", tr("Marker"), NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"))
             names = [(name, name.removeprefix("DICT_").replace("_", ", ")) for name in DICTIONARIES]
-            form.add_choice(
-                "dictionary", self.tr("Markers"), names, self.tr("Size of a marker, and how many there are.")
-            )
+            form.add_choice("dictionary", tr("Markers"), names, tr("Size of a marker, and how many there are."))
         if kind == "circle_grid":
-            form.add_check("asymmetric", self.tr("Every second row moved"))
+            form.add_check("asymmetric", tr("Every second row moved"))
         self._add_truth(form)
         form.edited.connect(self._presenter.set_target, Qt.ConnectionType.QueuedConnection)
         self._put_before_the_paper(old)
@@ -95,39 +94,39 @@ class TargetPanel(QWidget):
     def _add_truth(self, form: SettingsForm) -> None:
         """How true it is: nobody need state it, but then it is assumed, and said to be."""
         made = [
-            ("", self.tr("Not stated")),
-            ("laser printer", self.tr("Printed here")),
-            ("print shop", self.tr("By a print shop")),
-            ("chrome on glass", self.tr("Chrome on glass")),
-            ("stated", self.tr("As stated below")),
+            ("", tr("Not stated")),
+            ("laser printer", tr("Printed here")),
+            ("print shop", tr("By a print shop")),
+            ("chrome on glass", tr("Chrome on glass")),
+            ("stated", tr("As stated below")),
         ]
         form.add_choice(
-            "made", self.tr("How it was made"), made,
-            self.tr("How true it is goes into every uncertainty; take the values of its certificate where it has one."),
+            "made", tr("How it was made"), made,
+            tr("How true it is goes into every uncertainty; take the values of its certificate where it has one."),
         )  # fmt: skip
         unknown = MADE["laser printer"]
         form.add_number(
             "size_per_mille",
-            self.tr("u of its size"),
+            tr("u of its size"),
             NumberRange(
-                0.0, 100.0, decimals=3, step=0.05, unit="‰", none_text=self.tr("assumed"), first=unknown.size_sd * 1e3
+                0.0, 100.0, decimals=3, step=0.05, unit="‰", none_text=tr("assumed"), first=unknown.size_sd * 1e3
             ),
-            self.tr("Standard uncertainty of all its lengths."),
+            tr("Standard uncertainty of all its lengths."),
         )
         form.add_number(
             "flatness_mm",
-            self.tr("Flatness"),
+            tr("Flatness"),
             NumberRange(
-                0.0, 100.0, decimals=3, step=0.05, unit="mm", none_text=self.tr("assumed"), first=unknown.flatness_sd_mm
+                0.0, 100.0, decimals=3, step=0.05, unit="mm", none_text=tr("assumed"), first=unknown.flatness_sd_mm
             ),
-            self.tr("Standard deviation of its edges from its plane."),
+            tr("Standard deviation of its edges from its plane."),
         )
         if "margin_mm" in self._presenter.target_values():
             form.add_number(
                 "margin_mm",
-                self.tr("Margin"),
-                NumberRange(0.0, 5000.0, decimals=1, step=1.0, unit="mm", none_text=self.tr("not known"), first=10.0),
-                self.tr("How far the plate goes on beyond what is printed on it: stripes are looked for on it only."),
+                tr("Margin"),
+                NumberRange(0.0, 5000.0, decimals=1, step=1.0, unit="mm", none_text=tr("not known"), first=10.0),
+                tr("How far the plate goes on beyond what is printed on it: stripes are looked for on it only."),
             )
 
     def _put_before_the_paper(self, old: QWidget) -> None:
@@ -148,16 +147,16 @@ class TargetPanel(QWidget):
 
     def _add_counts(self, form: SettingsForm, kind: str) -> None:
         counted = {
-            "checkerboard": self.tr("Inner corners, where four squares meet."),
-            "charuco": self.tr("Squares, black and white ones."),
-            "circle_grid": self.tr("Circles."),
+            "checkerboard": tr("Inner corners, where four squares meet."),
+            "charuco": tr("Squares, black and white ones."),
+            "circle_grid": tr("Circles."),
         }[kind]
-        form.add_number("columns", self.tr("Columns"), NumberRange(3, 500), counted)
-        form.add_number("rows", self.tr("Rows"), NumberRange(3, 500))
+        form.add_number("columns", tr("Columns"), NumberRange(3, 500), counted)
+        form.add_number("rows", tr("Rows"), NumberRange(3, 500))
 
     def _print(self) -> None:
         start = Path.home() / f"{self._kind}-target.pdf"
-        path = ask.choose_file_to_save(self, self.tr("Write the target as a PDF"), start, self.tr("PDF (*.pdf)"))
+        path = ask.choose_file_to_save(self, tr("Write the target as a PDF"), start, tr("PDF (*.pdf)"))
         if path is not None:
             path = path if path.suffix.lower() == ".pdf" else path.with_name(f"{path.name}.pdf")
             self._presenter.print_target(path, str(self.paper.currentData()))

@@ -81,22 +81,18 @@ class CameraModelForm(SettingsForm):
         super().__init__(parent)
         self._presenter = presenter
         skews = [
-            (None, self.tr("free where it helps")),
-            (True, self.tr("free")),
-            (False, self.tr("zero")),
+            (None, tr("free where it helps")),
+            (True, tr("free")),
+            (False, tr("zero")),
         ]
-        self.add_choice("skew", self.tr("Skew γ"), skews, self.tr("Whether the pixel's axes may be out of square."))
-        self.add_check(
-            "k3", self.tr("k₃ is free"), self.tr("For strongly distorting lenses; else it makes the rest less sure.")
-        )
+        self.add_choice("skew", tr("Skew γ"), skews, tr("Whether the pixel's axes may be out of square."))
+        self.add_check("k3", tr("k₃ is free"), tr("For strongly distorting lenses; else it makes the rest less sure."))
         choices = [
-            ("gross", self.tr("leave out gross ones")),
-            ("all", self.tr("leave out all that stand out")),
-            ("keep", self.tr("keep all")),
+            ("gross", tr("leave out gross ones")),
+            ("all", tr("leave out all that stand out")),
+            ("keep", tr("keep all")),
         ]
-        self.add_choice(
-            "outliers", self.tr("Misfits"), choices, self.tr("Views and corners that do not fit the others.")
-        )
+        self.add_choice("outliers", tr("Misfits"), choices, tr("Views and corners that do not fit the others."))
         self.edited.connect(presenter.set_model)
 
     def refresh(self) -> None:

@@ -10,7 +10,7 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
 from core.messages import Message
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.calibration.work import CalibrationWork, Key
 from workbench.pages.words import capital
 from workbench.work import jobs
@@ -45,7 +45,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
         return f"camera/{path.name}"
 
     def _labels(self) -> tuple[str, str]:
-        return self.tr("Camera"), self.tr("Solving the camera")
+        return tr("Camera"), tr("Solving the camera")
 
     def _can_search(self, project: Project) -> bool:
         return bool(project.sources.camera)
@@ -66,7 +66,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
             jobs.RECALL_CAMERA,
             folder,
             project,
-            label=self.tr("Reading the calibration"),
+            label=tr("Reading the calibration"),
             on_done=lambda recalled: self._recalled(folder, project, recalled),
             on_failed=lambda _: self._ask_what_was_found(folder, project),
         )
@@ -89,7 +89,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
             self.seen,
             self._model.project.options.excluded,
             self.calibration,
-            label=self.tr("Judging the views"),
+            label=tr("Judging the views"),
             on_done=lambda judgement: self._judged(key, judgement),
             replace_waiting=True,
         )

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.inspect.shown.shown_scan import DEPTH
+from workbench.language import tr
 from workbench.views.common import SpinBox
 from workbench.views.layouts import in_row
 
@@ -79,9 +80,9 @@ class SurfaceChoices(QWidget):
     def _make_shapes(self, bar: QHBoxLayout) -> None:
         group = QButtonGroup(self)
         entries: tuple[tuple[Shape, str, str], ...] = (
-            ("points", self.tr("Points"), self.tr("Show the measured points")),
-            ("mesh", self.tr("Mesh"), self.tr("Show the triangulated surface")),
-            ("both", self.tr("Both"), self.tr("Show the points on the triangulated surface")),
+            ("points", tr("Points"), tr("Show the measured points")),
+            ("mesh", tr("Mesh"), tr("Show the triangulated surface")),
+            ("both", tr("Both"), tr("Show the points on the triangulated surface")),
         )
         for name, text, tip in entries:
             button = QPushButton(text)
@@ -94,28 +95,28 @@ class SurfaceChoices(QWidget):
         group.buttonToggled.connect(lambda _, on: self.changed.emit() if on else None)
 
     def _make_colours(self, bar: QHBoxLayout) -> None:
-        self.colours.setAccessibleName(self.tr("Colour by"))
+        self.colours.setAccessibleName(tr("Colour by"))
         self.colours.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.colours.setMinimumContentsLength(7)
-        self.colours.setToolTip(self.tr("What the colours of the surface mean"))
+        self.colours.setToolTip(tr("What the colours of the surface mean"))
         for name, text in (
-            ("faces", self.tr("points used")),
-            ("height", self.tr("height")),
-            ("sigma", self.tr("σ of the points")),
-            ("deviation", self.tr("deviation from face")),
-            ("frame", self.tr("frame")),
-            ("plain", self.tr("nothing (plain)")),
+            ("faces", tr("points used")),
+            ("height", tr("height")),
+            ("sigma", tr("σ of the points")),
+            ("deviation", tr("deviation from face")),
+            ("frame", tr("frame")),
+            ("plain", tr("nothing (plain)")),
         ):
             self.colours.addItem(text, name)
         self.choose_colour("height")
         self.colours.currentIndexChanged.connect(lambda _: self.changed.emit())
-        label = QLabel(self.tr("Colour"))
+        label = QLabel(tr("Colour"))
         label.setBuddy(self.colours)
         bar.addWidget(label)
         bar.addWidget(self.colours)
 
     def _make_limit(self, bar: QHBoxLayout) -> None:
-        tip = self.tr(
+        tip = tr(
             "Show points up to this standard uncertainty σ. Only what is seen changes: the thickness uses all points "
             "of its faces."
         )
@@ -124,12 +125,12 @@ class SurfaceChoices(QWidget):
         self.slider.setRange(1, STEPS)
         self.slider.setMinimumWidth(30)
         self.slider.setMaximumWidth(150)
-        label = QLabel(self.tr("σ up to"))
+        label = QLabel(tr("σ up to"))
         label.setBuddy(self.limit)
         for widget in (label, self.limit, self.slider):
             widget.setToolTip(tip)
         for widget in (self.limit, self.slider):
-            widget.setAccessibleName(self.tr("Show points up to this σ"))
+            widget.setAccessibleName(tr("Show points up to this σ"))
         self.limit.valueChanged.connect(self._limited)
         self.slider.valueChanged.connect(self._slid)
         bar.addWidget(label)
@@ -139,7 +140,7 @@ class SurfaceChoices(QWidget):
     def _name_colours(self, view: InspectionView) -> None:
         """Without a lower face heights are depths, and there is nothing to colour by faces."""
         place = self.colours.findData("height")
-        self.colours.setItemText(place, self.tr("depth") if view.height_is == DEPTH else self.tr("height"))
+        self.colours.setItemText(place, tr("depth") if view.height_is == DEPTH else tr("height"))
         model: Any = self.colours.model()
         for name in ("faces", "deviation"):
             model.item(self.colours.findData(name)).setEnabled(view.gauge is not None)

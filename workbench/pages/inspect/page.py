@@ -38,18 +38,18 @@ class InspectPage(StepPage):
         self.series = RepeatsTab(presenter.repeats)
         self.plot, self.studies = PlotTab(presenter.features, presenter.feature), StudiesTab(presenter.studies)
         for tab, title, tip in (
-            (self.surface, self.tr("Surface"), self.tr("The measured points and the mesh in 3D")),
-            (self.picture, self.tr("Picture"), self.tr("The two faces in the camera's picture; draw regions here")),
-            (self.series, self.tr("Repeats"), self.tr("The thickness over several scans of the part")),
-            (self.plot, self.tr("Plot"), self.tr("The profile or the deviations of the chosen feature")),
-            (self.studies, self.tr("Studies"), self.tr("How good the way of measuring is: gauge R&R, acceptance")),
+            (self.surface, tr("Surface"), tr("The measured points and the mesh in 3D")),
+            (self.picture, tr("Picture"), tr("The two faces in the camera's picture; draw regions here")),
+            (self.series, tr("Repeats"), tr("The thickness over several scans of the part")),
+            (self.plot, tr("Plot"), tr("The profile or the deviations of the chosen feature")),
+            (self.studies, tr("Studies"), tr("How good the way of measuring is: gauge R&R, acceptance")),
         ):
             self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
         self.centre.addWidget(self.tabs, 1)
         self.card = StageCard(
             [
-                CardButton("measure", self.tr("Measure"), "mdi6.ruler-square", presenter.do_run),
-                CardButton("repeat", self.tr("Add to repeats"), "mdi6.playlist-plus", self._add_repeat),
+                CardButton("measure", tr("Measure"), "mdi6.ruler-square", presenter.do_run),
+                CardButton("repeat", tr("Add to repeats"), "mdi6.playlist-plus", self._add_repeat),
             ]
         )
         self.card.title.setObjectName("title")
@@ -59,13 +59,13 @@ class InspectPage(StepPage):
         self.add_to_side(self.features.form)  # above what would push it down as it comes
         self.add_to_side(self.features.state)
         self.result = ResultPanel(presenter)
-        self.result_fold = self.add_panel(self.tr("Result"), self.result)
+        self.result_fold = self.add_panel(tr("Result"), self.result)
         self.faces = FacesPanel(presenter)
-        self.add_panel(self.tr("What is measured"), self.faces)
+        self.add_panel(tr("What is measured"), self.faces)
         self.conditions = ConditionsPanel(presenter.conditions)
-        self.conditions_fold = self.add_panel(self.tr("Conditions and frame"), self.conditions, collapsed=True)
+        self.conditions_fold = self.add_panel(tr("Conditions and frame"), self.conditions, collapsed=True)
         self.picks = PicksPanel(presenter)
-        self.add_panel(self.tr("Points and distances"), self.picks)
+        self.add_panel(tr("Points and distances"), self.picks)
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
         self.features.draw.connect(self._draw)
@@ -83,12 +83,12 @@ class InspectPage(StepPage):
         self.conditions_fold.setVisible(bool(p.features.plan.features))
         said = p.conditions.in_short
         self.conditions_fold.setText(
-            tr("Conditions and frame ({said})", said=said) if said else self.tr("Conditions and frame")
+            tr("Conditions and frame ({said})", said=said) if said else tr("Conditions and frame")
         )
         for panel in (self.result, self.faces, self.features, self.conditions, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
-        self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else self.tr("Repeats"))
+        self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else tr("Repeats"))
         self.tabs.setTabVisible(PLOT, bool(p.features.plan.features))
         self._refresh_tab()
 
@@ -122,15 +122,15 @@ class InspectPage(StepPage):
         title, sentence = self._words()[stage]
         why_not = p.repeats.can_add
         self.card.buttons["measure"].setText(
-            self.tr("Measure again") if p.scan.gauge is not None else self.tr("Measure thickness")
+            tr("Measure again") if p.scan.gauge is not None else tr("Measure thickness")
         )
         fresh = stage is Stage.MEASURED
         self.card.show_stage(
             title,
             sentence,
             {
-                "measure": (p.can_measure, self.tr("Measure the thickness of the two faces (Ctrl+R)")),
-                "repeat": (why_not, self.tr("Add this scan's thickness to the series of repeats")),
+                "measure": (p.can_measure, tr("Measure the thickness of the two faces (Ctrl+R)")),
+                "repeat": (why_not, tr("Add this scan's thickness to the series of repeats")),
             },
             "" if fresh else "measure",
         )
@@ -139,15 +139,15 @@ class InspectPage(StepPage):
         p = self.presenter
         value = words.thickness(p.scan.gauge) if p.scan.gauge is not None else ""
         return {
-            Stage.NO_SCAN: (self.tr("Nothing to inspect yet"), self.tr("Scan the part first, then come back.")),
-            Stage.READING: (self.tr("Reading the scan …"), self.tr("The surface is being prepared.")),
-            Stage.UNREADABLE: (self.tr("The scan cannot be shown"), p.scan.problem),
+            Stage.NO_SCAN: (tr("Nothing to inspect yet"), tr("Scan the part first, then come back.")),
+            Stage.READING: (tr("Reading the scan …"), tr("The surface is being prepared.")),
+            Stage.UNREADABLE: (tr("The scan cannot be shown"), p.scan.problem),
             Stage.MEASURING: (
-                self.tr("Measuring the thickness …"),
-                self.tr("The faces are fitted, and the calibrations' share of the uncertainty is worked out."),
+                tr("Measuring the thickness …"),
+                tr("The faces are fitted, and the calibrations' share of the uncertainty is worked out."),
             ),
-            Stage.UNMEASURED: (self.tr("No thickness yet"), p.warning()),
-            Stage.FAILED: (self.tr("No thickness was measured"), p.problem_of_measuring),
+            Stage.UNMEASURED: (tr("No thickness yet"), p.warning()),
+            Stage.FAILED: (tr("No thickness was measured"), p.problem_of_measuring),
             Stage.MEASURED: (value, p.state.sentence),
             Stage.OUTDATED: (value, f"{p.state.sentence} {p.warning()}"),
         }

@@ -41,34 +41,34 @@ class FacesPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.form = SettingsForm()
-        none = self.tr("none")
+        none = tr("none")
         self.form.add_number(
             "nominal_mm",
-            self.tr("Nominal thickness"),
+            tr("Nominal thickness"),
             NumberRange(0.001, 5000, decimals=4, step=1.0, unit="mm", none_text=none),
-            self.tr("What the part should be; empty: no verdict."),
+            tr("What the part should be; empty: no verdict."),
         )
         self.form.add_number(
             "tolerance_mm",
-            self.tr("Tolerance ±"),
+            tr("Tolerance ±"),
             NumberRange(0.0001, 5000, decimals=4, step=0.01, unit="mm", none_text=none),
-            self.tr("Largest permitted deviation, to either side."),
+            tr("Largest permitted deviation, to either side."),
         )
         self.form.edited.connect(presenter.faces.set_number)
         self.states = {face: QLabel() for face in FACES}
         self.tools: dict[tuple[str, str], QToolButton] = {}
         self.words, self.own, self.automatic = muted(), QPushButton(), QPushButton()
-        self.own.setText(self.tr("Edit those found"))
-        self.automatic.setText(self.tr("Automatic"))
+        self.own.setText(tr("Edit those found"))
+        self.automatic.setText(tr("Automatic"))
         self.exchange = QToolButton()
         self.own.setIcon(icon("mdi6.vector-square-edit"))
         self.automatic.setIcon(icon("mdi6.auto-fix"))
         self.exchange.setIcon(icon("mdi6.swap-vertical"))
-        self.exchange.setAccessibleName(self.tr("Exchange the upper and the lower region"))
+        self.exchange.setAccessibleName(tr("Exchange the upper and the lower region"))
         self.own.clicked.connect(lambda: presenter.faces.take_found())
         self.automatic.clicked.connect(lambda: presenter.faces.find_automatically())
         self.exchange.clicked.connect(lambda: presenter.faces.exchange())
-        column = in_column(self.form, heading(self.tr("Faces")), self._rows(), self.words, on=self, spacing=4)
+        column = in_column(self.form, heading(tr("Faces")), self._rows(), self.words, on=self, spacing=4)
         row = in_row((self.own, 1), (self.automatic, 1), self.exchange)
         column.addLayout(row)
 
@@ -78,32 +78,32 @@ class FacesPanel(QWidget):
         self.form.set_values(faces.values())
         for key in NUMBERS:
             self.form.set_complaint(key, faces.complaint(key))
-        names = {"upper": self.tr("Upper"), "lower": self.tr("Lower")}
+        names = {"upper": tr("Upper"), "lower": tr("Lower")}
         for face, label in self.states.items():
             region = faces.region(face)
             if face == self._presenter.outlining:
-                state = self.tr("being outlined …")
+                state = tr("being outlined …")
             elif region is None:
-                state = self.tr("found automatically")
+                state = tr("found automatically")
             else:
                 state = tr("own region, {count} corners", count=len(region))
             colour = FACE_UPPER if face == "upper" else FACE_LOWER
             label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
-        why_not = "" if self._presenter.scan.view is not None else self.tr("There is no surface to draw on yet.")
+        why_not = "" if self._presenter.scan.view is not None else tr("There is no surface to draw on yet.")
         for (face, kind), button in self.tools.items():
             enable(button, why_not, self._tip(face, kind))
         self.words.setText(faces.missing())
         self.words.setVisible(bool(faces.missing()))
-        enable(self.own, faces.can_take_found, self.tr("Make the outlines of the faces found regions you can change"))
+        enable(self.own, faces.can_take_found, tr("Make the outlines of the faces found regions you can change"))
         enable(
             self.automatic,
             faces.can_find,
-            self.tr("Remove the regions: the two largest parallel faces are looked for again"),
+            tr("Remove the regions: the two largest parallel faces are looked for again"),
         )
         enable(
             self.exchange,
-            "" if faces.own else self.tr("The faces are found automatically: there is nothing to exchange."),
-            self.tr("Exchange the upper and the lower region"),
+            "" if faces.own else tr("The faces are found automatically: there is nothing to exchange."),
+            tr("Exchange the upper and the lower region"),
         )
 
     def _rows(self) -> QGridLayout:
@@ -127,10 +127,10 @@ class FacesPanel(QWidget):
 
     def _tip(self, face: str, kind: str) -> str:
         first = {
-            ("upper", "polygon"): self.tr("Draw the upper face corner by corner."),
-            ("lower", "polygon"): self.tr("Draw the lower face corner by corner."),
-            ("upper", "lasso"): self.tr("Draw round the upper face with the button held down."),
-            ("lower", "lasso"): self.tr("Draw round the lower face with the button held down."),
+            ("upper", "polygon"): tr("Draw the upper face corner by corner."),
+            ("lower", "polygon"): tr("Draw the lower face corner by corner."),
+            ("upper", "lasso"): tr("Draw round the upper face with the button held down."),
+            ("lower", "lasso"): tr("Draw round the lower face with the button held down."),
         }[face, kind]
         more = tr(
             "In the picture the region is what you draw. In 3D it becomes the outline, in the picture, of the plane "
@@ -148,7 +148,7 @@ class ResultPanel(QWidget):
         self._shown: object = None
         self.verdict, self.rows, self.rule = Verdict(), ValueRows(), muted()
         self.budget, self.notes = ValueRows(), muted()
-        self.budget_title, self.notes_title = heading(self.tr("Uncertainty budget")), heading(self.tr("Notes"))
+        self.budget_title, self.notes_title = heading(tr("Uncertainty budget")), heading(tr("Notes"))
         column = in_column(on=self, spacing=6)
         for widget in (
             self.verdict, self.rows, self.rule, self.budget_title, self.budget, self.notes_title, self.notes,
@@ -178,6 +178,6 @@ class ResultPanel(QWidget):
             "not proven": "not proven",
         }
         if outdated:
-            self.verdict.set_verdict("", self.tr("The result below is out of date."))
+            self.verdict.set_verdict("", tr("The result below is out of date."))
         else:
             self.verdict.set_verdict(kinds.get(gauge.verdict, ""), verdict_sentence(gauge, wording()))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QWidget
 
+from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.picks import Mode, Pick
 from workbench.pages.inspect.presenter import InspectPresenter
@@ -23,13 +24,13 @@ class PicksPanel(QWidget):
         self._presenter = presenter
         self._names: list[str] = []
         self.tools: dict[Mode, QPushButton] = {
-            "point": QPushButton(icon("mdi6.crosshairs-gps"), self.tr("Pick points")),
-            "distance": QPushButton(icon("mdi6.ruler"), self.tr("Measure distance")),
+            "point": QPushButton(icon("mdi6.crosshairs-gps"), tr("Pick points")),
+            "distance": QPushButton(icon("mdi6.ruler"), tr("Measure distance")),
         }
         self.list = QListWidget()
-        self.remove = QPushButton(icon("mdi6.playlist-remove"), self.tr("Remove"))
-        self.clear = QPushButton(icon("mdi6.close"), self.tr("Remove all"))
-        self.list.setAccessibleName(self.tr("Picked points and distances"))
+        self.remove = QPushButton(icon("mdi6.playlist-remove"), tr("Remove"))
+        self.clear = QPushButton(icon("mdi6.close"), tr("Remove all"))
+        self.list.setAccessibleName(tr("Picked points and distances"))
         self.list.setWordWrap(True)
         self.list.setFixedHeight(120)
         above, below = QHBoxLayout(), QHBoxLayout()
@@ -40,7 +41,7 @@ class PicksPanel(QWidget):
         below.addWidget(self.remove, 1)
         below.addWidget(self.clear, 1)
         self.help = muted(
-            self.tr(
+            tr(
                 "± of a point is the standard uncertainty (sd) of its depth, u of a distance the two points' share. "
                 "The calibrations' share is not in them. Points and distances are not kept with the project."
             )
@@ -55,13 +56,13 @@ class PicksPanel(QWidget):
         """Show what the presenter says now."""
         picks, ready = self._presenter.picks, self._presenter.scan.view is not None
         tips: dict[Mode, str] = {
-            "point": self.tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
-            "distance": self.tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
+            "point": tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
+            "distance": tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
         }
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)
             button.setEnabled(ready)
-            button.setToolTip(tips[mode] if ready else self.tr("There is no surface to pick on yet."))
+            button.setToolTip(tips[mode] if ready else tr("There is no surface to pick on yet."))
         names = [item.name for item in picks.items]
         if names != self._names:
             self._names = names
@@ -77,11 +78,11 @@ class PicksPanel(QWidget):
             widget.setVisible(bool(self._names))
         chosen = 0 <= self.list.currentRow() < len(self._names)
         for button, possible, tip in (
-            (self.remove, chosen, self.tr("Take the chosen one off the list")),
-            (self.clear, bool(self._names), self.tr("Take all points and distances off the list")),
+            (self.remove, chosen, tr("Take the chosen one off the list")),
+            (self.clear, bool(self._names), tr("Take all points and distances off the list")),
         ):
             button.setEnabled(possible)
-            button.setToolTip(tip if possible else self.tr("Nothing is picked yet."))
+            button.setToolTip(tip if possible else tr("Nothing is picked yet."))
 
     def _remove(self) -> None:
         row = self.list.currentRow()

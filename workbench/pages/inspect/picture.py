@@ -35,10 +35,10 @@ class PictureTab(QWidget):
         self._feature: tuple[object, ...] = ()
         self._regions = 0
         self.image, self.pictures, self.line = ImageView(), QComboBox(), muted()
-        self.pictures.setAccessibleName(self.tr("Picture"))
-        self.pictures.setToolTip(self.tr("The surface as the camera sees it, or a picture of the recording"))
+        self.pictures.setAccessibleName(tr("Picture"))
+        self.pictures.setToolTip(tr("The surface as the camera sees it, or a picture of the recording"))
         self.pictures.setMinimumContentsLength(22)
-        label = QLabel(self.tr("Picture"))
+        label = QLabel(tr("Picture"))
         label.setBuddy(self.pictures)
         bar = in_row(label, self.pictures, (self.line, 1))
         in_column(bar, (self.image, 1), on=self, margins=(6, 6, 6, 4), spacing=4)
@@ -80,10 +80,10 @@ class PictureTab(QWidget):
     def _clear(self) -> None:
         p = self._presenter
         if p.stage is Stage.NO_SCAN:
-            message = self.tr("There is no scan yet. Scan the part, then mark its faces here.")
+            message = tr("There is no scan yet. Scan the part, then mark its faces here.")
         else:
-            message = p.scan.problem or self.tr("Reading the scan …")
-        button = self.tr("Go to Scan") if p.stage is Stage.NO_SCAN else ""
+            message = p.scan.problem or tr("Reading the scan …")
+        button = tr("Go to Scan") if p.stage is Stage.NO_SCAN else ""
         self._shown = self._laid = self._feature = ()
         self.image.clear(message, button, lambda: p.go_to.emit("scan"))
         self.line.setText("")
@@ -92,7 +92,7 @@ class PictureTab(QWidget):
         names = [RELIEF, *view.pictures]
         if [self.pictures.itemData(row) for row in range(self.pictures.count())] != names:
             self.pictures.clear()
-            self.pictures.addItem(self.tr("the measured surface"), RELIEF)
+            self.pictures.addItem(tr("the measured surface"), RELIEF)
             for name in view.pictures:
                 text = name.rpartition("/")[2]
                 self.pictures.addItem(tr("{name} (shows most)", name=text) if name == view.shown else text, name)
@@ -113,17 +113,17 @@ class PictureTab(QWidget):
             region = regions[face]
             found = view.outlines[place] if view.outlines is not None and not faces.own else None
             if region is not None:
-                title = self.tr("upper face, own region") if face == "upper" else self.tr("lower face, own region")
+                title = tr("upper face, own region") if face == "upper" else tr("lower face, own region")
                 self.image.set_polygon(face, region, editable=True, colour=COLOURS[face], title=title)
             elif found is not None:
-                title = self.tr("upper face, found") if face == "upper" else self.tr("lower face, found")
+                title = tr("upper face, found") if face == "upper" else tr("lower face, found")
                 self.image.set_polygon(face, found, colour=COLOURS[face], title=title)
             else:
                 self.image.remove_layer(face)
             if view.used_uv is None:
                 self.image.remove_layer(f"used {face}")
             else:
-                title = self.tr("points used, upper") if face == "upper" else self.tr("points used, lower")
+                title = tr("points used, upper") if face == "upper" else tr("points used, lower")
                 self.image.set_points(
                     f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=3, title=title
                 )
@@ -141,7 +141,7 @@ class PictureTab(QWidget):
             name = feature.region_name(place)
             region = regions[place] if place < len(regions) else None
             if isinstance(region, Polygon):
-                title = self.tr("region of the feature")
+                title = tr("region of the feature")
                 self.image.set_polygon(name, region.corners_px, editable=True, colour=FEATURE, title=title)
             else:
                 self.image.remove_layer(name)
@@ -163,5 +163,5 @@ class PictureTab(QWidget):
         if faces.missing():
             return faces.missing()
         if faces.own:
-            return self.tr("Drag a corner of a region, or its middle to move it.")
+            return tr("Drag a corner of a region, or its middle to move it.")
         return ""

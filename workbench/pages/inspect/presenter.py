@@ -14,7 +14,7 @@ from core.files.project.data import Project
 from core.files.project.folder import source_folder
 from core.files.project.keys import finished
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.inspect.faces import FACES, InspectFaces
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
@@ -103,16 +103,16 @@ class InspectPresenter(StepPresenter):
         return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
 
     def blocker(self) -> str:
-        return self.tr("Scan the part first.") if "scan" not in self.model.results else ""
+        return tr("Scan the part first.") if "scan" not in self.model.results else ""
 
     def warning(self) -> str:
         """What the report will lack if one goes on now, or ""."""
         return {
-            Stage.UNMEASURED: self.tr("Measure the thickness, or go on without one: then the report has none."),
-            Stage.FAILED: self.tr("Without a thickness the report shows the surface only."),
-            Stage.OUTDATED: self.tr("Measure the scan again first, on the page before.")
+            Stage.UNMEASURED: tr("Measure the thickness, or go on without one: then the report has none."),
+            Stage.FAILED: tr("Without a thickness the report shows the surface only."),
+            Stage.OUTDATED: tr("Measure the scan again first, on the page before.")
             if self.scan.is_old
-            else self.tr("Measure again, or the report prints the thickness as it was."),
+            else tr("Measure again, or the report prints the thickness as it was."),
         }.get(self.stage, "")
 
     @property
@@ -124,11 +124,11 @@ class InspectPresenter(StepPresenter):
     def can_measure(self) -> str:
         """Why the thickness cannot be measured now, or ""."""
         if "scan" not in self.model.results:
-            return self.tr("Scan the part first.")
+            return tr("Scan the part first.")
         if self.scan.problem:
-            return self.tr("The scan cannot be read.")
+            return tr("The scan cannot be read.")
         if self._measuring is not None:
-            return self.tr("The thickness is being measured.")
+            return tr("The thickness is being measured.")
         return self.faces.missing()
 
     # ---- measuring
@@ -154,7 +154,7 @@ class InspectPresenter(StepPresenter):
             jobs.MEASURE_GAUGE,
             folder,
             self.scan.as_scanned(),
-            label=self.tr("Measuring the thickness"),
+            label=tr("Measuring the thickness"),
             on_done=done,
             on_failed=failed,
         )
@@ -207,7 +207,7 @@ class InspectPresenter(StepPresenter):
             jobs.READ_PICTURE,
             scans / Path(name).name,
             self.project.rig.channel_of("scan"),
-            label=self.tr("Reading a picture"),
+            label=tr("Reading a picture"),
             on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.picture else None,
             on_failed=lambda _: self.choose_picture(RELIEF),
             offers={},
@@ -223,7 +223,7 @@ class InspectPresenter(StepPresenter):
             return
         numbers = view.number[: len(chosen)][chosen]
         if not len(numbers):
-            self.bench.notices.warning(self.tr("There are no points in that region."))
+            self.bench.notices.warning(tr("There are no points in that region."))
             return
         self.outlining = face
         meant = face if face in FACES else self.feature.meant
@@ -238,7 +238,7 @@ class InspectPresenter(StepPresenter):
             folder,
             numbers[:: -(-len(numbers) // MOST_POINTS_SENT)],
             meant,
-            label=self.tr("Outlining the chosen points"),
+            label=tr("Outlining the chosen points"),
             on_done=done,
         )
         task.ended.connect(self._outlined)

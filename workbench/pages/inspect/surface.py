@@ -128,11 +128,11 @@ class SurfaceTab(QWidget):
     def _clear(self) -> None:
         p = self._presenter
         if p.stage is Stage.NO_SCAN:
-            message = self.tr("There is no scan yet. Scan the part, then look at its surface here.")
+            message = tr("There is no scan yet. Scan the part, then look at its surface here.")
         elif p.scan.problem:
             message = p.scan.problem
         else:
-            message = self.tr("Reading the scan …")
+            message = tr("Reading the scan …")
         self._later.stop()
         self._drawn = self._cloud = self._mesh = ()
         self._marked, self._oriented, self._feature, self._highlights = [], False, None, []
@@ -180,10 +180,10 @@ class SurfaceTab(QWidget):
 
     def _colouring(self, view: InspectionView, name: str) -> Colouring:
         titles = {
-            "sigma": self.tr("σ of the depth"),
-            "height": self.tr("depth") if view.height_is == DEPTH else self.tr("height over the lower face"),
-            "deviation": self.tr("deviation from the face"),
-            "frame": self.tr("frame number"),
+            "sigma": tr("σ of the depth"),
+            "height": tr("depth") if view.height_is == DEPTH else tr("height over the lower face"),
+            "deviation": tr("deviation from the face"),
+            "frame": tr("frame number"),
         }
         return Colouring(
             titles[name],
@@ -258,7 +258,7 @@ class SurfaceTab(QWidget):
                 if item.name not in self._marked:
                     self._mark(item)
             if picks.first is not None:
-                self.scene.set_labels("first", [(picks.first.place, self.tr("first end"))])
+                self.scene.set_labels("first", [(picks.first.place, tr("first end"))])
             self._marked = wanted
         if picks.mode and not self._picking:
             self.scene.start_picking()
@@ -302,7 +302,7 @@ class SurfaceTab(QWidget):
                 lower=_dot(FACE_LOWER, grouped(lower)),
             )
         self.line.setText(shown + self._legend())
-        self.hint.setText(self.tr("Outlining …") if p.outlining else p.picks.hint())
+        self.hint.setText(tr("Outlining …") if p.outlining else p.picks.hint())
 
 
 def _dot(colour: str, text: str) -> str:

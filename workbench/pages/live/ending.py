@@ -14,6 +14,7 @@ from core.files.project.data import Done
 from core.files.recording.unfinished import forget_recording, note_recording
 from core.pipeline.live.events import LiveEnded
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.pages.sources import folder_of, put_source
 from workbench.work import jobs
 
@@ -59,7 +60,7 @@ class LiveEnding(QObject):
                 jobs.ADD_RECORDING,
                 before,
                 ended.folder,
-                label=self.tr("Adding the pictures that were there"),
+                label=tr("Adding the pictures that were there"),
                 on_done=lambda _: take(keep_left_out=True),
                 on_failed=lambda _: take(),
                 on_cancelled=take,
@@ -69,10 +70,10 @@ class LiveEnding(QObject):
 
     def _label(self) -> str:
         return {
-            "camera": self.tr("record views of the target"),
-            "planes": self.tr("record poses of the plate"),
-            "scan": self.tr("record a scan"),
-            "check": self.tr("take the pictures of the check"),
+            "camera": tr("record views of the target"),
+            "planes": tr("record poses of the plate"),
+            "scan": tr("record a scan"),
+            "check": tr("take the pictures of the check"),
         }[self._step]
 
     def _forget_note(self, project: Path) -> None:

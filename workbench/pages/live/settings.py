@@ -16,7 +16,7 @@ from core.files.recording.recorder import Ending
 from core.messages import Message
 from core.pipeline.live.sources import SOURCES
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.work import jobs
 
 FIRST = next(iter(SOURCES))
@@ -99,7 +99,7 @@ class LiveSettings(QObject):
         """Set the region from four whole numbers; an empty text leaves it to the source."""
         numbers = [int(number) for number in re.findall(r"\d+", text)]
         if text.strip() and len(numbers) != 4:
-            self._complain(self.tr("A region is four whole numbers: first column, first row, width and height."))
+            self._complain(tr("A region is four whole numbers: first column, first row, width and height."))
             return
         try:
             self._keep(replace(self.values, region=Region(*numbers) if numbers else None))
@@ -144,7 +144,7 @@ class LiveSettings(QObject):
             self,
             job,
             kind,
-            label=self.tr("Looking for cameras"),
+            label=tr("Looking for cameras"),
             on_done=done,
             on_failed=lambda _: failed(),
             on_cancelled=failed,

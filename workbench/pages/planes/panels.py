@@ -77,7 +77,7 @@ class PlanesLive(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.panel = LivePanel(presenter.live)
-        self.pairs = QCheckBox(self.tr("Take each pose with the laser off, too"))
+        self.pairs = QCheckBox(tr("Take each pose with the laser off, too"))
         self.pairs.clicked.connect(presenter.set_pairs)
         inside = self.panel.layout()
         assert isinstance(inside, QVBoxLayout)
@@ -90,9 +90,9 @@ class PlanesLive(QWidget):
         self.pairs.setChecked(self._presenter.live.pairs)
         self.pairs.setEnabled(not running)
         self.pairs.setToolTip(
-            self.tr("Stop the live source first.")
+            tr("Stop the live source first.")
             if running
-            else self.tr(
+            else tr(
                 "Target and stripes are then found each in a picture of its own. The source switches the laser off for "
                 "a moment, or you are asked to; leave it out where the laser cannot be switched"
             )
@@ -105,17 +105,17 @@ class LaserForm(SettingsForm):
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.add_number("lines", self.tr("Lines"), NumberRange(1, 9), self.tr("How many lines the fixed laser draws."))
+        self.add_number("lines", tr("Lines"), NumberRange(1, 9), tr("How many lines the fixed laser draws."))
         self.add_number(
             "angle",
-            self.tr("Angle"),
-            NumberRange(0.1, 45, decimals=3, step=0.1, unit="°", none_text=self.tr("not stated"), first=5.0),
-            self.tr("Between neighbouring lines, as its maker states it."),
+            tr("Angle"),
+            NumberRange(0.1, 45, decimals=3, step=0.1, unit="°", none_text=tr("not stated"), first=5.0),
+            tr("Between neighbouring lines, as its maker states it."),
         )
         self.add_check(
             "constrain",
-            self.tr("Hold the planes to one pencil"),
-            self.tr("Steadier; used only where the free planes agree with it."),
+            tr("Hold the planes to one pencil"),
+            tr("Steadier; used only where the free planes agree with it."),
         )
         add_channel(self)
         self.edited.connect(self._tell)
@@ -132,7 +132,7 @@ class LaserForm(SettingsForm):
                 "channel": rig.channel_of("planes") or "",
             }
         )
-        one = self.tr("One line has no neighbour.") if rig.lines == 1 else ""
+        one = tr("One line has no neighbour.") if rig.lines == 1 else ""
         for key in ("angle", "constrain"):
             self.set_editable(key, not one, one)
 

@@ -47,19 +47,17 @@ class ProjectActions(QObject):
 
     def new_project(self) -> None:
         """Ask for a name and make an empty project."""
-        self._make(self.tr("New project"), self.tr("New project"), new_project)
+        self._make(tr("New project"), tr("New project"), new_project)
 
     def choose_project(self) -> None:
         """Ask for a project folder and open it."""
-        folder = ask.choose_folder(self._window, self.tr("Open a project folder"), self.bench.settings.projects_folder)
+        folder = ask.choose_folder(self._window, tr("Open a project folder"), self.bench.settings.projects_folder)
         if folder is not None:
             self.open_dropped(folder)
 
     def choose_set(self) -> None:
         """Ask for a recording set and make a project of it."""
-        folder = ask.choose_folder(
-            self._window, self.tr("Choose a recording set (a folder with rig.toml)"), Path.home()
-        )
+        folder = ask.choose_folder(self._window, tr("Choose a recording set (a folder with rig.toml)"), Path.home())
         if folder is not None:
             self.open_dropped(folder)
 
@@ -91,7 +89,7 @@ class ProjectActions(QObject):
         steps: tuple[Step, ...] = ("camera", "planes", "scan")
         for step in steps:
             if step in parts:
-                put_source(self.model, step, imported / step, self.tr("use imported pictures"))
+                put_source(self.model, step, imported / step, tr("use imported pictures"))
         self.go_to.emit(parts[0])
 
     def open_dropped(self, path: Path) -> None:
@@ -135,7 +133,7 @@ class ProjectActions(QObject):
         except InputError as error:
             self.bench.notices.failed(error)
             return
-        text = self.tr("This is an earlier version; once it is saved, the present one is among the backups.")
+        text = tr("This is an earlier version; once it is saved, the present one is among the backups.")
         folder = path.parent.parent
         access = Access.ALONE if folder == self.model.folder else choose_access(self._window, folder)
         if access is not None:
@@ -156,7 +154,7 @@ class ProjectActions(QObject):
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""
         base = self.bench.settings.projects_folder
-        names = (self.tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
+        names = (tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         name = next(name for name in names if not (base / name).exists())
         self._create(base / name, simulated_project, name, then=lambda: self.go_to.emit("camera"))
 
@@ -182,7 +180,7 @@ class ProjectActions(QObject):
             self.model.sign_out()
             self.bench.notices.info(tr("Signed out."))
             return
-        given = ask.ask_name_and_pin(self._window, self.tr("Sign in"), names)
+        given = ask.ask_name_and_pin(self._window, tr("Sign in"), names)
         if given is None:
             return
         try:
@@ -246,14 +244,14 @@ class ProjectActions(QObject):
     def _may_stop(self) -> bool:
         """Whether what runs may be stopped: asks if anything does."""
         job = self.bench.measuring.current
-        running = [self.tr("A recording is running.")] if self.model.is_recording else []
+        running = [tr("A recording is running.")] if self.model.is_recording else []
         if job is not None:
             running.append(tr("A job is not finished yet: {job}.", job=job.label))
         if not running:
             return True
         text = tr("{running} What is recorded is kept. Stop it and leave?", running=" ".join(running))
-        answers = [self.tr("Stop and leave"), self.tr("Stay")]
-        return ask.ask(self._window, self.tr("Leave the project"), text, answers, destructive=True) == 0
+        answers = [tr("Stop and leave"), tr("Stay")]
+        return ask.ask(self._window, tr("Leave the project"), text, answers, destructive=True) == 0
 
     def _saved(self) -> bool:
         """Save; False if that cannot be done, and the changes are not to be lost."""
@@ -262,9 +260,9 @@ class ProjectActions(QObject):
             return True
         if self.save():
             return True
-        text = self.tr("The project cannot be saved. Leave and lose the changes?")
-        answers = [self.tr("Leave without saving"), self.tr("Stay")]
-        return ask.ask(self._window, self.tr("Leave the project"), text, answers, destructive=True) == 0
+        text = tr("The project cannot be saved. Leave and lose the changes?")
+        answers = [tr("Leave without saving"), tr("Stay")]
+        return ask.ask(self._window, tr("Leave the project"), text, answers, destructive=True) == 0
 
     def _take_typed(self) -> None:
         """What is being typed counts, too: an editor tells its text when it loses the focus."""
@@ -313,9 +311,9 @@ class ProjectActions(QObject):
             "{count} pictures are kept in {folder}. Use them?", count=unfinished.pictures, folder=unfinished.folder
         )
         text = f"{what} {kept}"
-        answers = [self.tr("Use them"), self.tr("Leave them there")]
-        if ask.ask(self._window, self.tr("Interrupted recording"), text, answers) == 0:
-            put_source(self.model, unfinished.step, unfinished.folder, self.tr("use an interrupted recording"))
+        answers = [tr("Use them"), tr("Leave them there")]
+        if ask.ask(self._window, tr("Interrupted recording"), text, answers) == 0:
+            put_source(self.model, unfinished.step, unfinished.folder, tr("use an interrupted recording"))
             self.go_to.emit("scan" if unfinished.step == "check" else unfinished.step)
         try:
             forget_recording(folder)

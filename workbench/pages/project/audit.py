@@ -32,22 +32,22 @@ class AuditWindow(QDialog):
         super().__init__(parent)
         self._bench, self._folder = bench, folder
         self._trail = Trail()
-        self.setWindowTitle(self.tr("Audit trail"))
+        self.setWindowTitle(tr("Audit trail"))
         self.resize(820, 560)
         self.state, self.entries = muted(), QPlainTextEdit()
         self.state.setWordWrap(True)
         self.entries.setReadOnly(True)
-        self.entries.setAccessibleName(self.tr("Entries of the audit trail"))
-        self.remark = QPushButton(self.tr("Add a remark …"))
+        self.entries.setAccessibleName(tr("Entries of the audit trail"))
+        self.remark = QPushButton(tr("Add a remark …"))
         self.remark.clicked.connect(self._ask_for_remark)
         self.remark.setEnabled(not bench.model.is_read_only)
-        self.sign = QPushButton(self.tr("Sign …"))
-        self.sign.setToolTip(self.tr("Sign the project as it is, by name and PIN."))
+        self.sign = QPushButton(tr("Sign …"))
+        self.sign.setToolTip(tr("Sign the project as it is, by name and PIN."))
         self.sign.clicked.connect(self._ask_for_signature)
         self.sign.setEnabled(bool(bench.model.rules.people) and not bench.model.is_read_only)
-        self.export = QPushButton(self.tr("Export …"))
+        self.export = QPushButton(tr("Export …"))
         self.export.clicked.connect(self._export)
-        close = QPushButton(self.tr("Close"))
+        close = QPushButton(tr("Close"))
         close.clicked.connect(self.accept)
         in_column(
             self.state,
@@ -69,8 +69,8 @@ class AuditWindow(QDialog):
 
     def _ask_for_signature(self) -> None:
         names = [one.name for one in self._bench.model.rules.people]
-        given = ask.ask_name_and_pin(self, self.tr("Sign"), names)
-        meaning = "" if given is None else ask.ask_line(self, self.tr("Sign"), self.tr("What the signature means:"))
+        given = ask.ask_name_and_pin(self, tr("Sign"), names)
+        meaning = "" if given is None else ask.ask_line(self, tr("Sign"), tr("What the signature means:"))
         if given is not None and meaning:
             try:
                 sign(self._folder, *given, meaning)
@@ -89,13 +89,13 @@ class AuditWindow(QDialog):
         self.entries.setPlainText("\n\n".join(_in_words(entry) for entry in reversed(trail.entries)))
 
     def _ask_for_remark(self) -> None:
-        text, given = QInputDialog.getMultiLineText(self, self.tr("Add a remark"), self.tr("It stays for good:"))
+        text, given = QInputDialog.getMultiLineText(self, tr("Add a remark"), tr("It stays for good:"))
         if given:
             self.add_remark(text)
 
     def _export(self) -> None:
         start = self._folder.parent / f"{self._folder.name}-audit.csv"
-        path = ask.choose_file_to_save(self, self.tr("Export the audit trail"), start, "CSV (*.csv)")
+        path = ask.choose_file_to_save(self, tr("Export the audit trail"), start, "CSV (*.csv)")
         if path is None:
             return
         try:

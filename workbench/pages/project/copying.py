@@ -38,9 +38,9 @@ class ProjectCopy(QObject):
         """The project that was opened cannot be saved: offer a copy at once."""
         folder = self._model.folder
         why = tr("{folder} is read-only: what is changed or measured here cannot be saved.", folder=folder)
-        answers = [self.tr("Save a copy …"), self.tr("Look at it as it is")]
+        answers = [tr("Save a copy …"), tr("Look at it as it is")]
         text = tr("{why} Go on in a copy?", why=why)
-        if ask.ask(self._window, self.tr("Read-only project"), text, answers) == 0:
+        if ask.ask(self._window, tr("Read-only project"), text, answers) == 0:
             self.save_copy()
         else:
             self._bench.notices.warning(tr("{why} File, Save a copy, goes on in a copy.", why=why))
@@ -51,12 +51,10 @@ class ProjectCopy(QObject):
         if folder is None:
             return
         if self._model.is_recording:
-            notices.error(self.tr("Stop the recording first; then the project can be copied."))
+            notices.error(tr("Stop the recording first; then the project can be copied."))
             return
         name = tr("{name} copy", name=self._model.project.info.name or folder.name)
-        answer = ask.ask_name_and_folder(
-            self._window, self.tr("Save a copy"), name, self._bench.settings.projects_folder
-        )
+        answer = ask.ask_name_and_folder(self._window, tr("Save a copy"), name, self._bench.settings.projects_folder)
         if answer is None or (not self._model.is_read_only and not self._save()):
             return
         to = answer[1] / ask.file_name(answer[0])
@@ -65,7 +63,7 @@ class ProjectCopy(QObject):
             jobs.COPY_PROJECT,
             folder,
             to,
-            label=self.tr("Copying the project"),
+            label=tr("Copying the project"),
             on_done=lambda copy: self._go_on_in(copy, folder),
         )
 

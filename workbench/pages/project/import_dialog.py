@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from core.files.recording.import_pictures import Imported
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
@@ -54,19 +54,19 @@ class ImportDialog(QDialog):
         super().__init__(parent)
         self._bench = bench
         self._plan: ImportPlan | None = None
-        self.setWindowTitle(self.tr("Import pictures"))
+        self.setWindowTitle(tr("Import pictures"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.resize(1100, 720)
         self.camera, self.planes, self.planes_off, self.scan = (QLineEdit() for _ in range(4))
         self.target, self.order = QLineEdit(str(set_folder)), QComboBox()
-        self.order.addItem(self.tr("By name (2 before 10)"), Order.NAME)
-        self.order.addItem(self.tr("By the time they were taken"), Order.TIME)
+        self.order.addItem(tr("By name (2 before 10)"), Order.NAME)
+        self.order.addItem(tr("By the time they were taken"), Order.TIME)
         self.table, self.on, self.off, self.words = DataTable(), ImageView(), ImageView(), QLabel()
-        self.table.set_headers([(self.tr("Name in the set"), ""), (self.tr("Picture"), ""), (self.tr("Fan off"), "")])
+        self.table.set_headers([(tr("Name in the set"), ""), (tr("Picture"), ""), (tr("Fan off"), "")])
         self.words.setWordWrap(True)
         self.words.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         self.buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Cancel)
-        self.do_import = self.buttons.addButton(self.tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole)
+        self.do_import = self.buttons.addButton(tr("Import"), QDialogButtonBox.ButtonRole.AcceptRole)
         self._look = QTimer(self)
         self._look.setSingleShot(True)
         self._look.setInterval(_QUIET_MS)
@@ -87,21 +87,21 @@ class ImportDialog(QDialog):
 
     def _arrange(self) -> None:
         form = QFormLayout()
-        tip = self.tr("A folder, or a folder and a pattern of names: shots/laser_*.jpg")
+        tip = tr("A folder, or a folder and a pattern of names: shots/laser_*.jpg")
         for label, field in (
-            (self.tr("Views of the camera's target"), self.camera),
-            (self.tr("Poses of the plate, fan on"), self.planes),
-            (self.tr("The same poses, fan off"), self.planes_off),
-            (self.tr("Frames of a scan"), self.scan),
+            (tr("Views of the camera's target"), self.camera),
+            (tr("Poses of the plate, fan on"), self.planes),
+            (tr("The same poses, fan off"), self.planes_off),
+            (tr("Frames of a scan"), self.scan),
         ):
             field.setPlaceholderText(tip)
             field.textChanged.connect(self._changed)
             form.addRow(label, self._with_browse(field, label))
-        form.addRow(self.tr("Order"), self.order)
-        form.addRow(self.tr("Recording set to make"), self._with_browse(self.target, self.tr("Recording set to make")))
+        form.addRow(tr("Order"), self.order)
+        form.addRow(tr("Recording set to make"), self._with_browse(self.target, tr("Recording set to make")))
         pictures = SideBySide()
-        pictures.add_view(self.tr("Picture"), self.on)
-        pictures.add_view(self.tr("Fan off"), self.off)
+        pictures.add_view(tr("Picture"), self.on)
+        pictures.add_view(tr("Fan off"), self.off)
         preview = QSplitter(Qt.Orientation.Horizontal)
         preview.addWidget(self.table)
         preview.addWidget(pictures)
@@ -114,7 +114,7 @@ class ImportDialog(QDialog):
 
     def _with_browse(self, field: QLineEdit, label: str) -> QHBoxLayout:
         field.setAccessibleName(label)
-        browse = QPushButton(self.tr("Browse …"))
+        browse = QPushButton(tr("Browse …"))
         browse.setAccessibleName(f"{label}: {browse.text()}")
         browse.setAutoDefault(False)
 
@@ -146,7 +146,7 @@ class ImportDialog(QDialog):
             self,
             jobs.PLAN_IMPORT,
             request,
-            label=self.tr("Looking at the folders"),
+            label=tr("Looking at the folders"),
             on_done=answer(self._show_plan),
             on_failed=answer(self._show_problem),
             offers={},
@@ -158,7 +158,7 @@ class ImportDialog(QDialog):
         pictures = () if plan is None else plan.pictures
         self.table.set_rows([_row(one) for one in pictures], [str(one.source) for one in pictures])
         if plan is None:
-            told = [self.tr("Nothing is written before you press Import; the pictures themselves stay as they are.")]
+            told = [tr("Nothing is written before you press Import; the pictures themselves stay as they are.")]
         else:
             told = [f"{part}: {len(found)}, {text_of(plan.rules[part])}." for part, found in plan.parts.items()]
             told += [f"⚠ {text_of(note)}" for note in plan.notes]
@@ -198,7 +198,7 @@ class ImportDialog(QDialog):
             path,
             None,
             _PREVIEW_PX,
-            label=f"{self.tr('Reading the picture')} {int(view is self.off)}",
+            label=f"{tr('Reading the picture')} {int(view is self.off)}",
             on_done=show,
             on_failed=tell,
             replace_waiting=True,
@@ -222,7 +222,7 @@ class ImportDialog(QDialog):
             jobs.IMPORT_PICTURES,
             plan,
             Path(self.target.text().strip()),
-            label=self.tr("Importing pictures"),
+            label=tr("Importing pictures"),
             on_done=done,
             on_failed=self._failed,
             on_cancelled=lambda: self.setEnabled(True),

@@ -37,11 +37,11 @@ class ProjectPack(QObject):
         if folder is None:
             return
         if model.is_recording:
-            notices.error(self.tr("Stop the recording first; then the project can be packed."))
+            notices.error(tr("Stop the recording first; then the project can be packed."))
             return
         start = folder.parent / f"{folder.name}{PACKED}"
         file = ask.choose_file_to_save(
-            self._window, self.tr("Pack into one file"), start, tr("Packed project") + f" (*{PACKED})"
+            self._window, tr("Pack into one file"), start, tr("Packed project") + f" (*{PACKED})"
         )
         if file is None or (not model.is_read_only and not self._save()):
             return
@@ -52,7 +52,7 @@ class ProjectPack(QObject):
             jobs.PACK_PROJECT,
             folder,
             file,
-            label=self.tr("Packing the project"),
+            label=tr("Packing the project"),
             on_done=lambda packed: notices.info(
                 tr("{count} files of the project are in {file}.", count=packed.files, file=packed.path)
             ),
@@ -61,7 +61,7 @@ class ProjectPack(QObject):
     def choose(self) -> None:
         """Ask for a packed project, and unpack it."""
         file = ask.choose_file_to_open(
-            self._window, self.tr("Unpack a project"), None, tr("Packed project") + f" (*{PACKED})"
+            self._window, tr("Unpack a project"), None, tr("Packed project") + f" (*{PACKED})"
         )
         if file is not None:
             self.unpack(file)
@@ -70,7 +70,7 @@ class ProjectPack(QObject):
         """Ask where to, unpack a project there, and open it, unless another one is open by then."""
         bench, asked_at = self._bench, self._bench.model.folder
         answer = ask.ask_name_and_folder(
-            self._window, self.tr("Unpack a project"), file.stem, bench.settings.projects_folder
+            self._window, tr("Unpack a project"), file.stem, bench.settings.projects_folder
         )
         if answer is None:
             return
@@ -82,4 +82,4 @@ class ProjectPack(QObject):
                 bench.notices.info(tr("The project is in {folder}: File, Open project.", folder=folder))
 
         to = answer[1] / ask.file_name(answer[0])
-        bench.run_long(self, jobs.UNPACK_PROJECT, file, to, label=self.tr("Unpacking the project"), on_done=unpacked)
+        bench.run_long(self, jobs.UNPACK_PROJECT, file, to, label=tr("Unpacking the project"), on_done=unpacked)

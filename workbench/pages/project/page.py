@@ -27,33 +27,33 @@ class ProjectPage(StepPage):
         p = presenter
         self.what, self.who = SettingsForm(), SettingsForm()
         w, h = self.what, self.who
-        w.add_text("name", p.label("name"), self.tr("What you call this project; the window's title."))
-        w.add_text("part", p.label("part"), self.tr("What is measured, as on the drawing."))
-        w.add_text("serial", p.label("serial"), self.tr("Serial or inventory number of the part."))
+        w.add_text("name", p.label("name"), tr("What you call this project; the window's title."))
+        w.add_text("part", p.label("part"), tr("What is measured, as on the drawing."))
+        w.add_text("serial", p.label("serial"), tr("Serial or inventory number of the part."))
         for key, highest, words in (
-            ("air_celsius", 60.0, self.tr("Printed with the result; lengths at 20 °C are chosen on Inspect.")),
-            ("part_celsius", 100.0, self.tr("A steel part grows by 11.5 µm per metre and kelvin.")),
+            ("air_celsius", 60.0, tr("Printed with the result; lengths at 20 °C are chosen on Inspect.")),
+            ("part_celsius", 100.0, tr("A steel part grows by 11.5 µm per metre and kelvin.")),
         ):
-            none = self.tr("not measured")
+            none = tr("not measured")
             w.add_number(
                 key,
                 p.label(key),
                 NumberRange(-20, highest, decimals=1, step=0.5, unit="°C", none_text=none, first=20.0),
                 words,
             )
-        h.add_text("operator", p.label("operator"), self.tr("Who measures."))
-        h.add_text("laboratory", p.label("laboratory"), self.tr("Who answers for the report: its heading."))
-        h.add_text("customer", p.label("customer"), self.tr("Whom the report is for."))
-        h.add_multiline("notes", p.label("notes"), self.tr("Printed in the report as remarks."))
+        h.add_text("operator", p.label("operator"), tr("Who measures."))
+        h.add_text("laboratory", p.label("laboratory"), tr("Who answers for the report: its heading."))
+        h.add_text("customer", p.label("customer"), tr("Whom the report is for."))
+        h.add_multiline("notes", p.label("notes"), tr("Printed in the report as remarks."))
         for form in (self.what, self.who):
             form.edited.connect(presenter.set_field)
         self.centre.addWidget(self._columns())
         self.rows, self.next_words = ValueRows(), muted()
-        self.add_panel(self.tr("How far the work is"), self.rows)
+        self.add_panel(tr("How far the work is"), self.rows)
         self.add_to_side(self.next_words)
         self.place = muted()
-        self.folder = QPushButton(icon("mdi6.folder-open-outline"), self.tr("Open the project folder"))
-        self.add_panel(self.tr("Where it is kept"), self._kept())
+        self.folder = QPushButton(icon("mdi6.folder-open-outline"), tr("Open the project folder"))
+        self.add_panel(tr("Where it is kept"), self._kept())
 
     def refresh(self) -> None:
         values = self.presenter.values()
@@ -69,7 +69,7 @@ class ProjectPage(StepPage):
         column.setContentsMargins(0, 0, 0, 0)
         row = QHBoxLayout()
         row.setSpacing(12)
-        for title, form in ((self.tr("Part"), self.what), (self.tr("People and remarks"), self.who)):
+        for title, form in ((tr("Part"), self.what), (tr("People and remarks"), self.who)):
             row.addWidget(_card(heading(title), form), 1)
         column.addLayout(row)
         column.addStretch(1)
@@ -77,7 +77,7 @@ class ProjectPage(StepPage):
         scroll.setWidget(inside)
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
-        scroll.setAccessibleName(self.tr("Fields of the project"))
+        scroll.setAccessibleName(tr("Fields of the project"))
         return scroll
 
     def _kept(self) -> QWidget:
@@ -85,7 +85,7 @@ class ProjectPage(StepPage):
         column = QVBoxLayout(inside)
         column.setContentsMargins(0, 4, 0, 4)
         self.place.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self.folder.setToolTip(self.tr("Recordings, calibrations, results and the last five saved versions are in it"))
+        self.folder.setToolTip(tr("Recordings, calibrations, results and the last five saved versions are in it"))
         self.folder.clicked.connect(self._open_folder)
         column.addWidget(self.place)
         column.addWidget(self.folder)

@@ -32,15 +32,15 @@ class ProjectPresenter(StepPresenter):
         self.model.edit(label, replace(self.project, info=info))
 
     def blocker(self) -> str:
-        return "" if self.project.info.name.strip() else self.tr("Give the project a name first.")
+        return "" if self.project.info.name.strip() else tr("Give the project a name first.")
 
     def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
         """One row a step: title, state in words, the sentence that explains it, level."""
         words: dict[State, tuple[str, ProgressLevel]] = {
-            State.TODO: (self.tr("to do"), ""),
-            State.READY: (self.tr("ready"), ""),
-            State.DONE: (self.tr("done"), "good"),
-            State.OUTDATED: (self.tr("out of date"), "warn"),
+            State.TODO: (tr("to do"), ""),
+            State.READY: (tr("ready"), ""),
+            State.DONE: (tr("done"), "good"),
+            State.OUTDATED: (tr("out of date"), "warn"),
         }
         states = self.model.states
         titles = self._titles()
@@ -56,7 +56,7 @@ class ProjectPresenter(StepPresenter):
         for step in ORDER:
             if states[step].state is not State.DONE:
                 return tr("Next: {step}. {sentence}", step=self._titles()[step], sentence=states[step].sentence)
-        return self.tr("All steps are done.")
+        return tr("All steps are done.")
 
     def place(self) -> str:
         """The project's folder."""
@@ -64,24 +64,24 @@ class ProjectPresenter(StepPresenter):
 
     def _titles(self) -> dict[str, str]:
         return {
-            "project": self.tr("Project"),
-            "camera": self.tr("Camera"),
-            "planes": self.tr("Laser planes"),
-            "scan": self.tr("Scan"),
-            "inspect": self.tr("Inspect"),
-            "report": self.tr("Report"),
+            "project": tr("Project"),
+            "camera": tr("Camera"),
+            "planes": tr("Laser planes"),
+            "scan": tr("Scan"),
+            "inspect": tr("Inspect"),
+            "report": tr("Report"),
         }
 
     def label(self, name: str) -> str:
         """What a field is called on screen."""
         return {
-            "name": self.tr("Name"),
-            "part": self.tr("Part"),
-            "serial": self.tr("Serial number"),
-            "operator": self.tr("Operator"),
-            "customer": self.tr("Customer"),
-            "laboratory": self.tr("Laboratory"),
-            "air_celsius": self.tr("Air temperature"),
-            "part_celsius": self.tr("Part temperature"),
-            "notes": self.tr("Notes"),
+            "name": tr("Name"),
+            "part": tr("Part"),
+            "serial": tr("Serial number"),
+            "operator": tr("Operator"),
+            "customer": tr("Customer"),
+            "laboratory": tr("Laboratory"),
+            "air_celsius": tr("Air temperature"),
+            "part_celsius": tr("Part temperature"),
+            "notes": tr("Notes"),
         }[name]

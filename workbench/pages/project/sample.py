@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project.folder import is_project
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -33,7 +34,7 @@ class SampleProject(QObject):
     def open(self) -> None:
         """Open the sample, or begin to make it; it opens then by itself, unless another project is open by then."""
         if self._task is not None:
-            self._bench.notices.info(self.tr("The sample is being prepared; the status bar says how far it is."))
+            self._bench.notices.info(tr("The sample is being prepared; the status bar says how far it is."))
             return
         folder, asked_at = self._folder(), self._bench.model.folder
         if is_project(folder):
@@ -45,19 +46,19 @@ class SampleProject(QObject):
             if self._bench.model.folder == asked_at:
                 self._open_project(project)
             else:
-                self._bench.notices.info(self.tr("The sample is ready: File, Open sample."))
+                self._bench.notices.info(tr("The sample is ready: File, Open sample."))
 
         def cancelled() -> None:
             self._ended()
             self._bench.run_quick(
-                self, jobs.CLEAR_SAMPLE, folder, label=self.tr("Clearing up"), on_done=lambda _: None, offers={}
+                self, jobs.CLEAR_SAMPLE, folder, label=tr("Clearing up"), on_done=lambda _: None, offers={}
             )
 
         self._task = self._bench.run_long(
             self,
             jobs.SAMPLE_PROJECT,
             folder,
-            label=self.tr("Preparing the sample"),
+            label=tr("Preparing the sample"),
             on_done=made,
             on_failed=lambda _: self._ended(),
             on_cancelled=cancelled,
@@ -66,7 +67,7 @@ class SampleProject(QObject):
 
     def _folder(self) -> Path:
         """Where the sample is, or the first free place for it."""
-        base, name = self._bench.settings.projects_folder, self.tr("Sample")
+        base, name = self._bench.settings.projects_folder, tr("Sample")
         places = (base / (name if number == 1 else f"{name} {number}") for number in range(1, 1000))
         return next(place for place in places if is_project(place) or not place.exists())
 

@@ -37,14 +37,14 @@ class WelcomePage(QWidget):
         self._refreshing = Refresh(self.refresh, self)  # a project may be forgotten by an action of the list itself
         title = QLabel("Trisect")
         title.setStyleSheet("font-size: 34px; font-weight: 300;")
-        claim = QLabel(self.tr("Measure a part with one camera and two lasers, and know how far to trust the number."))
+        claim = QLabel(tr("Measure a part with one camera and two lasers, and know how far to trust the number."))
         claim.setObjectName("muted")
         grid = QGridLayout()
         grid.setSpacing(10)
         self.sample = self._link(
             "mdi6.cube-scan",
-            self.tr("Open sample"),
-            self.tr(
+            tr("Open sample"),
+            tr(
                 "A finished measurement of a 50 mm gauge block, to look around in. The first time it is rendered "
                 "and measured, in about a minute."
             ),
@@ -52,42 +52,42 @@ class WelcomePage(QWidget):
         )
         self.simulated = self._link(
             "mdi6.laser-pointer",
-            self.tr("Try with the simulated rig"),
-            self.tr("Calibrate, scan and measure live, without any hardware."),
+            tr("Try with the simulated rig"),
+            tr("Calibrate, scan and measure live, without any hardware."),
             projects.try_simulated,
         )
         self.new = self._link(
             "mdi6.file-plus-outline",
-            self.tr("New project"),
-            self.tr("Start an empty project for your own rig."),
+            tr("New project"),
+            tr("Start an empty project for your own rig."),
             projects.new_project,
         )
         self.open = self._link(
             "mdi6.folder-open-outline",
-            self.tr("Open project"),
-            self.tr("Go on with a project, or drop its folder here."),
+            tr("Open project"),
+            tr("Go on with a project, or drop its folder here."),
             projects.choose_project,
         )
         self.from_set = self._link(
             "mdi6.folder-multiple-image",
-            self.tr("Project from a recording set"),
-            self.tr("Measure pictures that are there already: a folder with rig.toml."),
+            tr("Project from a recording set"),
+            tr("Measure pictures that are there already: a folder with rig.toml."),
             projects.choose_set,
         )
         self.from_pictures = self._link(
             "mdi6.image-multiple-outline",
-            self.tr("Import pictures"),
-            self.tr("Make a recording set of folders of another program; nothing is copied where it can be linked."),
+            tr("Import pictures"),
+            tr("Make a recording set of folders of another program; nothing is copied where it can be linked."),
             projects.import_pictures,
         )
         ways = (self.sample, self.simulated, self.new, self.open, self.from_set, self.from_pictures)
         for place, link in enumerate(ways):
             grid.addWidget(link, place, 0)
         self.recent = self._recent_list()
-        heading = QLabel(self.tr("Recent projects"))
+        heading = QLabel(tr("Recent projects"))
         heading.setObjectName("heading")
         heading.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
-        self._none = QLabel(self.tr("Projects you open appear here."))
+        self._none = QLabel(tr("Projects you open appear here."))
         self._none.setObjectName("muted")
         self._none.setAlignment(Qt.AlignmentFlag.AlignTop)
         right = in_column(heading, (self._none, 1), (self.recent, 1), spacing=6)
@@ -126,20 +126,20 @@ class WelcomePage(QWidget):
     def _show_sample(self) -> None:
         preparing = self._projects.sample.preparing
         self.sample.setEnabled(not preparing)
-        self.sample.setText(self.tr("Preparing the sample …") if preparing else self.tr("Open sample"))
-        self.sample.setToolTip(self.tr("It is being prepared; the status bar says how far it is.") if preparing else "")
+        self.sample.setText(tr("Preparing the sample …") if preparing else tr("Open sample"))
+        self.sample.setToolTip(tr("It is being prepared; the status bar says how far it is.") if preparing else "")
 
     def _recent_list(self) -> QListWidget:
         """One click or Enter opens; Delete or the menu leaves a project out of the list."""
         listed = QListWidget()
-        listed.setAccessibleName(self.tr("Recent projects"))
+        listed.setAccessibleName(tr("Recent projects"))
         listed.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         listed.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         listed.setSpacing(2)
         listed.setFrameShape(QFrame.Shape.NoFrame)
         listed.itemActivated.connect(self._open_recent)
         listed.itemClicked.connect(self._open_recent)
-        forget = QAction(self.tr("Leave out of this list"), listed)
+        forget = QAction(tr("Leave out of this list"), listed)
         forget.setShortcut(QKeySequence(QKeySequence.StandardKey.Delete))
         forget.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
         forget.triggered.connect(self._forget)

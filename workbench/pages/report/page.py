@@ -30,7 +30,7 @@ class ReportPage(StepPage):
         self.preview = PageScroll()
         self.centre.addWidget(self.preview, 1)
         self.card = StageCard(
-            [CardButton("make", self.tr("Make the report"), "mdi6.file-certificate-outline", presenter.do_run)]
+            [CardButton("make", tr("Make the report"), "mdi6.file-certificate-outline", presenter.do_run)]
         )
         self.make = self.card.buttons["make"]
         self.warning = muted()
@@ -39,11 +39,11 @@ class ReportPage(StepPage):
         self.boxes: dict[str, QCheckBox] = {}
         self.paper, self.language = QComboBox(), QComboBox()
         self.template, self.no_template, self.template_name = QPushButton(), QPushButton(), QLabel()
-        self.add_panel(self.tr("In the report"), self._choices())
+        self.add_panel(tr("In the report"), self._choices())
         self.exports: dict[str, QPushButton | QAction] = {}
-        self.more = QPushButton(self.tr("More formats"))
-        self.folder = QPushButton(self.tr("Results folder"))
-        self.add_panel(self.tr("Hand over"), self._hand_over())
+        self.more = QPushButton(tr("More formats"))
+        self.folder = QPushButton(tr("Results folder"))
+        self.add_panel(tr("Hand over"), self._hand_over())
         self._shown: object = None
 
     def refresh(self) -> None:
@@ -63,27 +63,27 @@ class ReportPage(StepPage):
         nothing = all(p.export_missing(kind) for kind in self.exports)
         self.more.setEnabled(not nothing)
         self.more.setToolTip(
-            p.export_missing("pdf") if nothing else self.tr("Other programs' formats: E57, 3MF, DFQ, QIF and more")
+            p.export_missing("pdf") if nothing else tr("Other programs' formats: E57, 3MF, DFQ, QIF and more")
         )
-        why = "" if p.results_folder() is not None else self.tr("There are no results yet.")
+        why = "" if p.results_folder() is not None else tr("There are no results yet.")
         enable(self.folder, why, str(p.results_folder()))
         self._show_pages()
 
     def _show_stage(self, stage: Stage) -> None:
         p = self.presenter
         title, words = {
-            Stage.NONE: (self.tr("Nothing to report yet"), p.blocker()),
+            Stage.NONE: (tr("Nothing to report yet"), p.blocker()),
             Stage.READY: (
-                self.tr("Not made yet"),
-                self.tr("These are its pages. Made, it is kept with the results of the project."),
+                tr("Not made yet"),
+                tr("These are its pages. Made, it is kept with the results of the project."),
             ),
-            Stage.MAKING: (self.tr("Making the report …"), self.tr("It is written into the results of the project.")),
-            Stage.MADE: (self.tr("The report is made"), p.state.sentence),
-            Stage.OUTDATED: (self.tr("The report is out of date"), p.state.sentence),
+            Stage.MAKING: (tr("Making the report …"), tr("It is written into the results of the project.")),
+            Stage.MADE: (tr("The report is made"), p.state.sentence),
+            Stage.OUTDATED: (tr("The report is out of date"), p.state.sentence),
         }[stage]
-        tip = self.tr("Write report.pdf into the results of the project (Ctrl+R)")
+        tip = tr("Write report.pdf into the results of the project (Ctrl+R)")
         again = stage in (Stage.MADE, Stage.OUTDATED)
-        self.make.setText(self.tr("Make it again") if again else self.tr("Make the report"))
+        self.make.setText(tr("Make it again") if again else tr("Make the report"))
         primary = "make" if stage in (Stage.READY, Stage.OUTDATED) else ""
         self.card.show_stage(title, words, {"make": (p.why_not_make(), tip)}, primary)
 
@@ -92,9 +92,9 @@ class ReportPage(StepPage):
         if p.pages is not self._shown:
             self._shown = p.pages
             self.preview.set_pages(p.pages)
-        drawing = self.tr("Drawing the pages …") if p.drawing else ""
+        drawing = tr("Drawing the pages …") if p.drawing else ""
         if p.stage is Stage.NONE:
-            self.preview.set_message(p.blocker(), self.tr("Go to Scan"), lambda: p.go_to.emit("scan"))
+            self.preview.set_message(p.blocker(), tr("Go to Scan"), lambda: p.go_to.emit("scan"))
         else:
             self.preview.set_message(drawing or p.problem or p.blocker())
         self.preview.set_note(drawing if p.pages else "")
@@ -111,7 +111,7 @@ class ReportPage(StepPage):
             column.addWidget(box)
         column.addLayout(self._looks())
         column.addWidget(
-            muted(self.tr("The result, what it does not cover, and the hash over all inputs are always printed."))
+            muted(tr("The result, what it does not cover, and the hash over all inputs are always printed."))
         )
         return inside
 
@@ -124,8 +124,8 @@ class ReportPage(StepPage):
             self.language.addItem(own_name(language), language)
         for row, (box, title, tip) in enumerate(
             (
-                (self.paper, self.tr("Paper"), self.tr("What the report is printed on")),
-                (self.language, self.tr("Language"), self.tr("The language of the report's fixed words")),
+                (self.paper, tr("Paper"), tr("What the report is printed on")),
+                (self.language, tr("Language"), tr("The language of the report's fixed words")),
             )
         ):
             label = QLabel(title)
@@ -137,12 +137,12 @@ class ReportPage(StepPage):
         self.paper.textActivated.connect(self.presenter.choose_paper)
         self.language.activated.connect(lambda _: self.presenter.choose_language(self.language.currentData()))
         self.template_name.setWordWrap(True)
-        self.template.setText(self.tr("Choose template …"))
-        self.template.setToolTip(self.tr("Logo, address, colours and text of your laboratory, from a template.toml"))
-        self.no_template.setText(self.tr("None"))
+        self.template.setText(tr("Choose template …"))
+        self.template.setToolTip(tr("Logo, address, colours and text of your laboratory, from a template.toml"))
+        self.no_template.setText(tr("None"))
         self.template.clicked.connect(self._choose_template)
         self.no_template.clicked.connect(lambda: self.presenter.choose_template(None))
-        grid.addWidget(QLabel(self.tr("Template")), 2, 0)
+        grid.addWidget(QLabel(tr("Template")), 2, 0)
         grid.addWidget(self.template_name, 2, 1, 1, 2)
         grid.addWidget(self.template, 3, 1)
         grid.addWidget(self.no_template, 3, 2)
@@ -152,19 +152,19 @@ class ReportPage(StepPage):
         report = self.presenter.project.report
         self.paper.setCurrentText(report.paper)
         self.language.setCurrentIndex(self.language.findData(report.language))
-        self.template_name.setText(report.template.rpartition("/")[2] or self.tr("none"))
+        self.template_name.setText(report.template.rpartition("/")[2] or tr("none"))
         self.template_name.setToolTip(report.template)
         open_ = self.presenter.model.is_open
-        why_not = "" if open_ else self.tr("Open a project first.")
+        why_not = "" if open_ else tr("Open a project first.")
         self.template.setEnabled(open_)
         self.no_template.setEnabled(bool(report.template))
         self.no_template.setToolTip(
-            why_not or (self.tr("Print without a template") if report.template else self.tr("No template is chosen."))
+            why_not or (tr("Print without a template") if report.template else tr("No template is chosen."))
         )
 
     def _choose_template(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Template of the report"), self.presenter.model.folder, self.tr("Template (*.toml)")
+            self, tr("Template of the report"), self.presenter.model.folder, tr("Template (*.toml)")
         )
         if path is not None:
             self.presenter.choose_template(path)
@@ -197,13 +197,13 @@ class ReportPage(StepPage):
 
     def _export_help(self, kind: str) -> str:
         if kind == "pdf" and self.presenter.stage is not Stage.MADE:
-            return self.tr("Make the report as it is shown here, and write a copy where you want it")
+            return tr("Make the report as it is shown here, and write a copy where you want it")
         return export_words(kind)[1]
 
     def _export(self, kind: str) -> None:
         ending = EXPORTS[kind].ending
         kinds = f"{ending.removeprefix('.').upper()} (*{ending})"
-        path = ask.choose_file_to_save(self, self.tr("Write a copy"), self.presenter.export_place(kind), kinds)
+        path = ask.choose_file_to_save(self, tr("Write a copy"), self.presenter.export_place(kind), kinds)
         if path is not None:
             self.presenter.export(kind, path)
 

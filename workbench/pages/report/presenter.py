@@ -60,12 +60,12 @@ class ReportPresenter(StepPresenter):
     def empty_section(self, name: str) -> str:
         """Why a section has nothing to print yet, or ""."""
         nothing = {
-            "repeats": "" if self.project.repeats else self.tr("No scan has been added to the repeats yet."),
+            "repeats": "" if self.project.repeats else tr("No scan has been added to the repeats yet."),
             "studies": ""
             if any(study.included for study in self.project.studies)
-            else self.tr("No study is ticked on the Inspect page, tab Studies."),
-            "remarks": "" if self.project.info.notes else self.tr("There are no notes on the Project page yet."),
-            "budget": "" if "inspect" in self.model.results else self.tr("The thickness has not been measured yet."),
+            else tr("No study is ticked on the Inspect page, tab Studies."),
+            "remarks": "" if self.project.info.notes else tr("There are no notes on the Project page yet."),
+            "budget": "" if "inspect" in self.model.results else tr("The thickness has not been measured yet."),
         }
         return nothing.get(name, "")
 
@@ -85,7 +85,7 @@ class ReportPresenter(StepPresenter):
     def choose_language(self, language: Any) -> None:
         """English or German; undoable."""
         report = replace(self.project.report, language=language)
-        self.model.edit(self.tr("language of the report"), replace(self.project, report=report))
+        self.model.edit(tr("language of the report"), replace(self.project, report=report))
 
     def choose_template(self, path: Path | None) -> None:
         """Print with the template in this file (None: without any), and as it says; undoable."""
@@ -95,7 +95,7 @@ class ReportPresenter(StepPresenter):
 
         def done(report: Any) -> None:
             if folder == self.model.folder and choices == self.project.report:
-                label = self.tr("report without a template") if path is None else self.tr("template of the report")
+                label = tr("report without a template") if path is None else tr("template of the report")
                 self.model.edit(label, replace(self.project, report=report))
 
         self.bench.run_quick(
@@ -104,7 +104,7 @@ class ReportPresenter(StepPresenter):
             folder,
             choices,
             path,
-            label=self.tr("Reading the template"),
+            label=tr("Reading the template"),
             on_done=done,
             offers={},
         )
@@ -125,12 +125,12 @@ class ReportPresenter(StepPresenter):
         return "scan" in self.model.results
 
     def blocker(self) -> str:
-        return "" if self.ready() else self.tr("Scan the part first; then there is something to report.")
+        return "" if self.ready() else tr("Scan the part first; then there is something to report.")
 
     def warning(self) -> str:
         """What is out of date in the results the report prints, or ""."""
         states = self.model.states
-        titles = {"scan": self.tr("Scan"), "inspect": self.tr("Inspect")}
+        titles = {"scan": tr("Scan"), "inspect": tr("Inspect")}
         for step, title in titles.items():
             if states[step].state is State.OUTDATED:
                 return tr(
@@ -140,7 +140,7 @@ class ReportPresenter(StepPresenter):
                 )
         features = self.model.results.get("features")
         if features is not None and changed(features.rests_on, rests_on("features", self.project, self.model.results)):
-            return self.tr(
+            return tr(
                 "Inspect: the features or the scan have changed since the features were measured. The report prints "
                 "what was measured then."
             )
@@ -156,11 +156,9 @@ class ReportPresenter(StepPresenter):
     def why_not_make(self) -> str:
         """Why the report cannot be made now, or ""."""
         if self._making is not None:
-            return self.tr("The report is being made.")
+            return tr("The report is being made.")
         if self.ready() and self.read_only:
-            return self.tr(
-                "The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy)."
-            )
+            return tr("The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy).")
         return self.blocker()
 
     def do_run(self) -> None:
@@ -181,24 +179,24 @@ class ReportPresenter(StepPresenter):
         """Why this cannot be handed over yet, or ""."""
         needs, results = EXPORTS[kind].needs, self.model.results
         if needs == "camera":
-            return "" if "camera" in results else self.tr("Calibrate the camera first.")
+            return "" if "camera" in results else tr("Calibrate the camera first.")
         if not self.ready():
-            return self.tr("Scan the part first.")
+            return tr("Scan the part first.")
         if kind == "pdf" and self._making is not None:
-            return self.tr("The report is being made.")
+            return tr("The report is being made.")
         if needs == "inspect" and "inspect" not in results and (kind == "json" or "features" not in results):
-            return self.tr("Measure the thickness first.")
+            return tr("Measure the thickness first.")
         return ""
 
     def export_place(self, kind: str) -> Path:
         """The file proposed for an export: where the last one was put, called like the part."""
-        name = self.project.info.part or self.project.info.name or self.tr("result")
-        name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or self.tr("result")
+        name = self.project.info.part or self.project.info.name or tr("result")
+        name = "".join("-" if c in '<>:"/\\|?*' or ord(c) < 32 else c for c in name).strip(" .") or tr("result")
         words = {
-            "surface": self.tr("surface"),
-            "thickness": self.tr("thickness"),
-            "results": self.tr("results"),
-            "camera": self.tr("camera"),
+            "surface": tr("surface"),
+            "thickness": tr("thickness"),
+            "results": tr("results"),
+            "camera": tr("camera"),
         }
         called = EXPORTS[kind].called
         name += f" {words[called]}" if called else ""
@@ -233,7 +231,7 @@ class ReportPresenter(StepPresenter):
             jobs.MAKE_REPORT,
             folder,
             project,
-            label=self.tr("Making the report"),
+            label=tr("Making the report"),
             on_done=done,
             on_failed=ended,
             on_cancelled=ended,
@@ -310,7 +308,7 @@ class ReportPresenter(StepPresenter):
             self.model.folder,
             self.project,
             PAGE_WIDTH_PX,
-            label=self.tr("Drawing the pages"),
+            label=tr("Drawing the pages"),
             on_done=lambda pages: self._show(wanted, pages, ""),
             on_failed=lambda problem: self._show(wanted, (), text_of(problem)),
             on_cancelled=lambda: self._show(wanted, self.pages, ""),

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from workbench.language import tr
 from workbench.pages.scan import words
 from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
@@ -31,7 +32,7 @@ class FrameBar(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.back, self.on = QToolButton(), QToolButton()
-        self.slider, self.used, self.said = QSlider(Qt.Orientation.Horizontal), QCheckBox(self.tr("use it")), muted()
+        self.slider, self.used, self.said = QSlider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), muted()
         self.stages: dict[View, QPushButton] = {}
         self._group = QButtonGroup(self)
         self._lay_out()
@@ -59,7 +60,7 @@ class FrameBar(QWidget):
         measured = p.record_of(scrub.current) is not None
         points = self.stages[View.POINTS]
         points.setEnabled(measured)
-        points.setToolTip(self._tips()[View.POINTS] if measured else self.tr("Measure the scan first."))
+        points.setToolTip(self._tips()[View.POINTS] if measured else tr("Measure the scan first."))
 
     def choose(self, view: View) -> None:
         """Show a stage as chosen."""
@@ -67,12 +68,12 @@ class FrameBar(QWidget):
 
     def _lay_out(self) -> None:
         titles = {
-            View.RECORDED: self.tr("Recorded"),
-            View.DIFFERENCE: self.tr("Difference"),
-            View.RIDGE: self.tr("Ridge strength"),
-            View.CENTRELINES: self.tr("Centrelines"),
-            View.CROSSINGS: self.tr("Crossings"),
-            View.POINTS: self.tr("Points"),
+            View.RECORDED: tr("Recorded"),
+            View.DIFFERENCE: tr("Difference"),
+            View.RIDGE: tr("Ridge strength"),
+            View.CENTRELINES: tr("Centrelines"),
+            View.CROSSINGS: tr("Crossings"),
+            View.POINTS: tr("Points"),
         }
         row = QHBoxLayout()
         row.setSpacing(0)
@@ -85,8 +86,8 @@ class FrameBar(QWidget):
             self.stages[view] = button
             row.addWidget(button, 1)
         for tool, symbol, tip in (
-            (self.back, "mdi6.chevron-left", self.tr("The frame before (←)")),
-            (self.on, "mdi6.chevron-right", self.tr("The next frame (→)")),
+            (self.back, "mdi6.chevron-left", tr("The frame before (←)")),
+            (self.on, "mdi6.chevron-right", tr("The next frame (→)")),
         ):
             tool.setIcon(icon(symbol))
             tool.setAutoRaise(True)
@@ -94,11 +95,9 @@ class FrameBar(QWidget):
             tool.setIconSize(QSize(18, 18))
             tool.setToolTip(tip)
             tool.setAccessibleName(tip)
-        self.slider.setAccessibleName(self.tr("Frame"))
-        self.slider.setToolTip(self.tr("Go through the frames (← and →)"))
-        self.used.setToolTip(
-            self.tr("Whether this frame counts; take the tick away to leave it out, then measure again")
-        )
+        self.slider.setAccessibleName(tr("Frame"))
+        self.slider.setToolTip(tr("Go through the frames (← and →)"))
+        self.used.setToolTip(tr("Whether this frame counts; take the tick away to leave it out, then measure again"))
         along = QHBoxLayout()
         along.setSpacing(4)
         for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.used, 0)):
@@ -110,10 +109,10 @@ class FrameBar(QWidget):
 
     def _tips(self) -> dict[View, str]:
         return {
-            View.RECORDED: self.tr("The picture as it was recorded"),
-            View.DIFFERENCE: self.tr("The picture without the reference, brightened: the hand-held laser alone"),
-            View.RIDGE: self.tr("How much each place looks like a stripe (Steger's strength), brightened"),
-            View.CENTRELINES: self.tr("The centrelines found: the fan's by number, and the sweep's"),
-            View.CROSSINGS: self.tr("Where sweep and fan cross: good, weak or left out; hover for the reason"),
-            View.POINTS: self.tr("The measured points of this frame, coloured by σ"),
+            View.RECORDED: tr("The picture as it was recorded"),
+            View.DIFFERENCE: tr("The picture without the reference, brightened: the hand-held laser alone"),
+            View.RIDGE: tr("How much each place looks like a stripe (Steger's strength), brightened"),
+            View.CENTRELINES: tr("The centrelines found: the fan's by number, and the sweep's"),
+            View.CROSSINGS: tr("Where sweep and fan cross: good, weak or left out; hover for the reason"),
+            View.POINTS: tr("The measured points of this frame, coloured by σ"),
         }

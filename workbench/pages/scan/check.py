@@ -122,7 +122,7 @@ class RigCheck(QObject):
             jobs.CHECK_RIG,
             folder,
             project,
-            label=self.tr("Check"),
+            label=tr("Check"),
             on_done=lambda look: self._checked(task, folder, project, look),
             on_failed=lambda problem: self._not_checked(task, project, text_of(problem)),
             on_cancelled=lambda: self._not_checked(task, project, ""),
@@ -159,9 +159,7 @@ class RigCheck(QObject):
                 self._read_history()
                 self.changed.emit()
 
-        self._bench.run_quick(
-            self, jobs.SHOW_CHECK, folder, label=self.tr("Reading the check"), on_done=read, offers={}
-        )
+        self._bench.run_quick(self, jobs.SHOW_CHECK, folder, label=tr("Reading the check"), on_done=read, offers={})
 
     def _checked(self, task: Task, folder: Path, project: Project, look: InterimCheck) -> None:
         if task is not self._task:
@@ -186,7 +184,7 @@ class RigCheck(QObject):
             self,
             jobs.CHECK_HISTORY,
             self._model.project,
-            label=self.tr("Reading the history of the rig"),
+            label=tr("Reading the history of the rig"),
             on_done=read,
             offers={},
         )

@@ -37,7 +37,7 @@ class CheckCard(QFrame):
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
         self.chart = ControlPlot()
         self.take, self.choose, self.run = QPushButton(), QPushButton(), QPushButton()
-        self.choose.setAccessibleName(self.tr("Folder with the pictures of the check"))
+        self.choose.setAccessibleName(tr("Folder with the pictures of the check"))
         self.choose.setFixedWidth(36)  # three buttons fit side by side where the panel is narrow
         self.choose.setIcon(icon("mdi6.folder-open-outline"))
         self.take.clicked.connect(self._take)
@@ -47,7 +47,7 @@ class CheckCard(QFrame):
         live.sounded.connect(self._beep)
         light = in_row(self.sign, (self.word, 1), spacing=6)
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
-        title = heading(self.tr("Check of camera and laser"))
+        title = heading(tr("Check of camera and laser"))
         in_column(
             title, light, self.sentence, self.rows, self.chart, buttons, on=self, margins=(10, 8, 10, 10), spacing=5
         )
@@ -75,29 +75,27 @@ class CheckCard(QFrame):
         self._show_chart(check.history, past)
         self.rows.setVisible(shown is not None)
         checking = stage is CheckStage.CHECKING
-        self.take.setText(self.tr("Stop") if taking else self.tr("Take pictures"))
+        self.take.setText(tr("Stop") if taking else tr("Take pictures"))
         self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
-        why_not = self.tr("Stopping …") if self._live.stopping else "" if taking else self._live.cannot_start()
+        why_not = tr("Stopping …") if self._live.stopping else "" if taking else self._live.cannot_start()
         enable(
             self.take,
             why_not,
-            self.tr("Check with the pictures taken so far")
+            tr("Check with the pictures taken so far")
             if taking
-            else self.tr(
-                "Hold the plane target into the fan: up to three pictures are taken by themselves, then checked"
-            ),
+            else tr("Hold the plane target into the fan: up to three pictures are taken by themselves, then checked"),
         )
         self.choose.setEnabled(not taking)
         self.choose.setToolTip(
             tr("Choose the folder with pictures of the plane target in the fan, taken today (now: {folder})",
                folder=check.folder or tr("none"))
         )  # fmt: skip
-        self.run.setText(self.tr("Cancel") if checking else self.tr("Check again") if shown else self.tr("Check"))
+        self.run.setText(tr("Cancel") if checking else tr("Check again") if shown else tr("Check"))
         self.run.setIcon(icon("mdi6.stop" if checking else "mdi6.play"))
-        tip = self.tr("Stop checking; the result before is kept") if checking else self.tr(
+        tip = tr("Stop checking; the result before is kept") if checking else tr(
             "Compare the stripes in the pictures with where the calibrations have them"
         )  # fmt: skip
-        cannot = self.tr("Pictures of the check are being taken.") if taking else check.cannot_check
+        cannot = tr("Pictures of the check are being taken.") if taking else check.cannot_check
         enable(self.run, "" if checking else cannot, tip)
 
     def show_detail(self, detail: Detail | None) -> None:
@@ -115,7 +113,7 @@ class CheckCard(QFrame):
 
     def _taking(self) -> tuple[Level, str, str]:
         """Level, word and sentence while pictures are taken."""
-        hold = self.tr("Hold the plane target into the fan where the parts will be, each time tilted another way.")
+        hold = tr("Hold the plane target into the fan where the parts will be, each time tilted another way.")
         live = self._live
         return "", live.counts_text() or live.state_text(), f"{hold}\n{self._seen}" if self._seen else hold
 
@@ -124,21 +122,21 @@ class CheckCard(QFrame):
         check = self._check
         match stage:
             case CheckStage.NONE:
-                return "", self.tr("Not checked"), self.tr(
+                return "", tr("Not checked"), tr(
                     "One to three pictures of the plane target in the fan, taken today, show whether anything has "
                     "moved since the calibration."
                 )  # fmt: skip
             case CheckStage.CHOSEN:
-                return "", self.tr("Not checked yet"), check.cannot_check or self.tr("Press Check.")
+                return "", tr("Not checked yet"), check.cannot_check or tr("Press Check.")
             case CheckStage.CHECKING:
-                return "", self.tr("Checking …"), self.tr("Cancel keeps the result before.")
+                return "", tr("Checking …"), tr("Cancel keeps the result before.")
             case CheckStage.UNREADABLE:
-                return "bad", self.tr("Not checked"), check.problem
+                return "bad", tr("Not checked"), check.problem
         assert check.look is not None
         if stage is CheckStage.OUTDATED:
             what = ", ".join(check.changed_since())
-            return "warn", self.tr("Out of date"), tr("Changed since the check: {what}; check again.", what=what)
-        words = {"good": self.tr("In order"), "warn": self.tr("In doubt"), "bad": self.tr("Changed")}
+            return "warn", tr("Out of date"), tr("Changed since the check: {what}; check again.", what=what)
+        words = {"good": tr("In order"), "warn": tr("In doubt"), "bad": tr("Changed")}
         level, said = LEVELS[check.look.verdict], [check.look.sentence]
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:
@@ -170,7 +168,7 @@ class CheckCard(QFrame):
 
     def _choose(self) -> None:
         start = self._check.folder or Path.home()
-        folder = ask.choose_folder(self, self.tr("Folder with the pictures of the check"), start)
+        folder = ask.choose_folder(self, tr("Folder with the pictures of the check"), start)
         if folder is not None:
             self._check.use_folder(folder)
 

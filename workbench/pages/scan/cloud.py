@@ -8,6 +8,7 @@ import numpy as np
 from PySide6.QtWidgets import QWidget
 
 from core.pipeline.live.events import LiveView, ScanDetail
+from workbench.language import tr
 from workbench.pages.scan.overlays import PREVIEW_SIGMA_MM
 from workbench.pages.scan.presenter import ScanPresenter, Stage
 from workbench.views.layouts import in_column
@@ -26,7 +27,7 @@ class ScanCloud(QWidget):
         self._growing = False
         self._limit = 0.0
         self.scene = SceneView()
-        self.scene.setAccessibleName(self.tr("Measured points in 3D"))
+        self.scene.setAccessibleName(tr("Measured points in 3D"))
         in_column(self.scene, on=self)
         self.scene.clear(self._message())
 
@@ -82,11 +83,11 @@ class ScanCloud(QWidget):
     def _message(self) -> str:
         p = self._presenter
         if p.live.running and not p.calibrated:
-            return self.tr("There are no points without accepted calibrations; the pictures are recorded.")
+            return tr("There are no points without accepted calibrations; the pictures are recorded.")
         if p.live.running or p.run.measuring:
-            return self.tr("The points will grow here.")
+            return tr("The points will grow here.")
         if p.work.look is not None and not p.work.look.problems:
-            return self.tr("No point is certain enough; allow a larger σ in the settings, or scan again.")
+            return tr("No point is certain enough; allow a larger σ in the settings, or scan again.")
         if p.stage is Stage.NONE:
-            return self.tr("The measured points will be here.")
-        return p.cannot_measure or self.tr("Press Measure: the points will grow here.")
+            return tr("The measured points will be here.")
+        return p.cannot_measure or tr("Press Measure: the points will grow here.")

@@ -53,8 +53,8 @@ class ScanPage(StepPage):
         self.check_strip = LiveStrip(presenter.check_live)
         self.picture = ScanPicture(presenter, lambda: self.source.choose())
         self.cloud = ScanCloud(presenter)
-        self.views.add_view(self.tr("Picture"), self.picture)
-        self.views.add_view(self.tr("Points"), self.cloud)
+        self.views.add_view(tr("Picture"), self.picture)
+        self.views.add_view(tr("Points"), self.cloud)
         self.running, self.bar = RunningPanel(), FrameBar(presenter)
         self.centre.addWidget(self.strip)
         self.centre.addWidget(self.check_strip)
@@ -72,17 +72,17 @@ class ScanPage(StepPage):
         self.checks = ChecksCard()
         self.add_to_side(self.checks)
         self.live_panel = LivePanel(presenter.live)
-        self.source = SourceChooser(self.live_panel, what=self.tr("Folder with the frames of a scan"))
-        self.source_fold = self.add_panel(self.tr("Recording"), self.source)
+        self.source = SourceChooser(self.live_panel, what=tr("Folder with the frames of a scan"))
+        self.source_fold = self.add_panel(tr("Recording"), self.source)
         self.result = ResultPanel(presenter)
-        self.result_fold = self.add_panel(self.tr("Result"), self.result)
+        self.result_fold = self.add_panel(tr("Result"), self.result)
         self.frames = ViewList(thumbnails_later=True)
-        self.frames.set_headers(self.tr("Frame"), self.tr("Median σ [mm]"))
-        self.frames_fold = self.add_list(self.tr("Frames"), self.frames)
+        self.frames.set_headers(tr("Frame"), tr("Median σ [mm]"))
+        self.frames_fold = self.add_list(tr("Frames"), self.frames)
         self.settings = SettingsPanel(presenter)
-        self.settings_fold = self.add_panel(self.tr("Settings"), self.settings, collapsed=True)
+        self.settings_fold = self.add_panel(tr("Settings"), self.settings, collapsed=True)
         self.profiles = ProfilesPanel(presenter.bench)
-        self.profiles_fold = self.add_panel(self.tr("Fixed lines alone"), self.profiles, collapsed=True)
+        self.profiles_fold = self.add_panel(tr("Fixed lines alone"), self.profiles, collapsed=True)
         self._rows: Any = None
         self._folded = ""
         self._connect()
@@ -205,7 +205,7 @@ class ScanPage(StepPage):
         work = self.presenter.work
         if self.presenter.folder is None or work.frames is None:
             return ""
-        reference = self.tr("with a reference") if work.reference is not None else self.tr("without a reference")
+        reference = tr("with a reference") if work.reference is not None else tr("without a reference")
         return tr("{count} frames, {reference}", count=len(work.frames), reference=reference)
 
     def _fold(self, stage: Stage) -> None:

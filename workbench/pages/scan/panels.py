@@ -34,8 +34,8 @@ class ScanCard(StageCard):
         self._presenter = p = presenter
         super().__init__(
             [
-                CardButton("run", p.tr("Measure"), "mdi6.play", p.do_run),
-                CardButton("cancel", p.tr("Cancel"), "mdi6.stop", p.cancel),
+                CardButton("run", tr("Measure"), "mdi6.play", p.do_run),
+                CardButton("cancel", tr("Cancel"), "mdi6.stop", p.cancel),
             ],
             parent,
         )
@@ -44,16 +44,14 @@ class ScanCard(StageCard):
         """Show the stage."""
         p, stage = self._presenter, self._presenter.stage
         measuring = stage is Stage.MEASURING
-        self.buttons["run"].setText(
-            self.tr("Measure again") if stage in (Stage.MEASURED, Stage.OUTDATED) else self.tr("Measure")
-        )
+        self.buttons["run"].setText(tr("Measure again") if stage in (Stage.MEASURED, Stage.OUTDATED) else tr("Measure"))
         self.show_stage(
             *self._words(stage),
             {
-                "run": (p.cannot_measure, self.tr("Measure the surface and the thickness from the recording (Ctrl+R)")),
+                "run": (p.cannot_measure, tr("Measure the surface and the thickness from the recording (Ctrl+R)")),
                 "cancel": (
-                    "" if measuring else self.tr("Nothing is being measured."),
-                    self.tr("Stop measuring; the recording and the result before are kept"),
+                    "" if measuring else tr("Nothing is being measured."),
+                    tr("Stop measuring; the recording and the result before are kept"),
                 ),
             },
             "run" if stage in (Stage.RECORDED, Stage.FAILED, Stage.OUTDATED) else "",
@@ -63,51 +61,49 @@ class ScanCard(StageCard):
         p = self._presenter
         match stage:
             case Stage.NONE:
-                return self.tr("No recording yet"), self._how_to_begin()
+                return tr("No recording yet"), self._how_to_begin()
             case Stage.LISTING:
-                return self.tr("Listing the frames …"), ""
+                return tr("Listing the frames …"), ""
             case Stage.EMPTY:
-                return self.tr("No frames there"), p.work.no_frames or self.tr(
-                    "The folder holds no frames; choose another one."
-                )
+                return tr("No frames there"), p.work.no_frames or tr("The folder holds no frames; choose another one.")
             case Stage.LIVE:
                 return self._live_words()
             case Stage.RECORDED:
                 title = tr("{count} frames, not measured yet", count=len(p.work.names))
-                return title, p.cannot_measure or self.tr("Press Measure; no setting is needed.")
+                return title, p.cannot_measure or tr("Press Measure; no setting is needed.")
             case Stage.MEASURING if p.run.by_itself:
-                return self.tr("Measuring the recording …"), self.tr(
+                return tr("Measuring the recording …"), tr(
                     "It began by itself and needs no setting. Cancel keeps the recording."
                 )
             case Stage.MEASURING:
-                return self.tr("Measuring …"), self.tr("Cancel keeps the recording and the result before.")
+                return tr("Measuring …"), tr("Cancel keeps the recording and the result before.")
             case Stage.FAILED:
-                return self.tr("Not measured"), p.run.problem
+                return tr("Not measured"), p.run.problem
             case Stage.MEASURED:
-                return self.tr("Measured"), p.state.sentence
+                return tr("Measured"), p.state.sentence
             case Stage.OUTDATED:
-                again = self.tr("Measure again.") if p.changed_since() else ""
-                return self.tr("Measured, but out of date"), f"{p.state.sentence} {again}".strip()
+                again = tr("Measure again.") if p.changed_since() else ""
+                return tr("Measured, but out of date"), f"{p.state.sentence} {again}".strip()
 
     def _how_to_begin(self) -> str:
-        begin = self.tr("Sweep the part with a live source, or choose the folder of a recording.")
+        begin = tr("Sweep the part with a live source, or choose the folder of a recording.")
         if self._presenter.calibrated:
             return begin
         return tr("{begin} It can be measured once camera and laser planes are accepted.", begin=begin)
 
     def _live_words(self) -> tuple[str, str]:
         tips = {
-            "reference": self.tr("Only the three-line laser is on; nothing moves."),
-            "ready": self.tr("The reference is taken. Switch the hand-held laser on and press Start."),
-            "scanning": self.tr("Sweep the line slowly over the part, at different tilts, so that it crosses the fan. "
+            "reference": tr("Only the three-line laser is on; nothing moves."),
+            "ready": tr("The reference is taken. Switch the hand-held laser on and press Start."),
+            "scanning": tr("Sweep the line slowly over the part, at different tilts, so that it crosses the fan. "
                                 "Stop when enough is covered; then it is measured."),
-            "paused": self.tr("Nothing is recorded now; Resume goes on."),
+            "paused": tr("Nothing is recorded now; Resume goes on."),
         }  # fmt: skip
         titles = {
-            "reference": self.tr("Taking the reference"),
-            "ready": self.tr("Ready to scan"),
-            "scanning": self.tr("Scanning"),
-            "paused": self.tr("Paused"),
+            "reference": tr("Taking the reference"),
+            "ready": tr("Ready to scan"),
+            "scanning": tr("Scanning"),
+            "paused": tr("Paused"),
         }
         stage = self._presenter.live_stage
         return titles.get(stage, self._presenter.live.state_text()), tips.get(stage, "")
@@ -121,44 +117,44 @@ class SettingsPanel(QWidget):
         self._presenter = presenter
         self.form = form = SettingsForm()
         methods = [
-            (Method.NETWORK.value, self.tr("Network")),
-            (Method.THREE_CROSSINGS.value, self.tr("Three crossings a frame")),
+            (Method.NETWORK.value, tr("Network")),
+            (Method.THREE_CROSSINGS.value, tr("Three crossings a frame")),
         ]
         form.add_choice(
-            "method", self.tr("Method"), methods,
-            self.tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
+            "method", tr("Method"), methods,
+            tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
         )  # fmt: skip
         form.add_number(
             "sigma_cut_mm",
-            self.tr("Largest σ"),
+            tr("Largest σ"),
             NumberRange(0.001, 10.0, decimals=3, step=0.01, unit="mm"),
-            self.tr("Points with a larger standard uncertainty of depth are left out."),
+            tr("Points with a larger standard uncertainty of depth are left out."),
         )
         form.add_check(
-            "automatic", self.tr("Stripe found automatically"),
-            self.tr("Width and contrast of the stripes are taken from the pictures, for each laser."),
+            "automatic", tr("Stripe found automatically"),
+            tr("Width and contrast of the stripes are taken from the pictures, for each laser."),
         )  # fmt: skip
         form.add_number(
             "width_px",
-            self.tr("Stripe width"),
+            tr("Stripe width"),
             NumberRange(1.0, 200.0, decimals=1, step=0.5, unit="px"),
-            self.tr("From where the light rises out of the background to where it is gone."),
+            tr("From where the light rises out of the background to where it is gone."),
         )
         form.add_number(
             "contrast",
-            self.tr("Stripe contrast"),
-            NumberRange(1.0, 65535.0, decimals=0, step=5.0, unit=self.tr("grey levels")),
-            self.tr("Height above the background where the stripe is rather faint."),
+            tr("Stripe contrast"),
+            NumberRange(1.0, 65535.0, decimals=0, step=5.0, unit=tr("grey levels")),
+            tr("Height above the background where the stripe is rather faint."),
         )
         add_channel(form)
-        form.add_section(self.tr("Shutter of the camera"))
+        form.add_section(tr("Shutter of the camera"))
         form.add_number(
             "row_time_us",
-            self.tr("Time from row to row"),
-            NumberRange(0.0, 1e5, decimals=2, step=1.0, unit="µs", none_text=self.tr("assumed"), first=0.0),
-            self.tr("0: a global shutter. Empty: not known, a global one is assumed."),
+            tr("Time from row to row"),
+            NumberRange(0.0, 1e5, decimals=2, step=1.0, unit="µs", none_text=tr("assumed"), first=0.0),
+            tr("0: a global shutter. Empty: not known, a global one is assumed."),
         )
-        form.add_section(self.tr("Since its calibration the rig may have changed by"))
+        form.add_section(tr("Since its calibration the rig may have changed by"))
         for key, label, unit, decimals, usual in STABILITY:
             form.add_number(
                 key,
@@ -168,15 +164,13 @@ class SettingsPanel(QWidget):
                 ),
                 tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
             )
-        form.add_section(self.tr("How long calibration and check hold"))
+        form.add_section(tr("How long calibration and check hold"))
         for key, label, usual in VALIDITY:
             form.add_number(
                 key,
                 tr(label),
-                NumberRange(
-                    0.1, 36500.0, decimals=1, step=1.0, unit=self.tr("days"), none_text=self.tr("no limit"), first=usual
-                ),
-                self.tr("What is recorded later proves nothing; empty: no limit."),
+                NumberRange(0.1, 36500.0, decimals=1, step=1.0, unit=tr("days"), none_text=tr("no limit"), first=usual),
+                tr("What is recorded later proves nothing; empty: no limit."),
             )
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)
@@ -185,7 +179,7 @@ class SettingsPanel(QWidget):
         """Show the settings."""
         values = self._presenter.settings()
         self.form.set_values(values)
-        why = self.tr("Found automatically; take away the tick above to give it.")
+        why = tr("Found automatically; take away the tick above to give it.")
         for key in ("width_px", "contrast"):
             self.form.set_editable(key, not values["automatic"], why)
 
@@ -197,7 +191,7 @@ class ResultPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.quality, self.reasons, self.notes = ValueRows(), ValueRows(), muted()
-        self._why = heading(self.tr("Frames without points"))
+        self._why = heading(tr("Frames without points"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
         for widget in (self.quality, self._why, self.reasons, self.notes):
@@ -225,20 +219,20 @@ class RunningPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.condition = Meter(
-            self.tr("Crossings: condition"),
+            tr("Crossings: condition"),
             [(500.0, "good"), (20_000.0, "warn"), (1e6, "bad")],
             minimum=10.0,
             logarithmic=True,
         )
         self.condition.setToolTip(
-            self.tr("How near to one straight line this frame's crossings with the fan are: small is good, ∞ means "
+            tr("How near to one straight line this frame's crossings with the fan are: small is good, ∞ means "
                     "collinear or fewer than three. Other frames may still help. "
                     "Tilt the laser, or cross the fan at another height.")
         )  # fmt: skip
-        self.speed = Meter(self.tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])
-        self.speed.setToolTip(self.tr("How far the stripe moves from one frame to the next"))
-        self.covered, self.hints = QLabel(), HintBar(self.tr("What could be better is said here."))
-        self.covered.setToolTip(self.tr("Share of the picture between all laser light in which there are points"))
+        self.speed = Meter(tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])
+        self.speed.setToolTip(tr("How far the stripe moves from one frame to the next"))
+        self.covered, self.hints = QLabel(), HintBar(tr("What could be better is said here."))
+        self.covered.setToolTip(tr("Share of the picture between all laser light in which there are points"))
         self.covered.setWordWrap(True)
         grid = QGridLayout(self)
         grid.setContentsMargins(0, 4, 0, 0)

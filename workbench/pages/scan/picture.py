@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.image.stripes.centreline import Centreline
 from core.pipeline.live.events import LiveView, PlanesDetail, ScanDetail
+from workbench.language import tr
 from workbench.pages.scan import overlays
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views.image.view import ImageView
@@ -39,7 +40,7 @@ class ScanPicture(QWidget):
         self._shown: Any = None
         self._fan: tuple[Any, bool] | None = None
         self.image, self.wanted = ImageView(), View.CROSSINGS
-        self.image.setAccessibleName(self.tr("Picture of the scan"))
+        self.image.setAccessibleName(tr("Picture of the scan"))
         in_column(self.image, on=self)
         nothing = np.zeros((1, 1), np.bool_)
         overlays.show_coverage(self.image, nothing, nothing)  # the first layers are the lowest
@@ -107,7 +108,7 @@ class ScanPicture(QWidget):
         scrub = self._presenter.scrub
         stages, points = scrub.stages, self._presenter.points_of_frame()
         if stages is None:
-            self._clear(scrub.problem or self.tr("The frame is being looked at …"))
+            self._clear(scrub.problem or tr("The frame is being looked at …"))
             return
         wanted = (stages, self.wanted, points[0] is not None)
         if self._shown == wanted:
@@ -136,8 +137,8 @@ class ScanPicture(QWidget):
 
     def _empty(self) -> None:
         self._clear(
-            self.tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
-            self.tr("Choose folder …"),
+            tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
+            tr("Choose folder …"),
             self._choose_folder,
         )
 

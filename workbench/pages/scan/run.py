@@ -15,7 +15,7 @@ from core.messages import Message
 from core.pipeline.live.events import ScanDetail
 from core.scan.preview.shown import PreviewCloud
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.sources import folder_of
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -91,7 +91,7 @@ class ScanRun(QObject):
             jobs.WATCH_SCAN,
             folder,
             project,
-            label=self.tr("Scan"),
+            label=tr("Scan"),
             on_done=lambda summary: self._measured(folder, project, summary),
             on_failed=lambda problem: self._not_measured(task, project, text_of(problem)),
             on_cancelled=lambda: self._not_measured(task, project, ""),
@@ -139,7 +139,7 @@ class ScanRun(QObject):
             folder / short(detail.preview.name),
             self._model.project.rig.channel_of("scan"),
             DISPLAY_PX,
-            label=self.tr("Reading a picture"),
+            label=tr("Reading a picture"),
             on_done=lambda answer: self._seen(detail, *answer),
             on_failed=lambda _: self.shown(),
             on_cancelled=self.shown,

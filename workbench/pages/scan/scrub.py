@@ -8,7 +8,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.scan.preview.shown import FrameStages
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.scan.work import ScanWork
 from workbench.work import jobs
 
@@ -85,7 +85,7 @@ class FrameScrub(QObject):
             self._model.folder,
             self._model.project,
             self.current,
-            label=self.tr("Looking at a frame"),
+            label=tr("Looking at a frame"),
             on_done=lambda stages: self._seen(wanted, stages, ""),
             on_failed=lambda problem: self._seen(wanted, None, text_of(problem)),
             replace_waiting=True,

@@ -7,6 +7,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from workbench.bench import Bench
+from workbench.language import tr
 from workbench.pages.scan.run import short
 from workbench.pages.sources import folder_of
 from workbench.work import jobs
@@ -70,7 +71,7 @@ class FrameThumbnails(QObject):
             jobs.STRIPE_THUMBNAILS,
             [folder / short(name) for name in names],
             self._model.project.rig.channel_of("scan"),
-            label=self.tr("Small pictures"),
+            label=tr("Small pictures"),
             on_done=ended,
             on_failed=lambda _: ended((None,) * len(names)),
             on_cancelled=lambda: ended((None,) * len(names)),

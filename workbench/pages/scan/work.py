@@ -12,7 +12,7 @@ from core.model import Camera, Fan
 from core.scan.features.frames import FrameRecord
 from core.scan.preview.shown import ShownScan
 from workbench.bench import Bench
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.scan.run import PART
 from workbench.pages.sources import folder_of
 from workbench.work import jobs
@@ -96,7 +96,7 @@ class ScanWork(QObject):
             self,
             jobs.LIST_FRAMES,
             folder,
-            label=self.tr("Listing the frames"),
+            label=tr("Listing the frames"),
             on_done=listed,
             on_failed=refused,
             offers={},
@@ -123,7 +123,7 @@ class ScanWork(QObject):
             jobs.ACCEPTED_CALIBRATION,
             folder,
             project,
-            label=self.tr("Reading the calibrations"),
+            label=tr("Reading the calibrations"),
             on_done=read,
             on_failed=lambda _: read((None, None)),  # what is wrong is told when it is measured with them
         )
@@ -143,4 +143,4 @@ class ScanWork(QObject):
                 self.look = look
                 self.changed.emit()
 
-        self._bench.run_quick(self, jobs.SHOW_SCAN, folder, label=self.tr("Reading the scan"), on_done=read)
+        self._bench.run_quick(self, jobs.SHOW_SCAN, folder, label=tr("Reading the scan"), on_done=read)

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 from core.acquire.source import Region, SourceInfo
 from core.acquire.source_kind import SourceKind
 from core.pipeline.live.sources import SOURCES
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import SpinBox
@@ -82,11 +82,11 @@ class DeviceField(QWidget):
         self.button.setIcon(icon("mdi6.folder-open-outline" if browse else "mdi6.magnify"))
         self.button.setEnabled(not looking)
         self.button.setToolTip(
-            self.tr("Choose the folder to replay")
+            tr("Choose the folder to replay")
             if browse
-            else self.tr("Looking …")
+            else tr("Looking …")
             if looking
-            else self.tr("Look for cameras of this kind")
+            else tr("Look for cameras of this kind")
         )
         self.button.setAccessibleName(self.button.toolTip())
 
@@ -100,7 +100,7 @@ class DeviceField(QWidget):
             self.look.emit()
             return
         start = Path(self.box.currentText()) if self.box.currentText() else Path.home()
-        folder = ask.choose_folder(self, self.tr("Folder to replay"), start)
+        folder = ask.choose_folder(self, tr("Folder to replay"), start)
         if folder is not None:
             self.chosen.emit(str(folder))
 
@@ -171,7 +171,7 @@ class RegionField(QLineEdit):
     def show_region(self, region: Region | None, sensor: tuple[int, int] | None) -> None:
         """Show a region, or that there is none; `sensor` is (width, height), as far as it is known."""
         shown = "" if region is None else f"{region.left} {region.top} {region.width} {region.height}"
-        whole = self.tr("as it is")
+        whole = tr("as it is")
         self.setPlaceholderText(whole if sensor is None else f"{whole} (0 0 {sensor[0]} {sensor[1]})")
         if shown != self._shown:
             self._shown = shown
@@ -189,7 +189,7 @@ class SourceForm(QWidget):
         super().__init__(parent)
         self.live = live
         self.kind, self.device = QComboBox(), DeviceField()
-        as_it_is = self.tr("as it is")
+        as_it_is = tr("as it is")
         self.exposure = NumberField(as_it_is, " ms", 0.01, 60000.0, 2)
         self.gain = NumberField(as_it_is, " dB", -40.0, 80.0, 1)
         self.rate = NumberField(as_it_is, " /s", 0.1, 1000.0, 1)
@@ -241,15 +241,15 @@ class SourceForm(QWidget):
         self._form.setContentsMargins(0, 0, 0, 0)
         self._form.setFieldGrowthPolicy(QFormLayout.FieldGrowthPolicy.AllNonFixedFieldsGrow)
         for label, field in (
-            (QLabel(self.tr("Source")), self.kind),
+            (QLabel(tr("Source")), self.kind),
             (self._device_label, self.device),
-            (QLabel(self.tr("Exposure")), self.exposure),
-            (QLabel(self.tr("Gain")), self.gain),
-            (QLabel(self.tr("Rate")), self.rate),
-            (QLabel(self.tr("Trigger")), self.trigger),
-            (QLabel(self.tr("Format")), self.pixel_format),
-            (QLabel(self.tr("Region")), self.region),
-            (QLabel(self.tr("Files")), self.files),
+            (QLabel(tr("Exposure")), self.exposure),
+            (QLabel(tr("Gain")), self.gain),
+            (QLabel(tr("Rate")), self.rate),
+            (QLabel(tr("Trigger")), self.trigger),
+            (QLabel(tr("Format")), self.pixel_format),
+            (QLabel(tr("Region")), self.region),
+            (QLabel(tr("Files")), self.files),
         ):
             label.setBuddy(field)
             self._form.addRow(label, field)
@@ -262,22 +262,22 @@ class SourceForm(QWidget):
 
     def _dress(self) -> None:
         for field, name, tip in (
-            (self.kind, self.tr("Kind of source"), self.tr("What delivers the pictures")),
-            (self.device, self.tr("Device"), ""),
-            (self.exposure, self.tr("Exposure time"), self.tr("Shorter keeps moving things sharp; longer is brighter")),
-            (self.gain, self.tr("Gain"), self.tr("Brighter pictures, but more noise")),
-            (self.rate, self.tr("Frame rate"), self.tr("How many pictures a second")),
-            (self.trigger, self.tr("Trigger"), self.tr("What makes the camera take a picture; Off: it runs freely")),
-            (self.pixel_format, self.tr("Pixel format"), self.tr("Grey levels as the camera sends them")),
+            (self.kind, tr("Kind of source"), tr("What delivers the pictures")),
+            (self.device, tr("Device"), ""),
+            (self.exposure, tr("Exposure time"), tr("Shorter keeps moving things sharp; longer is brighter")),
+            (self.gain, tr("Gain"), tr("Brighter pictures, but more noise")),
+            (self.rate, tr("Frame rate"), tr("How many pictures a second")),
+            (self.trigger, tr("Trigger"), tr("What makes the camera take a picture; Off: it runs freely")),
+            (self.pixel_format, tr("Pixel format"), tr("Grey levels as the camera sends them")),
             (
                 self.region,
-                self.tr("Region of the sensor"),
-                self.tr("First column, first row, width and height in pixels. A calibration holds for its own region."),
+                tr("Region of the sensor"),
+                tr("First column, first row, width and height in pixels. A calibration holds for its own region."),
             ),
             (
                 self.files,
-                self.tr("Files of the frames"),
-                self.tr("PNG takes half the room on the disk, PGM a tenth of the time: for fast cameras"),
+                tr("Files of the frames"),
+                tr("PNG takes half the room on the disk, PGM a tenth of the time: for fast cameras"),
             ),
         ):
             field.setAccessibleName(name)
@@ -287,8 +287,8 @@ class SourceForm(QWidget):
         for kind in SOURCES.values():
             self.kind.addItem(text_of(kind.title), kind.name)
             self.kind.setItemData(self.kind.count() - 1, text_of(kind.help), Qt.ItemDataRole.ToolTipRole)
-        self.files.addItem(self.tr("PNG, smaller"), ".png")
-        self.files.addItem(self.tr("PGM, faster"), ".pgm")
+        self.files.addItem(tr("PNG, smaller"), ".png")
+        self.files.addItem(tr("PGM, faster"), ".pgm")
 
     def _connect(self) -> None:
         settings = self.live.settings

@@ -41,9 +41,9 @@ class LivePanel(QWidget):
         self._refreshing = Refresh(self.refresh, self)
         self.form = SourceForm(live)
         self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
-        self.auto = QCheckBox(self.tr("Take pictures automatically"))
-        self.add = QCheckBox(self.tr("Add to the pictures that are there"))
-        self.sound = QCheckBox(self.tr("Sound"))
+        self.auto = QCheckBox(tr("Take pictures automatically"))
+        self.add = QCheckBox(tr("Add to the pictures that are there"))
+        self.sound = QCheckBox(tr("Sound"))
         self.state, self.counts = QLabel(), QLabel()
         self._go_on, self._pause_key = QShortcut(GO_ON, self), QShortcut(PAUSE, self)
         self._dress()
@@ -59,23 +59,23 @@ class LivePanel(QWidget):
         live = self.live
         running, going = live.running, live.live
         self.form.refresh()
-        self.start.setText(self.tr("Stop") if running else self.tr("Start live"))
+        self.start.setText(tr("Stop") if running else tr("Start live"))
         self.start.setIcon(
             icon("mdi6.stop" if running else "mdi6.play", colour="on_accent" if self.start.property("primary") else "")
         )
         cannot = "" if running else live.cannot_start()
         self.start.setEnabled(not live.stopping and not cannot)
         self.start.setToolTip(
-            self.tr("Finish; what is recorded is kept (Ctrl+L)")
+            tr("Finish; what is recorded is kept (Ctrl+L)")
             if running
-            else cannot or self.tr("Open the source and show its pictures (Ctrl+L)")
+            else cannot or tr("Open the source and show its pictures (Ctrl+L)")
         )
-        self.pause.setText(self.tr("Resume") if live.paused else self.tr("Pause"))
+        self.pause.setText(tr("Resume") if live.paused else tr("Pause"))
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))
-        why_not = "" if going else self.tr("Start the live source first.")
+        why_not = "" if going else tr("Start the live source first.")
         for button, does in (
-            (self.pause, self.tr("Record nothing for a while (Page Up)")),
-            (self.take, self.tr("Take this picture now, whatever is thought of it (Ctrl+Space, Page Down)")),
+            (self.pause, tr("Record nothing for a while (Page Up)")),
+            (self.take, tr("Take this picture now, whatever is thought of it (Ctrl+Space, Page Down)")),
         ):
             button.setEnabled(going)
             button.setToolTip(why_not or does)
@@ -113,11 +113,11 @@ class LivePanel(QWidget):
         QTimer.singleShot(0, self.live.get_ready)
 
     def _dress(self) -> None:
-        self.take.setText(self.tr("Take picture"))
+        self.take.setText(tr("Take picture"))
         self.take.setIcon(icon("mdi6.camera-iris"))
-        self.auto.setToolTip(self.tr("Takes a picture when it is still, sharp, and unlike those taken before"))
-        self.add.setToolTip(self.tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
-        self.sound.setToolTip(self.tr("One sound says that a picture was taken, two that it was refused"))
+        self.auto.setToolTip(tr("Takes a picture when it is still, sharp, and unlike those taken before"))
+        self.add.setToolTip(tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
+        self.sound.setToolTip(tr("One sound says that a picture was taken, two that it was refused"))
         self.auto.setVisible(self.live.step != "scan")
         self.take.setVisible(self.live.step != "scan")
         self.state.setObjectName("heading")
@@ -131,7 +131,8 @@ class LivePanel(QWidget):
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
         buttons.addWidget(self.take, 1, 0, 1, 2)
-        in_column(self.form, buttons, self.auto, self.add, self.sound, self.state, self.counts, on=self, spacing=6)
+        kept = in_row((self.add, 1), self.sound, spacing=8)
+        in_column(self.form, buttons, self.auto, kept, self.state, self.counts, on=self, spacing=6)
 
     def _connect(self) -> None:
         live = self.live
@@ -176,10 +177,10 @@ class LiveStrip(QWidget):
         self.gone, self.lost, self.advice, self.question = (card.label for card in self._cards())
         self.take_advice, self.answer = self._advice.button, self._ask.button
         self.answer.setProperty("primary", True)
-        self.answer.setToolTip(self.tr("Press when it is done"))
+        self.answer.setToolTip(tr("Press when it is done"))
         self.answer.clicked.connect(lambda: live.answer())
-        self.take_advice.setText(self.tr("Set it"))
-        self.take_advice.setToolTip(self.tr("Tell the camera so"))
+        self.take_advice.setText(tr("Set it"))
+        self.take_advice.setToolTip(tr("Tell the camera so"))
         self.take_advice.clicked.connect(lambda: live.take_advice())
         column = in_column(on=self, margins=(0, 0, 0, 4), spacing=4)
         for card in self._cards():
@@ -197,9 +198,7 @@ class LiveStrip(QWidget):
         advice = self.live.advice
         self.take_advice.setVisible(advice.settings is not None)
         self._advice.say("" if advice.sentence is None else text_of(advice.sentence))
-        unplugged = self.tr(
-            "The source is unplugged. What is recorded is kept; plug it in again and the recording goes on."
-        )
+        unplugged = tr("The source is unplugged. What is recorded is kept; plug it in again and the recording goes on.")
         self._gone.say(unplugged if self.live.gone else "")
         self._show_lost()
 

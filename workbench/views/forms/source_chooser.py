@@ -14,6 +14,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from workbench.language import tr
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import breakable
@@ -36,17 +37,17 @@ class SourceChooser(QWidget):
         """`what`: what the folder holds, as "Folder with pictures of the target"."""
         super().__init__(parent)
         self._what, self._folder = what, Path.home()
-        self.recorded, self.live = QPushButton(self.tr("Recorded folder")), QPushButton(self.tr("Live source"))
-        self.recorded.setToolTip(self.tr("Measure pictures that are there already"))
-        self.live.setToolTip(self.tr("Take the pictures now, with a camera or the simulated rig"))
+        self.recorded, self.live = QPushButton(tr("Recorded folder")), QPushButton(tr("Live source"))
+        self.recorded.setToolTip(tr("Measure pictures that are there already"))
+        self.live.setToolTip(tr("Take the pictures now, with a camera or the simulated rig"))
         self._modes = QButtonGroup(self)
         modes = in_row(spacing=0)
         for place, button in enumerate((self.recorded, self.live)):
             button.setCheckable(True)
             self._modes.addButton(button, place)
             modes.addWidget(button, 1)
-        self.path, self.detail, self.browse = QLabel(), QLabel(), QPushButton(self.tr("Choose folder …"))
-        self.browse.setToolTip(self.tr("Choose a folder of pictures, or drop one here"))
+        self.path, self.detail, self.browse = QLabel(), QLabel(), QPushButton(tr("Choose folder …"))
+        self.browse.setToolTip(tr("Choose a folder of pictures, or drop one here"))
         self._parts = (self._folder_part(), live_panel)
         column = in_column(modes, on=self)
         for part in self._parts:  # no stack of widgets: that is always as high as the highest of them
@@ -74,9 +75,9 @@ class SourceChooser(QWidget):
         """Show the folder in use and a sentence about it ("24 pictures")."""
         if folder is not None:
             self._folder = folder
-        self.path.setText(breakable(str(folder)) if folder is not None else self.tr("No folder is chosen yet."))
+        self.path.setText(breakable(str(folder)) if folder is not None else tr("No folder is chosen yet."))
         self.path.setToolTip(str(folder) if folder is not None else "")
-        self.detail.setText(detail or ("" if folder is not None else self.tr("Choose a folder, or drop one here.")))
+        self.detail.setText(detail or ("" if folder is not None else tr("Choose a folder, or drop one here.")))
 
     def choose(self) -> None:
         """Ask for the folder."""

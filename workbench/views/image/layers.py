@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QColor, QLinearGradient, QPainter, QPaintEvent, QPen, QPixmap
 from PySide6.QtWidgets import QMenu, QWidget
 
+from workbench.language import tr
 from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
 from workbench.views.image.overlays import GROUND, TEXT, Grip, Layer, PolygonLayer
 from workbench.views.image.picture import PictureBox
@@ -208,7 +209,7 @@ class LayersMenu(QMenu):
             action.setChecked(self._layers.is_visible(name))
             action.toggled.connect(lambda on, name=name: self._layers.set_visible(name, on))
         self.addSeparator()
-        legend = self.addAction(self.tr("Legend"))
+        legend = self.addAction(tr("Legend"))
         legend.setCheckable(True)
         legend.setChecked(self.legend_shown)
         legend.toggled.connect(self.legend_wanted)

@@ -6,6 +6,7 @@ from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QMouseEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QToolButton, QWidget
 
+from workbench.language import tr
 from workbench.theme import icon
 from workbench.views.layouts import STRETCH, in_column, in_row
 
@@ -40,9 +41,9 @@ class PaneTitle(QWidget):
     def show_maximised(self, *, maximised: bool) -> None:
         """Say what the button would do now."""
         tip = (
-            self.tr("Show both views again (or double-click the title)")
+            tr("Show both views again (or double-click the title)")
             if maximised
-            else self.tr("Give this view all the room (or double-click the title)")
+            else tr("Give this view all the room (or double-click the title)")
         )
         self.button.setToolTip(tip)
         self.button.setAccessibleName(f"{self.label.text()}: {tip}")

@@ -16,7 +16,7 @@ from PySide6.QtWidgets import (
     QWidgetAction,
 )
 
-from workbench.language import number
+from workbench.language import number, tr
 from workbench.theme import icon
 from workbench.views.layouts import in_row
 
@@ -34,11 +34,11 @@ class ToolStrip(QFrame):
         self.readout.setObjectName("muted")
         self.zoom = QLabel()
         self.zoom.setObjectName("muted")
-        self.zoom.setToolTip(self.tr("Size of a picture pixel on the screen"))
-        self.fit = self._button("mdi6.fit-to-page-outline", self.tr("Show the whole picture (F)"))
-        self.one = self._button("mdi6.numeric-1-box-outline", self.tr("One picture pixel on one screen pixel (1)"))
-        self.tone = self._button("mdi6.brightness-6", self.tr("Brightness of the picture on the screen"))
-        self.layers = self._button("mdi6.layers-outline", self.tr("Show or hide what is drawn on the picture"))
+        self.zoom.setToolTip(tr("Size of a picture pixel on the screen"))
+        self.fit = self._button("mdi6.fit-to-page-outline", tr("Show the whole picture (F)"))
+        self.one = self._button("mdi6.numeric-1-box-outline", tr("One picture pixel on one screen pixel (1)"))
+        self.tone = self._button("mdi6.brightness-6", tr("Brightness of the picture on the screen"))
+        self.layers = self._button("mdi6.layers-outline", tr("Show or hide what is drawn on the picture"))
         for button in (self.tone, self.layers):
             button.setPopupMode(QToolButton.ToolButtonPopupMode.InstantPopup)
         self._row = in_row((self.readout, 1), self.zoom, on=self, margins=(6, 1, 2, 1), spacing=2)
@@ -72,23 +72,23 @@ class ToneMenu(QMenu):
         super().__init__(parent)
         self.gain, self._gain_text = self._slider(-2 * _STEPS, 5 * _STEPS)
         self.gamma, self._gamma_text = self._slider(-_STEPS, 2 * _STEPS)
-        self.gain.setAccessibleName(self.tr("Brightness"))
-        self.gamma.setAccessibleName(self.tr("Dark parts"))
+        self.gain.setAccessibleName(tr("Brightness"))
+        self.gamma.setAccessibleName(tr("Dark parts"))
         panel = QWidget()
         grid = QGridLayout(panel)
         grid.setContentsMargins(12, 10, 12, 10)
         for row, (title, slider, text) in enumerate(
             (
-                (self.tr("Brightness"), self.gain, self._gain_text),
-                (self.tr("Lift the dark"), self.gamma, self._gamma_text),
+                (tr("Brightness"), self.gain, self._gain_text),
+                (tr("Lift the dark"), self.gamma, self._gamma_text),
             )
         ):
             grid.addWidget(QLabel(title), row, 0)
             grid.addWidget(slider, row, 1)
             grid.addWidget(text, row, 2)
-        note = QLabel(self.tr("On the screen only; measuring is not affected."))
+        note = QLabel(tr("On the screen only; measuring is not affected."))
         note.setObjectName("help")
-        reset = QPushButton(self.tr("Reset"))
+        reset = QPushButton(tr("Reset"))
         reset.clicked.connect(self.reset)
         grid.addWidget(note, 2, 0, 1, 2)
         grid.addWidget(reset, 2, 2)

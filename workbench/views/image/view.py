@@ -81,7 +81,7 @@ class ImageView(QWidget):
         self._grip: tuple[str, Grip] | None = None
         self._fitted = True
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(self.tr("Picture"))
+        self.setAccessibleName(tr("Picture"))
         in_column((self._canvas, 1), self._strip, on=self, margins=(1, 1, 1, 1), spacing=0)
         self._connect()
         self._dress()
@@ -364,11 +364,11 @@ class ImageView(QWidget):
         if not self.has_picture or self._drawing.draft is not None:
             return
         menu = QMenu(self)
-        menu.addAction(self.tr("Whole picture"), self.fit)
-        menu.addAction(self.tr("Pixel on pixel"), self.one_to_one)
+        menu.addAction(tr("Whole picture"), self.fit)
+        menu.addAction(tr("Pixel on pixel"), self.one_to_one)
         menu.addSeparator()
-        menu.addAction(self.tr("Copy what is shown"), lambda: copy_picture(self._canvas))
-        title = self.tr("Save what is shown")
+        menu.addAction(tr("Copy what is shown"), lambda: copy_picture(self._canvas))
+        title = tr("Save what is shown")
         menu.addAction(f"{title} …", lambda: save_picture(self._canvas, title, "picture.png"))
         menu.exec(event.globalPos())
         menu.deleteLater()
@@ -478,9 +478,9 @@ class ImageView(QWidget):
     def _show_hint(self, drawing: bool) -> None:
         if drawing:
             self._hint.setText(
-                self.tr("Draw round the region with the button held down. Esc cancels.")
+                tr("Draw round the region with the button held down. Esc cancels.")
                 if self._drawing.lasso
-                else self.tr("Click the corners. Double-click or Enter closes, Backspace takes one back, Esc cancels.")
+                else tr("Click the corners. Double-click or Enter closes, Backspace takes one back, Esc cancels.")
             )
         self._hint.setVisible(drawing)
         self._canvas.viewport().setCursor(Qt.CursorShape.CrossCursor if drawing else Qt.CursorShape.ArrowCursor)

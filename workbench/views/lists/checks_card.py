@@ -8,7 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
 from core.scan.preview.preflight import Check, Name, State
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.views.common import IconLabel
 
 _SIGNS: dict[State, tuple[str, str]] = {
@@ -29,7 +29,7 @@ class ChecksCard(QFrame):
         self.setObjectName("card")
         self._checks: tuple[Check, ...] = ()
         self._rows: list[tuple[IconLabel, QLabel, QLabel]] = []
-        title = QLabel(self.tr("Before the scan"))
+        title = QLabel(tr("Before the scan"))
         title.setObjectName("heading")
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(10, 8, 10, 8)
@@ -53,7 +53,7 @@ class ChecksCard(QFrame):
 
     def _show(self) -> None:
         titles = self._titles()
-        states = {"ok": self.tr("in order"), "failed": self.tr("not in order"), "unknown": self.tr("not known")}
+        states = {"ok": tr("in order"), "failed": tr("not in order"), "unknown": tr("not known")}
         while len(self._rows) < len(self._checks):
             self._add_row()
         for place, row in enumerate(self._rows):
@@ -78,10 +78,10 @@ class ChecksCard(QFrame):
 
     def _titles(self) -> dict[Name, str]:
         return {
-            "reference": self.tr("Reference"),
-            "lines": self.tr("Lines"),
-            "exposure": self.tr("Exposure"),
-            "focus": self.tr("Focus"),
-            "calibration": self.tr("Calibration"),
-            "check": self.tr("Check"),
+            "reference": tr("Reference"),
+            "lines": tr("Lines"),
+            "exposure": tr("Exposure"),
+            "focus": tr("Focus"),
+            "calibration": tr("Calibration"),
+            "check": tr("Check"),
         }

@@ -10,6 +10,7 @@ from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTableView, QWidget
 
 from core.files.csv_text import harmless
+from workbench.language import tr
 from workbench.views.layouts import in_column
 
 _NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
@@ -160,7 +161,7 @@ class DataTable(QWidget):
 
     def _menu(self) -> None:
         menu = QMenu(self)
-        menu.addAction(self.tr("Copy"), QKeySequence(QKeySequence.StandardKey.Copy), self._copy)
+        menu.addAction(tr("Copy"), QKeySequence(QKeySequence.StandardKey.Copy), self._copy)
         menu.exec(self.cursor().pos())
         menu.deleteLater()
 

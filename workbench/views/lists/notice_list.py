@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from workbench.language import tr
 from workbench.theme import icon
 from workbench.views.common import IconLabel, dress_edged
 from workbench.views.layouts import STRETCH, in_column, in_row
@@ -33,16 +34,16 @@ class NoticeList(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._list = QListWidget()
-        self._list.setAccessibleName(self.tr("Messages"))
+        self._list.setAccessibleName(tr("Messages"))
         self._list.setWordWrap(True)
         self._details = QPlainTextEdit()
         self._details.setReadOnly(True)
-        self._details.setPlaceholderText(self.tr("Details of the chosen message"))
-        copy = QPushButton(self.tr("Copy"))
-        copy.setToolTip(self.tr("Copy the chosen message and its details"))
+        self._details.setPlaceholderText(tr("Details of the chosen message"))
+        copy = QPushButton(tr("Copy"))
+        copy.setToolTip(tr("Copy the chosen message and its details"))
         copy.clicked.connect(self._copy)
-        clear = QPushButton(self.tr("Clear"))
-        clear.setToolTip(self.tr("Empty this list; the log file keeps everything"))
+        clear = QPushButton(tr("Clear"))
+        clear.setToolTip(tr("Empty this list; the log file keeps everything"))
         clear.clicked.connect(self._clear)
         buttons = in_column(copy, clear, STRETCH)
         split = QSplitter(Qt.Orientation.Horizontal)
@@ -88,12 +89,12 @@ class Banner(QFrame):
         self._label = QLabel()
         self._label.setWordWrap(True)
         self._label.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
-        self._copy = QPushButton(self.tr("Copy details"))
+        self._copy = QPushButton(tr("Copy details"))
         self._copy.clicked.connect(lambda: QGuiApplication.clipboard().setText(f"{self._text}\n{self._more}".strip()))
         close = QToolButton()
         close.setText("✕")
         close.setAutoRaise(True)
-        close.setToolTip(self.tr("Close this message; it stays in the messages panel"))
+        close.setToolTip(tr("Close this message; it stays in the messages panel"))
         close.clicked.connect(self.hide)
         in_row(self._symbol, (self._label, 1), self._copy, close, on=self, margins=(10, 5, 6, 5))
         self.hide()

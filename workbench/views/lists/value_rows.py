@@ -8,6 +8,7 @@ from typing import Literal
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress, dress_edged
@@ -79,9 +80,9 @@ class ValueRows(QWidget):
     def _show(self) -> None:
         words = {
             "": "",
-            "good": self.tr("good"),
-            "warn": self.tr("look at this"),
-            "bad": self.tr("not good enough"),
+            "good": tr("good"),
+            "warn": tr("look at this"),
+            "bad": tr("not good enough"),
         }
         for (label, text, tip, level), (name, value, sign) in zip(self._rows, self._labels, strict=False):
             for shown, wanted in ((name, label), (value, text)):
@@ -135,10 +136,10 @@ class Verdict(QFrame):
     def _show(self) -> None:
         symbol, colour = VERDICT_ICONS[self._kind]
         words = {
-            "": self.tr("No verdict"),
-            "conforming": self.tr("Conforming"),
-            "not conforming": self.tr("Not conforming"),
-            "not proven": self.tr("Not proven"),
+            "": tr("No verdict"),
+            "conforming": tr("Conforming"),
+            "not conforming": tr("Not conforming"),
+            "not proven": tr("Not proven"),
         }
         self._sign.show_icon(symbol, colour)
         self._word.setText(words[self._kind])

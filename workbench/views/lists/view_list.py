@@ -32,6 +32,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.layouts import in_column
 
@@ -360,7 +361,7 @@ class ViewList(QWidget):
         self._delegate.thumbnail_missing.connect(self.thumbnail_wanted, Qt.ConnectionType.QueuedConnection)
         self._told = ""
         self._set_up_table()
-        self.set_headers(self.tr("View"), self.tr("Error"))
+        self.set_headers(tr("View"), tr("Error"))
         self.setFocusProxy(self.table)
         in_column(self.table, on=self)
 

@@ -42,7 +42,7 @@ class PageScroll(QWidget):
         self._zoom = 1.0
         self._empty = EmptyState()
         self._scroll = _Scroll()
-        self._scroll.setAccessibleName(self.tr("Pages of the report"))
+        self._scroll.setAccessibleName(tr("Pages of the report"))
         self._inside = QWidget()
         self._column = QVBoxLayout(self._inside)
         self._column.setSpacing(GAP_PX)
@@ -180,9 +180,9 @@ class PageScroll(QWidget):
         strip = QWidget()
         row = in_row(self._place, STRETCH, on=strip, margins=(6, 3, 2, 1), spacing=2)
         for button, factor, symbol, tip in (
-            (self.smaller, 1 / ZOOM_STEP, "mdi6.magnify-minus-outline", self.tr("Smaller (−)")),
-            (self.fit, 0.0, "mdi6.fit-to-page-outline", self.tr("As wide as there is room (0)")),
-            (self.larger, ZOOM_STEP, "mdi6.magnify-plus-outline", self.tr("Larger (+)")),
+            (self.smaller, 1 / ZOOM_STEP, "mdi6.magnify-minus-outline", tr("Smaller (−)")),
+            (self.fit, 0.0, "mdi6.fit-to-page-outline", tr("As wide as there is room (0)")),
+            (self.larger, ZOOM_STEP, "mdi6.magnify-plus-outline", tr("Larger (+)")),
         ):
             button.setIcon(icon(symbol))
             button.setAutoRaise(True)

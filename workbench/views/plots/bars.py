@@ -11,6 +11,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.common import draw_focus
 from workbench.views.plots.base import Plot, tinted, written
@@ -55,7 +56,7 @@ class BarsWithThreshold(Plot):
         self._height = 1.0
         super().__init__(parent)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setAccessibleName(self.tr("Errors as bars: Left and Right go along, Up and Down move the threshold"))
+        self.setAccessibleName(tr("Errors as bars: Left and Right go along, Up and Down move the threshold"))
         self._column.setContentsMargins(1, 1, 1, 1)
         self._canvas.scene().sigMouseClicked.connect(self._clicked)
 
@@ -181,7 +182,7 @@ class BarsWithThreshold(Plot):
         bar = self._bar_at(x)
         if bar is None:
             return ""
-        value = self.tr("no value") if bar.value is None else f"{written(bar.value, self._height / 400)} {self._unit}"
+        value = tr("no value") if bar.value is None else f"{written(bar.value, self._height / 400)} {self._unit}"
         return "\n".join(part for part in (f"{bar.name}: {value}", bar.tip) if part)
 
     def _clicked(self, event: Any) -> None:

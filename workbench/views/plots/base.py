@@ -9,7 +9,7 @@ from PySide6.QtCore import QEvent, QPointF, Qt
 from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
 from PySide6.QtWidgets import QMenu, QToolTip, QWidget
 
-from workbench.language import number, numeral
+from workbench.language import number, numeral, tr
 from workbench.theme import shades
 from workbench.views.common import copy_picture, save_picture
 from workbench.views.empty_state import EmptyState
@@ -96,10 +96,8 @@ class Plot(QWidget):
 
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         menu = QMenu(self)
-        menu.addAction(self.tr("Copy picture"), lambda: copy_picture(self._canvas))
-        menu.addAction(
-            self.tr("Save picture …"), lambda: save_picture(self._canvas, self.tr("Save picture"), "plot.png")
-        )
+        menu.addAction(tr("Copy picture"), lambda: copy_picture(self._canvas))
+        menu.addAction(tr("Save picture …"), lambda: save_picture(self._canvas, tr("Save picture"), "plot.png"))
         menu.exec(event.globalPos())
         menu.deleteLater()
 

@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot
 
@@ -53,8 +54,8 @@ class ControlPlot(Plot):
     def _draw(self) -> None:
         chart, s = self._chart, shades()
         assert chart is not None
-        self._set_axis("left", self.tr("step off by"), "mm")
-        self._set_axis("bottom", self.tr("check"))
+        self._set_axis("left", tr("step off by"), "mm")
+        self._set_axis("bottom", tr("check"))
         count = len(chart.values)
         every = max(1, count // 8)
         self._item.getAxis("bottom").setTicks([[(n, str(n)) for n in range(1, count + 1, every)]])

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QRectF, Qt
 from PySide6.QtWidgets import QGraphicsRectItem, QHBoxLayout, QLabel, QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import sigma_table, to_rgba
 from workbench.views.plots.base import Plot, written
@@ -110,5 +111,5 @@ class HeatMap(Plot):
             return ""
         value = float(self._values[row, column])
         low, high = self._limits
-        said = self.tr("no value") if np.isnan(value) else f"{written(value, (high - low) / 500)} {self._unit}"
+        said = tr("no value") if np.isnan(value) else f"{written(value, (high - low) / 500)} {self._unit}"
         return f"u {x:.0f} px, v {y:.0f} px: {said}"

@@ -11,6 +11,7 @@ from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QWidget
 
+from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress
@@ -72,7 +73,7 @@ class Meter(QWidget):
     @property
     def said(self) -> str:
         """The value and its zone in words."""
-        words = {"": "", "good": self.tr("good"), "warn": self.tr("fair"), "bad": self.tr("poor")}
+        words = {"": "", "good": tr("good"), "warn": tr("fair"), "bad": tr("poor")}
         return " · ".join(part for part in (self._text or "–", words[self.level]) if part)
 
     def share(self, value: float) -> float:
@@ -139,7 +140,7 @@ class HintBar(QFrame):
         self._since = -math.inf
         self._sign, self._label = IconLabel(18), QLabel()
         self._label.setWordWrap(True)
-        self._label.setAccessibleName(self.tr("Hint"))
+        self._label.setAccessibleName(tr("Hint"))
         row = in_row(on=self, margins=(10, 6, 10, 6), spacing=8)
         row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self._label, 1)

@@ -31,13 +31,13 @@ class ResidualPlot(Plot):
         self._rms: float | None = None
         super().__init__(parent, least_height=220)
         self.kind = QComboBox()
-        self.kind.addItems([self.tr("On the picture"), self.tr("Scatter")])
-        self.kind.setToolTip(self.tr("Where the residuals are, or how they scatter"))
+        self.kind.addItems([tr("On the picture"), tr("Scatter")])
+        self.kind.setToolTip(tr("Where the residuals are, or how they scatter"))
         self.factor = QComboBox()
-        self.factor.addItem(self.tr("automatic"), 0)
+        self.factor.addItem(tr("automatic"), 0)
         for factor in FACTORS:
             self.factor.addItem(f"× {factor}", factor)
-        self.factor.setToolTip(self.tr("How much the residuals are enlarged"))
+        self.factor.setToolTip(tr("How much the residuals are enlarged"))
         self._enlarged = QLabel()
         self._enlarged.setObjectName("muted")
         row = in_row(self.kind, self.factor, (self._enlarged, 1))
@@ -125,8 +125,8 @@ class ResidualPlot(Plot):
 
     def _draw_scatter(self) -> None:
         s = shades()
-        self._set_axis("bottom", self.tr("residual in u"), self._unit)
-        self._set_axis("left", self.tr("residual in v"), self._unit)
+        self._set_axis("bottom", tr("residual in u"), self._unit)
+        self._set_axis("left", tr("residual in v"), self._unit)
         for which, symbol, colour in ((self._counted, "o", s.accent), (~self._counted, "x", s.bad)):
             dots = self._residuals[which]
             size = 5 if symbol == "o" else 9

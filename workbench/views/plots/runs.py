@@ -75,7 +75,7 @@ class RunChart(Plot):
         runs, s = self._runs, shades()
         assert runs is not None
         count = len(runs.values)
-        self._set_axis("bottom", self.tr("scan"))
+        self._set_axis("bottom", tr("scan"))
         self._set_axis("left", tr("thickness, U (k = {k:g})", k=runs.k), runs.unit)
         every = max(1, count // 12)
         self._item.getAxis("bottom").setTicks([[(i + 1, str(i + 1)) for i in range(0, count, every)]])
@@ -89,7 +89,7 @@ class RunChart(Plot):
         self._box.setRange(yRange=(low - margin, high + margin), padding=0)
         for y, text, colour, style in lines:
             self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
-            below = text == self.tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
+            below = text == tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
             below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
             words = self._words(f"{text} {written(y, (high - low) / 200)} {runs.unit}", colour, (1, 0 if below else 1))
             self._words_shown.append((words, y))
@@ -113,12 +113,12 @@ class RunChart(Plot):
         s = shades()
         lines: list[tuple[float, str, str, Qt.PenStyle]] = []
         if runs.nominal is not None and runs.tolerance is not None:
-            lines.append((runs.nominal + runs.tolerance, self.tr("upper limit"), s.bad, _DASH))
-            lines.append((runs.nominal - runs.tolerance, self.tr("lower limit"), s.bad, _DASH))
+            lines.append((runs.nominal + runs.tolerance, tr("upper limit"), s.bad, _DASH))
+            lines.append((runs.nominal - runs.tolerance, tr("lower limit"), s.bad, _DASH))
         if runs.nominal is not None:
-            lines.append((runs.nominal, self.tr("nominal"), s.muted, Qt.PenStyle.SolidLine))
+            lines.append((runs.nominal, tr("nominal"), s.muted, Qt.PenStyle.SolidLine))
         if runs.mean is not None:
-            lines.append((runs.mean, self.tr("mean"), s.text, Qt.PenStyle.DotLine))
+            lines.append((runs.mean, tr("mean"), s.text, Qt.PenStyle.DotLine))
         return lines
 
     def _tip(self, x: float, y: float) -> str:
@@ -168,7 +168,7 @@ class Histogram(Plot):
         bins = self._bins or min(_MOST_BINS, max(8, round(2 * len(self._values) ** (1 / 3))))
         counts, edges = np.histogram(self._values, bins=bins)
         self._set_axis("bottom", self._label, self._unit)
-        self._set_axis("left", self.tr("count"))
+        self._set_axis("left", tr("count"))
         middles, width = 0.5 * (edges[1:] + edges[:-1]), float(edges[1] - edges[0])
         self._counts, self._edges = counts, edges
         pen = self._pen(s.panel, 1)

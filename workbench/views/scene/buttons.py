@@ -64,28 +64,26 @@ class SceneButtons(QToolBar):
         self.setMovable(False)
         self._owner = owner
         names = {
-            "front": (self.tr("Front view"), "1"),
-            "back": (self.tr("Back view"), "2"),
-            "left": (self.tr("View from the left"), "3"),
-            "right": (self.tr("View from the right"), "4"),
-            "top": (self.tr("View from above"), "5"),
-            "bottom": (self.tr("View from below"), "6"),
-            "iso": (self.tr("View from a corner"), "7"),
-            "camera": (self.tr("What the camera sees"), "8"),
+            "front": (tr("Front view"), "1"),
+            "back": (tr("Back view"), "2"),
+            "left": (tr("View from the left"), "3"),
+            "right": (tr("View from the right"), "4"),
+            "top": (tr("View from above"), "5"),
+            "bottom": (tr("View from below"), "6"),
+            "iso": (tr("View from a corner"), "7"),
+            "camera": (tr("What the camera sees"), "8"),
         }
         self._actions: dict[str, QAction] = {}
         for view, (text, key) in names.items():
             self._add(view, text, key).triggered.connect(lambda _=False, view=view: self.view_asked.emit(view))
         self.addSeparator()
-        self._add("fit", self.tr("Show everything"), "R").triggered.connect(self.fit_asked)
-        self.parallel = self._add(
-            "parallel", self.tr("Parallel projection: equal lengths look equal"), "P", checkable=True
-        )
+        self._add("fit", tr("Show everything"), "R").triggered.connect(self.fit_asked)
+        self.parallel = self._add("parallel", tr("Parallel projection: equal lengths look equal"), "P", checkable=True)
         self.parallel.toggled.connect(self.parallel_asked)
-        self.grid = self._add("grid", self.tr("Millimetre grid"), "G", checkable=True)
+        self.grid = self._add("grid", tr("Millimetre grid"), "G", checkable=True)
         self.grid.toggled.connect(self.grid_asked)
         self.addSeparator()
-        self._add("save", self.tr("Save this picture"), "Ctrl+Shift+S").triggered.connect(self.save_asked)
+        self._add("save", tr("Save this picture"), "Ctrl+Shift+S").triggered.connect(self.save_asked)
         self.dress()
 
     def action(self, name: str) -> QAction:
@@ -114,7 +112,7 @@ class SceneButtons(QToolBar):
         more = self.findChild(QToolButton, "qt_toolbar_ext_button")
         if more is not None:  # what there is no room for is behind it; the style draws it black on any theme
             more.setIcon(qtawesome.icon("mdi6.chevron-double-right", color=text))
-            more.setToolTip(self.tr("More buttons"))
+            more.setToolTip(tr("More buttons"))
 
     def _add(self, name: str, text: str, key: str, *, checkable: bool = False) -> QAction:
         action = QAction(text, self)

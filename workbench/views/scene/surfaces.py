@@ -18,6 +18,7 @@ from PySide6.QtWidgets import QWidget
 from pyvista import Plotter
 from pyvistaqt import QtInteractor
 
+from workbench.language import tr
 from workbench.views.scene.colours import Rgb
 from workbench.views.scene.renderer import Renderer, route_messages
 
@@ -36,7 +37,7 @@ class EmbeddedWidget(QtInteractor):
     def __init__(self, parent: QWidget, draw: Callable[[], None]) -> None:
         super().__init__(parent, auto_update=False, multi_samples=0)
         self.setAcceptDrops(False)
-        self.setAccessibleName(self.tr("3D view"))
+        self.setAccessibleName(tr("3D view"))
         self.iren.interactor.EnableRenderOff()
         self.started = False
         self.ground: Rgb = (0, 0, 0)

@@ -20,7 +20,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 from core.errors import InputError
 from core.files import atomic
 from core.model.arrays import Array
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.views.layouts import in_column
 from workbench.views.scene.buttons import SceneButtons, ViewName
 from workbench.views.scene.camera import SceneCamera
@@ -110,7 +110,7 @@ class SceneView(QWidget):
         self._grid_mm = 0.0
         self._marked: Array | None = None
         self._canvas = Canvas(Navigate(self), self._paint_overlay, self)
-        self._canvas.setAccessibleName(self.tr("3D view"))
+        self._canvas.setAccessibleName(tr("3D view"))
         self.setFocusProxy(self._canvas)
         self._navigator = Navigator(self._scene, lambda: self._canvas.logical_size, self._margin, self)
         self._drawing = Drawing(self._scene, lambda: self._navigator.camera, self._canvas)
@@ -256,7 +256,7 @@ class SceneView(QWidget):
         self._scene.remove(PYRAMID)
         pyramid = self._navigator.pyramid = None if corners is None else as_points(corners, "corners")
         if pyramid is not None:
-            for item in camera_pyramid(pyramid, self.tr("camera")):
+            for item in camera_pyramid(pyramid, tr("camera")):
                 self._scene.put(PYRAMID, item)
         self._changed()
 
@@ -502,11 +502,11 @@ class SceneView(QWidget):
     def _show_message(self) -> None:
         """What stands in the place of the scene, if anything."""
         kind, message = readiness().kind, None
-        no_3d = self.tr("This computer cannot draw in 3D (no OpenGL). Everything else works as usual.")
+        no_3d = tr("This computer cannot draw in 3D (no OpenGL). Everything else works as usual.")
         if self._scene.empty:
             message = self._message
         elif kind is None:
-            message = self.tr("Preparing the 3D view …")
+            message = tr("Preparing the 3D view …")
         elif kind == "none":
             message = no_3d
         self._canvas.show_message(message)
@@ -517,7 +517,7 @@ class SceneView(QWidget):
             and kind not in readiness().notified
         ):
             readiness().notified |= {kind}
-            pictures = self.tr(
+            pictures = tr(
                 "This computer offers no OpenGL to the window: the 3D view shows rendered pictures of the scene. "
                 "Everything works as usual, turning may be slower."
             )
@@ -537,9 +537,7 @@ class SceneView(QWidget):
 
     def _ask_and_save(self) -> None:
         """Ask for a place, and write the picture there."""
-        name, _ = QFileDialog.getSaveFileName(
-            self, self.tr("Save this picture"), "scene.png", self.tr("Pictures (*.png)")
-        )
+        name, _ = QFileDialog.getSaveFileName(self, tr("Save this picture"), "scene.png", tr("Pictures (*.png)"))
         if not name:
             return
         try:

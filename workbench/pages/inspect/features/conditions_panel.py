@@ -38,7 +38,7 @@ class ConditionsPanel(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(muted(
-            self.tr("They hold for the features. Add the thickness as a feature to have it at 20 °C, or compared, too.")
+            tr("They hold for the features. Add the thickness as a feature to have it at 20 °C, or compared, too.")
         ))  # fmt: skip
         self._column.addWidget(self._inside)
 
@@ -84,8 +84,8 @@ class ConditionsPanel(QWidget):
             self._add_group(column, group, add, plan)
         self._add_group(column, "master", self._add_master, plan)
         if self._conditions.master_is_on:
-            self.take = QPushButton(icon("mdi6.folder-open-outline"), self.tr("Take from its results"))
-            self.take.setToolTip(self.tr("The project, or folder of results, in which the master was measured"))
+            self.take = QPushButton(icon("mdi6.folder-open-outline"), tr("Take from its results"))
+            self.take.setToolTip(tr("The project, or folder of results, in which the master was measured"))
             self.take.clicked.connect(self._take)
             column.addWidget(self.take)
         self._column.addWidget(self._inside)
@@ -103,12 +103,12 @@ class ConditionsPanel(QWidget):
         column.addWidget(complaint)
 
     def _add_frame(self, form: SettingsForm, plan: InspectionPlan) -> None:
-        form.add_section(self.tr("Part coordinates (3-2-1)"))
-        none = {"primary": self.tr("the camera's"), "secondary": self.tr("choose"), "tertiary": self.tr("none")}
+        form.add_section(tr("Part coordinates (3-2-1)"))
+        none = {"primary": tr("the camera's"), "secondary": tr("choose"), "tertiary": tr("none")}
         said = {
-            "primary": (self.tr("z points out of"), self.tr("A plane: z is 0 on it. The camera's: none are needed.")),
-            "secondary": (self.tr("x points out of"), self.tr("A second plane, or an axis to point along.")),
-            "tertiary": (self.tr("Origin at"), self.tr("A third feature that fixes y; none: amid the second.")),
+            "primary": (tr("z points out of"), tr("A plane: z is 0 on it. The camera's: none are needed.")),
+            "secondary": (tr("x points out of"), tr("A second plane, or an axis to point along.")),
+            "tertiary": (tr("Origin at"), tr("A third feature that fixes y; none: amid the second.")),
         }
         shown = tuple(said) if self._conditions.values()["primary"] else ("primary",)
         for place in shown:
@@ -116,19 +116,19 @@ class ConditionsPanel(QWidget):
             form.add_choice(place, said[place][0], choices, said[place][1])
 
     def _add_temperature(self, form: SettingsForm, plan: InspectionPlan) -> None:
-        form.add_section(self.tr("Temperature"))
-        form.add_check(fields.AT_20, self.tr("State lengths at 20 °C"), self.tr("Off: as the part was when scanned."))
+        form.add_section(tr("Temperature"))
+        form.add_check(fields.AT_20, tr("State lengths at 20 °C"), tr("Off: as the part was when scanned."))
         if not self._conditions.temperature_is_on:
             return
-        self._celsius(form, "part", self.tr("Part"), self.tr("Its temperature while it was scanned."))
-        self._celsius(form, "u_part", self.tr("Part, u"), self.tr("Standard uncertainty; 0.3 for ±0.5 °C."))
-        self._per_kelvin(form, "alpha", self.tr("Expansion"), self.tr("Steel 11.5, aluminium 23, brass 19, glass 8."))
-        self._per_kelvin(form, "u_alpha", self.tr("Expansion, u"), self.tr("Standard uncertainty; 0.6 for ±1."))
-        self._celsius(form, "scale", self.tr("Target"), self.tr("The target's when the camera was calibrated."))
-        self._celsius(form, "u_scale", self.tr("Target, u"), self.tr("Standard uncertainty of that."))
-        help = self.tr("Of the target's plate; 0: its size holds as it is.")
-        self._per_kelvin(form, "scale_alpha", self.tr("Target's expansion"), help)
-        self._per_kelvin(form, "u_scale_alpha", self.tr("Target's, u"), self.tr("Standard uncertainty of that."))
+        self._celsius(form, "part", tr("Part"), tr("Its temperature while it was scanned."))
+        self._celsius(form, "u_part", tr("Part, u"), tr("Standard uncertainty; 0.3 for ±0.5 °C."))
+        self._per_kelvin(form, "alpha", tr("Expansion"), tr("Steel 11.5, aluminium 23, brass 19, glass 8."))
+        self._per_kelvin(form, "u_alpha", tr("Expansion, u"), tr("Standard uncertainty; 0.6 for ±1."))
+        self._celsius(form, "scale", tr("Target"), tr("The target's when the camera was calibrated."))
+        self._celsius(form, "u_scale", tr("Target, u"), tr("Standard uncertainty of that."))
+        help = tr("Of the target's plate; 0: its size holds as it is.")
+        self._per_kelvin(form, "scale_alpha", tr("Target's expansion"), help)
+        self._per_kelvin(form, "u_scale_alpha", tr("Target's, u"), tr("Standard uncertainty of that."))
 
     def _celsius(self, form: SettingsForm, key: str, label: str, help: str) -> None:
         u = key.startswith("u_")
@@ -144,19 +144,19 @@ class ConditionsPanel(QWidget):
         form.add_number(key, label, NumberRange(least, 1000.0, decimals=2, step=0.5, unit="10⁻⁶/K"), help)
 
     def _add_master(self, form: SettingsForm, plan: InspectionPlan) -> None:
-        form.add_section(self.tr("Master"))
+        form.add_section(tr("Master"))
         form.add_check(
-            fields.WITH_MASTER, self.tr("Compare with a master"),
-            self.tr("What the rig gets wrong on a known block is taken off the part."),
+            fields.WITH_MASTER, tr("Compare with a master"),
+            tr("What the rig gets wrong on a known block is taken off the part."),
         )  # fmt: skip
         if not self._conditions.master_is_on:
             return
-        form.add_text("name", self.tr("Name"), self.tr("With its number, as the certificate has it."))
+        form.add_text("name", tr("Name"), tr("With its number, as the certificate has it."))
         for key, label, help in (
-            ("certified_mm", self.tr("Certified length"), self.tr("By the certificate, at 20 °C.")),
-            ("u_certified_mm", self.tr("Certified, u"), self.tr("Standard uncertainty: the certificate's U over k.")),
-            ("measured_mm", self.tr("Measured length"), self.tr("As this rig measured it; at 20 °C if the part's is.")),
-            (fields.U_MEASURED, self.tr("Measured, u"), self.tr("Typed in, it is one row of the budget.")),
+            ("certified_mm", tr("Certified length"), tr("By the certificate, at 20 °C.")),
+            ("u_certified_mm", tr("Certified, u"), tr("Standard uncertainty: the certificate's U over k.")),
+            ("measured_mm", tr("Measured length"), tr("As this rig measured it; at 20 °C if the part's is.")),
+            (fields.U_MEASURED, tr("Measured, u"), tr("Typed in, it is one row of the budget.")),
         ):
             u = key.startswith("u_")
             form.add_number(
@@ -168,22 +168,22 @@ class ConditionsPanel(QWidget):
                     decimals=5,
                     step=0.001 if u else 1.0,
                     unit="mm",
-                    none_text=None if u else self.tr("none"),
+                    none_text=None if u else tr("none"),
                     first=None if u else 50.0,
                 ),
                 help,
             )
         form.add_check(
-            "same_calibration", self.tr("Measured with this calibration"),
-            self.tr("Then what camera and laser get wrong cancels."),
+            "same_calibration", tr("Measured with this calibration"),
+            tr("Then what camera and laser get wrong cancels."),
         )  # fmt: skip
         for name in fields.comparable(plan):
             form.add_check(fields.COMPARED + name, tr("Compare {name}", name=name))
         if not fields.comparable(plan):
-            form.add_section(self.tr("There is no feature with a length yet: add one first."))
+            form.add_section(tr("There is no feature with a length yet: add one first."))
 
     def _take(self) -> None:
-        folder = ask.choose_folder(self, self.tr("Project or results of the master"), self._conditions.projects_folder)
+        folder = ask.choose_folder(self, tr("Project or results of the master"), self._conditions.projects_folder)
         if folder is not None:
             self._conditions.take_master(folder)
 

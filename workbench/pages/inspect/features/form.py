@@ -81,49 +81,49 @@ class FeatureForm(QWidget):
 
     def _add_where(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
         form = self.where
-        form.add_text("name", self.tr("Name"), self.tr("As it is called in the list and in the report."))
+        form.add_text("name", tr("Name"), tr("As it is called in the list and in the report."))
         others = [(name, name) for name in fields.elements(plan)]
         for place in range(kind_of(spec).made_of):
-            title = self.tr("First feature") if place == 0 else self.tr("Second feature")
-            form.add_choice(f"of {place}", title, others, self.tr("A plane, sphere, cylinder or point of the list."))
+            title = tr("First feature") if place == 0 else tr("Second feature")
+            form.add_choice(f"of {place}", title, others, tr("A plane, sphere, cylinder or point of the list."))
         most = kind_of(spec).most_regions
         if most > 1:
             form.add_number(
                 "parts",
-                self.tr("Faces"),
-                NumberRange(2, most, none_text=self.tr("automatic")),
-                self.tr("How many faces are named one by one; automatic: all found."),
+                tr("Faces"),
+                NumberRange(2, most, none_text=tr("automatic")),
+                tr("How many faces are named one by one; automatic: all found."),
             )
         for place, region in enumerate(fields.own_regions(spec)):
             self._add_region(spec, plan, place, isinstance(region, Auto))
 
     def _add_region(self, spec: FeatureSpec, plan: InspectionPlan, place: int, found: bool) -> None:
         region = spec.regions[place]
-        choices = [(fields.AUTO, words.source_of_none(spec)), (fields.DRAWN, self.tr("drawn"))]
+        choices = [(fields.AUTO, words.source_of_none(spec)), (fields.DRAWN, tr("drawn"))]
         if isinstance(region, InSphere | InBox):
-            choices.append((fields.PLACED, self.tr("as in the plan file")))
+            choices.append((fields.PLACED, tr("as in the plan file")))
         choices += [
             (fields.POINTS_OF + one.name, tr("points of {name}", name=one.name))
             for one in plan.features
             if one.name != spec.name and not kind_of(one).made_of
         ]
         self.where.add_choice(
-            f"source {place}", self._region_title(spec, place), choices, self.tr("Where its points are taken from.")
+            f"source {place}", self._region_title(spec, place), choices, tr("Where its points are taken from.")
         )
         single = kind_of(spec).most_regions > 1 and len(spec.regions) == 1
         if found and kind_of(spec).automatic == "numbered" and not single:
             self.where.add_number(
                 f"number {place}",
-                self.tr("Number of the face"),
+                tr("Number of the face"),
                 NumberRange(1, MOST_FACES),
-                self.tr("1 is the largest plane face of the scan, 2 the next."),
+                tr("1 is the largest plane face of the scan, 2 the next."),
             )
 
     def _region_title(self, spec: FeatureSpec, place: int) -> str:
         titles = kind_of(spec).region_titles
         if len(titles) == len(spec.regions):
             return tr(titles[place])
-        return tr("Level {number}", number=place + 1) if len(spec.regions) > 1 else self.tr("Region")
+        return tr("Level {number}", number=place + 1) if len(spec.regions) > 1 else tr("Region")
 
     def _drawing_tools(self, spec: FeatureSpec) -> QGridLayout:
         grid = QGridLayout()
@@ -131,7 +131,7 @@ class FeatureForm(QWidget):
         grid.setColumnStretch(0, 1)
         for place in range(len(spec.regions)):
             several = tr("Draw “{name}”", name=self._region_title(spec, place))
-            title = several if len(spec.regions) > 1 else self.tr("Draw the region")
+            title = several if len(spec.regions) > 1 else tr("Draw the region")
             grid.addWidget(QLabel(title), place, 0)
             for column, kind in enumerate(("polygon", "lasso"), start=1):
                 button = QToolButton()
@@ -147,13 +147,13 @@ class FeatureForm(QWidget):
     def _add_buttons(self, spec: FeatureSpec, column: QVBoxLayout) -> None:
         wanted: list[tuple[str, str, str, Any]] = []
         if spec.deviation is not None:
-            title = self.tr("Choose another nominal surface")
+            title = tr("Choose another nominal surface")
             wanted.append(("nominal", "mdi6.folder-open-outline", title, self._choose_nominal))
         if spec.section is not None:
-            wanted.append(("cut", "mdi6.plus", self.tr("Add measurement"), self._edit.add_cut))
+            wanted.append(("cut", "mdi6.plus", tr("Add measurement"), self._edit.add_cut))
             if spec.section.cuts:
                 last = len(spec.section.cuts) - 1
-                wanted.append(("uncut", "mdi6.minus", self.tr("Remove the last"), lambda: self._edit.remove_cut(last)))
+                wanted.append(("uncut", "mdi6.minus", tr("Remove the last"), lambda: self._edit.remove_cut(last)))
         row = QHBoxLayout()
         for name, symbol, text, does in wanted:
             button = QPushButton(icon(symbol), text)
@@ -179,18 +179,18 @@ class FeatureForm(QWidget):
 
     def _choose_nominal(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Nominal surface"), self._features.model.folder, self.tr("STL (*.stl *.STL)")
+            self, tr("Nominal surface"), self._features.model.folder, tr("STL (*.stl *.STL)")
         )
         if path is not None:
             self._edit.set_nominal(path)
 
     def _show_tools(self) -> None:
-        why_not = "" if self._scan.view is not None else self.tr("There is no surface to draw on yet.")
+        why_not = "" if self._scan.view is not None else tr("There is no surface to draw on yet.")
         for (_, kind), button in self.tools.items():
             first = (
-                self.tr("Draw the region corner by corner.")
+                tr("Draw the region corner by corner.")
                 if kind == "polygon"
-                else self.tr("Draw round the region with the button held down.")
+                else tr("Draw round the region with the button held down.")
             )
             button.setEnabled(not why_not)
             more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")

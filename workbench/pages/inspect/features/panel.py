@@ -94,8 +94,8 @@ class FeaturesPanel(QWidget):
 
     def _make_list(self) -> None:
         self.list.setColumnCount(2)
-        self.list.setHeaderLabels([self.tr("Feature"), self.tr("Value ± U")])
-        self.list.setAccessibleName(self.tr("Features"))
+        self.list.setHeaderLabels([tr("Feature"), tr("Value ± U")])
+        self.list.setAccessibleName(tr("Features"))
         self.list.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.list.setIndentation(14)
         self.list.setUniformRowHeights(True)
@@ -149,16 +149,16 @@ class FeaturesPanel(QWidget):
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         tips = [tr(kind.title)]
         if result is None:
-            item.setText(1, self.tr("measuring …") if self._features.measuring else self.tr("not measured"))
+            item.setText(1, tr("measuring …") if self._features.measuring else tr("not measured"))
         elif result.problem:
-            item.setText(1, self.tr("cannot be measured"))
+            item.setText(1, tr("cannot be measured"))
             item.setIcon(1, icon("mdi6.alert-outline", colour="warn"))
             tips.append(text_of(result.problem))
         else:
             tips += [words.used(result), *(words.tip(row) for row in rows)]
             self._mark(item, words.verdict(result))
             if not rows:
-                item.setText(1, self.tr("measured"))
+                item.setText(1, tr("measured"))
             if len(rows) > 1:
                 item.addChildren([self._row(words.short_name(row, name), row, name) for row in rows])
         for column in (0, 1):
@@ -200,9 +200,9 @@ class FeaturesPanel(QWidget):
             (self.down, "mdi6.arrow-down"),
         ):
             button.setIcon(icon(symbol))
-        self.add.setText(self.tr("Add feature"))
+        self.add.setText(tr("Add feature"))
         self.add.setMenu(menu)
-        self.measure.setText(self.tr("Measure all"))
+        self.measure.setText(tr("Measure all"))
         self.measure.clicked.connect(lambda: self._features.measure())
         self.remove.clicked.connect(self._remove)
         self.up.clicked.connect(lambda: self._features.move(self._features.chosen, -1))
@@ -213,17 +213,17 @@ class FeaturesPanel(QWidget):
         for name, action in self.kinds.items():
             why_not = fields.why_not(name, plan)
             enable(action, why_not, tr(kind_named(name).help))
-        self.add.setToolTip(self.tr("Measure something beside the thickness"))
+        self.add.setToolTip(tr("Measure something beside the thickness"))
         why_not = features.cannot_measure
-        enable(self.measure, why_not, self.tr("Measure all features on this scan"))
+        enable(self.measure, why_not, tr("Measure all features on this scan"))
         place = plan.names.index(features.chosen) if features.chosen in plan.names else -1
-        choose = self.tr("Choose a feature first.")
+        choose = tr("Choose a feature first.")
         for button, why_not, tip in (
-            (self.remove, features.cannot_remove(features.chosen), self.tr("Take the chosen feature out (Delete)")),
-            (self.up, choose if place < 0 else self.tr("It is the first.") if not place else "",
-             self.tr("Move the chosen feature up (Alt+Up)")),
-            (self.down, choose if place < 0 else self.tr("It is the last.") if place == len(plan.names) - 1 else "",
-             self.tr("Move the chosen feature down (Alt+Down)")),
+            (self.remove, features.cannot_remove(features.chosen), tr("Take the chosen feature out (Delete)")),
+            (self.up, choose if place < 0 else tr("It is the first.") if not place else "",
+             tr("Move the chosen feature up (Alt+Up)")),
+            (self.down, choose if place < 0 else tr("It is the last.") if place == len(plan.names) - 1 else "",
+             tr("Move the chosen feature down (Alt+Down)")),
         ):  # fmt: skip
             enable(button, why_not, tip)
             button.setAccessibleName(tip)
@@ -231,7 +231,7 @@ class FeaturesPanel(QWidget):
     def _sentence(self) -> str:
         features = self._features
         if not features.plan.features:
-            return self.tr("Steps, spheres, flatness, sections and more, beside the thickness.")
+            return tr("Steps, spheres, flatness, sections and more, beside the thickness.")
         if features.problem:
             return features.problem
         chosen = features.result(features.chosen)
@@ -240,14 +240,14 @@ class FeaturesPanel(QWidget):
         if features.measuring or features.shown is not None:
             shown = features.shown
             return "" if shown is None else "\n".join(map(text_of, shown.notes))
-        return features.cannot_measure or self.tr("The features have changed or are not measured yet: measure them.")
+        return features.cannot_measure or tr("The features have changed or are not measured yet: measure them.")
 
     def _add(self, kind: FeatureKind) -> None:
         if not kind.nominal_file:
             self._edit.add(kind.name)
             return
         start = self._features.model.folder
-        path = ask.choose_file_to_open(self, self.tr("Nominal surface"), start, self.tr("STL (*.stl *.STL)"))
+        path = ask.choose_file_to_open(self, tr("Nominal surface"), start, tr("STL (*.stl *.STL)"))
         if path is not None:
             self._edit.add(kind.name, path)
 
@@ -263,14 +263,14 @@ class TemplatesButton(QPushButton):
         super().__init__(parent)
         self._templates = templates
         self._paths: list[Path] | None = None
-        self.setText(self.tr("Templates"))
+        self.setText(tr("Templates"))
         self.setIcon(icon("mdi6.playlist-plus"))
-        self.setToolTip(self.tr("Keep these features for the next part, or take those of another"))
+        self.setToolTip(tr("Keep these features for the next part, or take those of another"))
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
-        self.save = menu.addAction(icon("mdi6.content-save-outline"), self.tr("Save as template …"))
-        self.open = menu.addAction(icon("mdi6.folder-open-outline"), self.tr("Take from file …"))
-        self.open.setToolTip(self.tr("Measure the features of a plan.toml from now on, instead of these"))
+        self.save = menu.addAction(icon("mdi6.content-save-outline"), tr("Save as template …"))
+        self.open = menu.addAction(icon("mdi6.folder-open-outline"), tr("Take from file …"))
+        self.open.setToolTip(tr("Measure the features of a plan.toml from now on, instead of these"))
         self._line = menu.addSeparator()
         self.recent: list[QAction] = []
         self.save.triggered.connect(lambda: self._save())
@@ -280,7 +280,7 @@ class TemplatesButton(QPushButton):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         why_not, paths = self._templates.cannot_save, self._templates.recent
-        enable(self.save, why_not, self.tr("Write these features, their regions and limits to a file"))
+        enable(self.save, why_not, tr("Write these features, their regions and limits to a file"))
         if paths == self._paths:
             return
         self._paths = paths
@@ -297,15 +297,13 @@ class TemplatesButton(QPushButton):
         self._line.setVisible(bool(paths))
 
     def _save(self) -> None:
-        path = ask.choose_file_to_save(
-            self, self.tr("Save as template"), self._templates.place(), self.tr("Plan (*.toml)")
-        )
+        path = ask.choose_file_to_save(self, tr("Save as template"), self._templates.place(), tr("Plan (*.toml)"))
         if path is not None:
             self._templates.save(path)
 
     def _open(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Take the features of a template"), self._templates.place().parent, self.tr("Plan (*.toml)")
+            self, tr("Take the features of a template"), self._templates.place().parent, tr("Plan (*.toml)")
         )
         if path is not None:
             self._templates.take(path)

@@ -59,15 +59,15 @@ class PlotTab(QWidget):
             return text_of(result.problem)
         spec = self._edit.spec
         if spec is not None and kind_of(spec).plotted:
-            return self.tr("Measure the features: then what was found is drawn here.")
-        return self.tr("Choose a cross-section or a deviation in the list of features: it is drawn here.")
+            return tr("Measure the features: then what was found is drawn here.")
+        return tr("Choose a cross-section or a deviation in the list of features: it is drawn here.")
 
     def _show_profile(self, result: ShownFeature, profile: ShownProfile) -> None:
         self.chart.clear()
-        self.chart.set_axes(self.tr("along the cut"), "mm", self.tr("height"), "mm")
-        title = self.tr("points near the cut")
+        self.chart.set_axes(tr("along the cut"), "mm", tr("height"), "mm")
+        title = tr("points near the cut")
         self.chart.set_curve("points", profile.position, profile.height, colour=FEATURE, title=title, points=True)
-        self.chart.set_curve("mean", *profile.mean_line, title=self.tr("their median over each step"))
+        self.chart.set_curve("mean", *profile.mean_line, title=tr("their median over each step"))
         self.words.setText(
             tr(
                 "{name}: positions count from where the cut begins; measurements lie between positions.",
@@ -78,7 +78,7 @@ class PlotTab(QWidget):
 
     def _show_deviations(self, result: ShownFeature, found: ShownDeviations) -> None:
         self.chart.clear()
-        self.chart.set_axes(self.tr("measured − nominal"), "mm", self.tr("places"), "", from_zero=True)
+        self.chart.set_axes(tr("measured − nominal"), "mm", tr("places"), "", from_zero=True)
         self.chart.set_curve("histogram", np.repeat(found.edges, 2)[1:-1], np.repeat(found.counts, 2))
         self.words.setText(
             tr(

@@ -28,16 +28,16 @@ class RepeatsTab(QWidget):
         self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
         self.table.set_headers(
             [
-                (self.tr("Scan"), ""),
-                (self.tr("Thickness"), "mm"),
-                (self.tr("U (k = 2)"), "mm"),
-                (self.tr("Calibration"), ""),
-                (self.tr("Scanned"), ""),
+                (tr("Scan"), ""),
+                (tr("Thickness"), "mm"),
+                (tr("U (k = 2)"), "mm"),
+                (tr("Calibration"), ""),
+                (tr("Scanned"), ""),
             ]
         )
-        self.add = QPushButton(icon("mdi6.playlist-plus"), self.tr("Add this scan"))
-        self.remove = QPushButton(icon("mdi6.playlist-remove"), self.tr("Remove"))
-        self.copy = QPushButton(icon("mdi6.content-copy"), self.tr("Copy all"))
+        self.add = QPushButton(icon("mdi6.playlist-plus"), tr("Add this scan"))
+        self.remove = QPushButton(icon("mdi6.playlist-remove"), tr("Remove"))
+        self.copy = QPushButton(icon("mdi6.content-copy"), tr("Copy all"))
         self.add.clicked.connect(lambda: repeats.add())
         self.remove.clicked.connect(lambda: repeats.remove([self.table.current_row()]))
         self.copy.clicked.connect(self._copy)
@@ -51,8 +51,8 @@ class RepeatsTab(QWidget):
         below = QWidget()
         row = in_row(on=below, margins=(0, 6, 0, 0), spacing=14)
         self.charts = QTabWidget()
-        self.charts.addTab(self.chart, self.tr("In their order"))
-        self.charts.addTab(self.histogram, self.tr("Histogram"))
+        self.charts.addTab(self.chart, tr("In their order"))
+        self.charts.addTab(self.histogram, tr("Histogram"))
         row.addWidget(self.charts, 1)
         numbers = QVBoxLayout()
         for widget in (self.rows, self.type1, self.type1_words):
@@ -81,8 +81,8 @@ class RepeatsTab(QWidget):
         statistics = repeats.statistics()
         if statistics is None:
             self.rows.set_rows([])
-            self.histogram.clear(self.tr("There are no repeats yet."))
-            self.chart.clear(self.tr("Two scans or more of the same part show how well the measurement repeats."))
+            self.histogram.clear(tr("There are no repeats yet."))
+            self.chart.clear(tr("Two scans or more of the same part show how well the measurement repeats."))
             return
         self.rows.set_rows(words.statistics_rows(statistics, spec.nominal_mm))
         self.chart.set_runs(
@@ -96,10 +96,10 @@ class RepeatsTab(QWidget):
         )
         limits = []
         if spec.nominal_mm is not None and spec.tolerance_mm is not None:
-            limits.append((spec.nominal_mm - spec.tolerance_mm, self.tr("lower limit")))
-            limits.append((spec.nominal_mm + spec.tolerance_mm, self.tr("upper limit")))
+            limits.append((spec.nominal_mm - spec.tolerance_mm, tr("lower limit")))
+            limits.append((spec.nominal_mm + spec.tolerance_mm, tr("upper limit")))
         self.histogram.set_values(
-            [repeat.thickness_mm for repeat in repeats.all], label=self.tr("thickness"), unit="mm", limits=limits
+            [repeat.thickness_mm for repeat in repeats.all], label=tr("thickness"), unit="mm", limits=limits
         )
 
     def _show_type1(self) -> None:
@@ -114,27 +114,23 @@ class RepeatsTab(QWidget):
     def _show_buttons(self) -> None:
         repeats = self._repeats
         why_not = repeats.can_add
-        enable(self.add, why_not, self.tr("Add the thickness of this scan to the series"))
+        enable(self.add, why_not, tr("Add the thickness of this scan to the series"))
         chosen = 0 <= self.table.current_row() < len(repeats.all)
         self.remove.setEnabled(chosen)
         self.remove.setToolTip(
-            self.tr("Take the chosen repeat out of the series")
-            if chosen
-            else self.tr("Choose a repeat in the table first.")
+            tr("Take the chosen repeat out of the series") if chosen else tr("Choose a repeat in the table first.")
         )
         self.copy.setEnabled(bool(repeats.all))
         self.copy.setToolTip(
-            self.tr("Copy the whole series with its statistics, tabs between the columns")
+            tr("Copy the whole series with its statistics, tabs between the columns")
             if repeats.all
-            else self.tr("There are no repeats yet.")
+            else tr("There are no repeats yet.")
         )
 
     def _sentence(self) -> str:
         repeats = self._repeats
         if not repeats.all:
-            return self.tr(
-                "No repeats yet: measure a scan, add it here, then scan the part again. Each scan counts once."
-            )
+            return tr("No repeats yet: measure a scan, add it here, then scan the part again. Each scan counts once.")
         if repeats.calibrations() > 1:
             return tr(
                 "Measured with {count} different calibrations: their differences are part of the scatter.",

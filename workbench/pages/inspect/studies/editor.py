@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
+from workbench.language import tr
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.studies import LIMITS, Draft, InspectStudies
 from workbench.theme import icon, shades
@@ -28,17 +29,17 @@ class StudyEditor(QWidget):
         self.problem.setWordWrap(True)
         self.text = QPlainTextEdit()
         self.text.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
-        self.text.setAccessibleName(self.tr("Table of the study"))
+        self.text.setAccessibleName(tr("Table of the study"))
         self.text.setTabChangesFocus(True)
         self.text.textChanged.connect(lambda: self._studies.write(self.text.toPlainText()))
         self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form()}
-        self.open = QPushButton(icon("mdi6.table-arrow-left"), self.tr("Open a table …"))
-        self.add = QPushButton(icon("mdi6.folder-plus-outline"), self.tr("Add a project …"))
-        self.make = QPushButton(icon("mdi6.check"), self.tr("Make the study"))
-        self.cancel = QPushButton(self.tr("Cancel"))
+        self.open = QPushButton(icon("mdi6.table-arrow-left"), tr("Open a table …"))
+        self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add a project …"))
+        self.make = QPushButton(icon("mdi6.check"), tr("Make the study"))
+        self.cancel = QPushButton(tr("Cancel"))
         self.make.setObjectName("primary")
-        self.open.setToolTip(self.tr("A CSV file with these columns, in any order"))
-        self.cancel.setToolTip(self.tr("Make no study; the table is given up"))
+        self.open.setToolTip(tr("A CSV file with these columns, in any order"))
+        self.cancel.setToolTip(tr("Make no study; the table is given up"))
         self.open.clicked.connect(self._open)
         self.add.clicked.connect(self._add)
         self.make.clicked.connect(lambda: self._studies.finish())
@@ -73,20 +74,20 @@ class StudyEditor(QWidget):
             form.setVisible(kind == draft.kind)
         self.forms[draft.kind].set_values(draft.values)
         say(self.problem, studies.problem)
-        busy = self.tr("Something is being read.") if studies.working else ""
+        busy = tr("Something is being read.") if studies.working else ""
         for button in (self.open, self.add, self.make):
             button.setEnabled(not busy)
-        self.make.setToolTip(busy or self.tr("Work the study out and keep it in the project"))
+        self.make.setToolTip(busy or tr("Work the study out and keep it in the project"))
         self.add.setToolTip(busy or self._add_tip(draft))
 
     def _help(self, draft: Draft) -> str:
         if draft.kind == "grr":
-            return self.tr(
+            return tr(
                 "One line a measurement: part, operator, value in mm, with semicolons, commas or tabs between them, or "
                 "pasted from a spreadsheet. Every operator measures every part as often; 10 parts, 3 operators and "
                 "2 to 3 repeats are usual."
             )
-        return self.tr(
+        return tr(
             "One line a reading: quantity (form, size, spacing or flatness), position, measured and calibrated value "
             "and u of the latter in mm. After the pattern of VDI/VDE 2634-2: 10 positions for a sphere, 7 for a ball "
             "bar, 6 for a plane. It is no certificate."
@@ -94,43 +95,43 @@ class StudyEditor(QWidget):
 
     def _add_tip(self, draft: Draft) -> str:
         if draft.kind == "grr":
-            return self.tr("Add part, operator and thickness of another project, a line for each of its repeats")
-        return self.tr("Look for the artefact in another project's scan, and add what is found as one position")
+            return tr("Add part, operator and thickness of another project, a line for each of its repeats")
+        return tr("Look for the artefact in another project's scan, and add what is found as one position")
 
     def _grr_form(self) -> SettingsForm:
         form = SettingsForm()
         form.add_number(
             "tolerance_mm",
-            self.tr("Tolerance ±"),
-            NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=self.tr("none"), first=0.1),
-            self.tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
+            tr("Tolerance ±"),
+            NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=tr("none"), first=0.1),
+            tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
         )
         form.edited.connect(self._studies.set_value)
         return form
 
     def _acceptance_form(self) -> SettingsForm:
         form = SettingsForm()
-        form.add_section(self.tr("Largest permitted error"))
+        form.add_section(tr("Largest permitted error"))
         titles = {
-            "form": (self.tr("Form"), self.tr("Probing error of a sphere: range about it.")),
-            "size": (self.tr("Size"), self.tr("Probing error of a sphere: its diameter.")),
-            "spacing": (self.tr("Spacing"), self.tr("Distance of a ball bar's spheres.")),
-            "flatness": (self.tr("Flatness"), self.tr("Range about a plane.")),
+            "form": (tr("Form"), tr("Probing error of a sphere: range about it.")),
+            "size": (tr("Size"), tr("Probing error of a sphere: its diameter.")),
+            "spacing": (tr("Spacing"), tr("Distance of a ball bar's spheres.")),
+            "flatness": (tr("Flatness"), tr("Range about a plane.")),
         }
         for key in LIMITS:
             form.add_number(
                 key,
                 titles[key][0],
-                NumberRange(0.0001, 100.0, decimals=4, step=0.01, unit="mm", none_text=self.tr("none"), first=0.05),
+                NumberRange(0.0001, 100.0, decimals=4, step=0.01, unit="mm", none_text=tr("none"), first=0.05),
                 titles[key][1],
             )
-        form.add_section(self.tr("Artefact of the projects added"))
-        kinds = [("sphere", self.tr("sphere")), ("bar", self.tr("ball bar")), ("plane", self.tr("plane"))]
-        form.add_choice("artefact", self.tr("Kind"), kinds, self.tr("What stands in their scans."))
+        form.add_section(tr("Artefact of the projects added"))
+        kinds = [("sphere", tr("sphere")), ("bar", tr("ball bar")), ("plane", tr("plane"))]
+        form.add_choice("artefact", tr("Kind"), kinds, tr("What stands in their scans."))
         for key, title, help in (
-            ("calibrated_mm", self.tr("Calibrated"), self.tr("Diameter of the sphere, or spacing of the bar.")),
-            ("u_mm", self.tr("Calibrated, u"), self.tr("Standard uncertainty of that.")),
-            ("diameter_mm", self.tr("Spheres of the bar"), self.tr("Their diameter, by which they are found.")),
+            ("calibrated_mm", tr("Calibrated"), tr("Diameter of the sphere, or spacing of the bar.")),
+            ("u_mm", tr("Calibrated, u"), tr("Standard uncertainty of that.")),
+            ("diameter_mm", tr("Spheres of the bar"), tr("Their diameter, by which they are found.")),
         ):
             form.add_number(key, title, NumberRange(0.0, LONGEST, decimals=4, step=1.0, unit="mm"), help)
         form.edited.connect(self._studies.set_value)
@@ -138,13 +139,13 @@ class StudyEditor(QWidget):
 
     def _open(self) -> None:
         path = ask.choose_file_to_open(
-            self, self.tr("Table of the study"), self._studies.model.folder, self.tr("Table (*.csv *.txt *.tsv)")
+            self, tr("Table of the study"), self._studies.model.folder, tr("Table (*.csv *.txt *.tsv)")
         )
         if path is not None:
             self._studies.open_table(path)
 
     def _add(self) -> None:
-        folder = ask.choose_folder(self, self.tr("Project"), self._studies.bench.settings.projects_folder)
+        folder = ask.choose_folder(self, tr("Project"), self._studies.bench.settings.projects_folder)
         if folder is not None:
             self._studies.add_project(folder)
 

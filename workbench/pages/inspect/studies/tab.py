@@ -15,7 +15,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.files.project.data import KeptStudy
-from workbench.language import text_of
+from workbench.language import text_of, tr
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
@@ -63,14 +63,14 @@ class StudiesTab(QWidget):
         inside = QWidget()
         column = in_column(self.words, on=inside)
         column.addLayout(self._row((
-            ("grr", "mdi6.account-group-outline", self.tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
-            ("acceptance", "mdi6.clipboard-check-outline", self.tr("Acceptance check …"),
+            ("grr", "mdi6.account-group-outline", tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
+            ("acceptance", "mdi6.clipboard-check-outline", tr("Acceptance check …"),
              lambda: self._studies.begin("acceptance")),
-            ("type1", "mdi6.chart-bell-curve", self.tr("Keep type-1 of the repeats"), self._studies.keep_type1),
+            ("type1", "mdi6.chart-bell-curve", tr("Keep type-1 of the repeats"), self._studies.keep_type1),
         )))  # fmt: skip
         self.list.setColumnCount(2)
-        self.list.setHeaderLabels([self.tr("In the report"), self.tr("Made of")])
-        self.list.setAccessibleName(self.tr("Studies"))
+        self.list.setHeaderLabels([tr("In the report"), tr("Made of")])
+        self.list.setAccessibleName(tr("Studies"))
         self.list.setObjectName("roomy")
         self.list.setRootIsDecorated(False)
         self.list.setFixedHeight(LIST_HEIGHT)
@@ -81,8 +81,8 @@ class StudiesTab(QWidget):
         )
         column.addWidget(self.list)
         column.addLayout(self._row((
-            ("remove", "mdi6.delete-outline", self.tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
-            ("export", "mdi6.export", self.tr("Export …"), self._export),
+            ("remove", "mdi6.delete-outline", tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
+            ("export", "mdi6.export", tr("Export …"), self._export),
         )))  # fmt: skip
         column.addWidget(self.title)
         row = in_row((self.table, 1), spacing=14)
@@ -120,15 +120,15 @@ class StudiesTab(QWidget):
                 item.setText(1, one.title)
                 item.setData(0, Qt.ItemDataRole.UserRole, one.id)
                 item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
-                item.setToolTip(0, self.tr("Ticked studies are printed in the report"))
+                item.setToolTip(0, tr("Ticked studies are printed in the report"))
                 if one.id == studies.chosen:
                     self.list.setCurrentItem(item)
             self.list.blockSignals(False)
         self.list.setVisible(bool(studies.all))
         self.words.setText(
-            self.tr("Ticked studies go into the report.")
+            tr("Ticked studies go into the report.")
             if studies.all
-            else self.tr(
+            else tr(
                 "How good is the way of measuring? A gauge R&R study compares parts, operators and repeats; an "
                 "acceptance check measures a sphere, a ball bar or a plane in several positions, after the pattern of "
                 "VDI/VDE 2634-2; a type-1 study judges the repeats of a reference part."
@@ -137,16 +137,16 @@ class StudiesTab(QWidget):
 
     def _show_buttons(self) -> None:
         studies = self._studies
-        busy = self.tr("A study is being worked out.") if studies.working else ""
-        closed = "" if self._studies.model.is_open else self.tr("Open a project first.")
+        busy = tr("A study is being worked out.") if studies.working else ""
+        closed = "" if self._studies.model.is_open else tr("Open a project first.")
         chosen = any(one.id == studies.chosen for one in studies.all)
-        choose = "" if chosen else self.tr("Choose a study in the list first.")
+        choose = "" if chosen else tr("Choose a study in the list first.")
         for key, why_not, tip in (
-            ("grr", closed, self.tr("Parts × operators × repeats, by analysis of variance")),
-            ("acceptance", closed, self.tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
-            ("type1", studies.cannot_keep_type1, self.tr("Bias, Cg and Cgk of the repeats as they are now")),
-            ("remove", choose, self.tr("Take the chosen study out of the project")),
-            ("export", choose, self.tr("Write the study (JSON), or the table it was made of (CSV)")),
+            ("grr", closed, tr("Parts × operators × repeats, by analysis of variance")),
+            ("acceptance", closed, tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
+            ("type1", studies.cannot_keep_type1, tr("Bias, Cg and Cgk of the repeats as they are now")),
+            ("remove", choose, tr("Take the chosen study out of the project")),
+            ("export", choose, tr("Write the study (JSON), or the table it was made of (CSV)")),
         ):
             self.buttons[key].setEnabled(not (why_not or busy))
             self.buttons[key].setToolTip(why_not or busy or tip)
@@ -174,8 +174,8 @@ class StudiesTab(QWidget):
         folder = self._studies.model.folder
         if kept is None or folder is None:
             return
-        kinds = self.tr("Study (*.json);;Table (*.csv)")
-        path = ask.choose_file_to_save(self, self.tr("Write a copy"), folder.parent / f"{kept.kind}.json", kinds)
+        kinds = tr("Study (*.json);;Table (*.csv)")
+        path = ask.choose_file_to_save(self, tr("Write a copy"), folder.parent / f"{kept.kind}.json", kinds)
         if path is not None:
             self._studies.export(kept.id, path)
 
