@@ -121,8 +121,9 @@ WHOLE = {
     ("rig", "row_time_us"),
     ("options", "stripe"),
     ("options", "plane_stripe"),
+    ("options", "channel"),
 } | {("inspection", of) for of in ("frame", "temperature", "master")}
-"""What a new project has none of; a project states all of its rig."""
+"""What a new project has none of; a project states all of its rig, the channels of colour pictures among it."""
 ONE_BY_ONE = [path for path in leaves(full_project()) if path[:2] not in WHOLE]
 
 
