@@ -121,13 +121,15 @@ def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot
         qtbot.waitUntil(lambda: p.check.stage is CheckStage.CHECKED, timeout=90_000)
         idle(page, qtbot)
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
-    assert p.check.look.used == 3 and p.check.look.passed, str(p.check.look.sentence)
+    look = p.check.look
+    # whether it passes is chance in one check of a hundred; of a rig that has moved p is below 1e-20
+    assert look.used == 3 and look.p > 1e-6, str(look.sentence)
     assert p.project.sources.check.startswith("recordings/check-")
     assert p.stage is Stage.OUTDATED, "the scan rests on the pictures of the check"
     p.do_live()
     qtbot.waitUntil(lambda: bool(p.live.checks), timeout=30_000)
     (told,) = [check for check in p.live.checks if check.name == "check"]
-    assert told.state == "ok"
+    assert told.state == ("ok" if look.passed else "failed")
     p.do_live()
     qtbot.waitUntil(lambda: not p.live.running, timeout=20_000)
     p.cancel()
