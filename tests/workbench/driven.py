@@ -17,6 +17,7 @@ from PySide6.QtCore import QTimer
 import workbench.app as program
 from workbench.main_window import MainWindow
 from workbench.project_model import AUTOSAVE_MS
+from workbench.views import ask
 
 HEAVY = ("numba", "matplotlib", "pyvista", "vtkmodules", "reportlab", "pypdfium2", "pypylon", "trimesh")
 """What the window can do without until somebody measures or looks at something in 3D; as `core.pipeline.steps`."""
@@ -77,6 +78,7 @@ def main() -> int:
         deed(window, *more)
 
     program._after_start = then
+    ask.ask = lambda *_, **__: 0  # nobody is there to be asked: the first answer, as to take back unsaved work
     return program.main(project)
 
 

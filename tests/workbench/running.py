@@ -6,7 +6,7 @@ import os
 import signal
 import subprocess
 import sys
-import time
+import threading
 from collections.abc import Callable
 from pathlib import Path
 
@@ -40,12 +40,15 @@ class Running:
     def said(self, wanted: Callable[[str], bool]) -> str:
         """Wait for a line that is wanted."""
         assert self.process.stdout is not None
-        end = time.monotonic() + START_S
-        for line in self.process.stdout:
-            if wanted(line.strip()):
-                return line.strip()
-            assert time.monotonic() < end, "the program does not get there"
-        raise AssertionError(f"the program ended with {self.process.wait(5)}")
+        patience = threading.Timer(START_S, self.process.kill)  # a program that says nothing more ends, too
+        patience.start()
+        try:
+            for line in self.process.stdout:
+                if wanted(line.strip()):
+                    return line.strip()
+        finally:
+            patience.cancel()
+        raise AssertionError(f"the program ended with {self.process.wait(5)}, or did not get there in {START_S:.0f} s")
 
     def kill(self, *, everything: bool) -> None:
         """kill -9: the window's process alone, or all of its processes at once."""
