@@ -193,6 +193,10 @@ class Language:
         """A number by a format of Python's: its decimal sign here, a true minus sign, no-break spaces for ','."""
         return format(value, spec).translate(str.maketrans("-.,", f"{MINUS}{self.decimal}{NO_BREAK_SPACE}"))
 
+    def numeral(self, digits: str) -> str:
+        """Digits as Python writes them, with the decimal sign here and a true minus sign."""
+        return digits.replace("-", MINUS).replace(".", self.decimal)
+
     def joined(self, texts: Sequence[str], how: str = "") -> str:
         """Several texts in a row: see the module."""
         if how == "and" and len(texts) > 1:

@@ -12,7 +12,7 @@ from typing import Any
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 
 from core.errors import InputError
-from core.messages import MINUS, Language, Message, label
+from core.messages import Language, Message, label
 from workbench.work.worker import ENDED, Failure
 
 _FIELDS = {
@@ -95,7 +95,7 @@ def text_of(message: Message | Exception | Failure | str) -> str:
 
 def numeral(digits: str) -> str:
     """Digits as Python writes them, with the decimal sign of the window's language and a true minus."""
-    return digits.replace("-", MINUS).replace(".", _chosen.decimal)
+    return _chosen.numeral(digits)
 
 
 def number(value: float, spec: str = "") -> str:

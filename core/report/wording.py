@@ -12,7 +12,7 @@ from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.messages import MINUS, NO_BREAK_SPACE, Language, Message, label, plural_message
+from core.messages import NO_BREAK_SPACE, Language, Message, label, plural_message
 from core.translations import language
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -54,7 +54,7 @@ class Words:
 
     def numeral(self, digits: str) -> str:
         """Digits with the language's decimal sign and a true minus sign."""
-        return digits.replace("-", MINUS).replace(".", self.language.decimal)
+        return self.language.numeral(digits)
 
 
 ENGLISH = Words()

@@ -147,7 +147,8 @@ def test_frames_are_listed_with_points_sigma_crossings_and_reasons(measured):
 
 def test_frames_in_sight_get_small_pictures_which_are_made_once(recorded, qtbot):
     quick, thumbnails = recorded.presenter.bench.quick, recorded.presenter.thumbnails
-    qtbot.waitUntil(lambda: len(thumbnails.pictures) >= 3)
+    recorded.resize(1100, 800)
+    qtbot.waitUntil(lambda: len(thumbnails.pictures) >= 4)
     assert all(row.thumbnail is not None for row in recorded.frames.rows() if row.name in thumbnails.pictures)
     made = quick.ran.count(jobs.STRIPE_THUMBNAILS)
     recorded.frames.table.viewport().repaint()
