@@ -39,7 +39,8 @@ _QUARTER = 0.3186  # standard deviations that the quieter quarter of Gaussian no
 _STRUCTURED = 1.5  # times another estimate's variance: noise alone never reaches 1.2 over a picture's tiles
 _LEAST_CONTRAST = 20.0  # times the noise between darkest and brightest level; with less no slope is fitted
 _LEAST_APART = 0.05  # share of that range between two levels that give a slope
-_MOST_PLACES = 300_000  # of 3 × 3 px looked at, about
+_FEW_PLACES, _MOST_PLACES = 60_000, 300_000  # of 3 × 3 px looked at, about: to see whether it may be, and to measure
+_PERHAPS_STRUCTURED = 1.2  # times the variance of a few flat places: with less structure cannot be what rules
 _GROUPS, _LEAST_PER_GROUP = 32, 200  # of places by their grey level: few of them are flat, and these are alike
 _BIN, _SMOOTH = 0.05, 0.2  # of the logarithm of a variance: χ² of six degrees of freedom is 0.6 wide
 _PEAK = 0.05  # of the highest peak's height: a lower one is chance
@@ -126,14 +127,22 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
     level, variance, quiet = _tile_statistics((picture,), residual, ignore)
     middle = float(np.median(level)) if level.size else 0.0
     noise = free_of_structure(_photon_transfer(level, variance), _photon_transfer(level, quiet), middle)
-    flat = _flat_places(picture, ignore)
+    few = _flat_places(picture, ignore, _FEW_PLACES)  # most pictures have no such structure: a tenth of the time
+    if few is None or _times(noise, few, middle) <= _PERHAPS_STRUCTURED:
+        return noise
+    flat = _flat_places(picture, ignore, _MOST_PLACES)
     return noise if flat is None else free_of_structure(noise, flat, middle)
 
 
 def free_of_structure(noise: NoiseModel, other: NoiseModel, level: float) -> NoiseModel:
     """`noise`, or the `other` estimate of it where that is so much less at a grey `level` that structure is in it."""
+    return other if _times(noise, other, level) > _STRUCTURED else noise
+
+
+def _times(noise: NoiseModel, other: NoiseModel, level: float) -> float:
+    """Variance of one model over that of another one at a grey level."""
     at = np.array([level])
-    return other if noise.variance(at)[0] > _STRUCTURED * other.variance(at)[0] else noise
+    return float(noise.variance(at)[0] / other.variance(at)[0])
 
 
 def estimate_noise_of_pair(
@@ -200,9 +209,11 @@ def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
     return NoiseModel(float(np.sqrt(max(float(floor), ROUNDING_VARIANCE))), slope)
 
 
-def _flat_places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> NoiseModel | None:
-    """The noise of the flat places of a picture, None where it has too few that are not clipped."""
-    level, variance = _places(picture, ignore)
+def _flat_places(
+    picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, most: int = _MOST_PLACES
+) -> NoiseModel | None:
+    """The noise of the flat among about `most` places of a picture; None if it has too few that are not clipped."""
+    level, variance = _places(picture, ignore, most)
     if level.size < _LEAST_PER_GROUP * _GROUPS:
         return None
     groups = np.array_split(np.argsort(level), _GROUPS)
@@ -211,8 +222,8 @@ def _flat_places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None)
     return _lower_line(np.maximum(levels, 0.0), np.maximum(variances, ROUNDING_VARIANCE))
 
 
-def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> tuple[Array, Array]:
-    """Mean level of places of 3 × 3 px all over a picture, and the variance that a plane leaves of each.
+def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, most: int) -> tuple[Array, Array]:
+    """Mean level of `most` places of 3 × 3 px all over a picture, and the variance that a plane leaves of each.
 
     None of those that touch the darkest or the brightest value, where noise may be clipped, or what is to be ignored;
     none at all where these are half of the places or more.
@@ -220,7 +231,7 @@ def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None) -> t
     rows, columns = (size - 2 for size in picture.shape)
     if min(rows, columns) < 1:
         return np.zeros(0), np.zeros(0)
-    stride = max(1, int(np.sqrt(rows * columns / _MOST_PLACES)))
+    stride = max(1, int(np.sqrt(rows * columns / most)))
     # one row for each of the nine pixels: sums of rows take a fifth of the time of sums over the pixels of each place
     parts = [picture[v : v + rows : stride, u : u + columns : stride].ravel() for v in range(3) for u in range(3)]
     pixels = np.array(parts)
