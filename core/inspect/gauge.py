@@ -16,6 +16,7 @@ from numpy.typing import ArrayLike, NDArray
 from core.errors import InputError
 from core.inspect.conformity import Verdict, decide
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces, region_field
+from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.plane_fit import (
     FittedFaces,
     ParallelPlaneFit,
@@ -24,6 +25,7 @@ from core.inspect.fit.plane_fit import (
     fit_parallel_planes,
     fit_plane,
 )
+from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
@@ -191,11 +193,29 @@ def measure_gauge(
         verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=notes,
+        notes=notes + _notes_on_form(cloud, fit, errors),
     )
     for doubt in filter(None, (doubt_of_light(fit.budget), errors.doubt)):
         gauge = doubted(gauge, doubt)
     return gauge
+
+
+def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Message, ...]:
+    """What is wrong with the form of the two faces; nothing is said of single lines on them."""
+    planes = fit.planes
+    if not planes.tilt_determined:
+        return ()
+    distances = ((fit.pair.upper, planes.upper_distance), (fit.pair.lower, planes.lower_distance))
+    middles = [(cloud.points[face].mean(axis=0), distance) for face, distance in distances]
+    centres = np.array([middle - planes.normal * (planes.normal @ middle - distance) for middle, distance in middles])
+    return notes_on_form(
+        cloud,
+        np.concatenate([fit.pair.upper, fit.pair.lower]),
+        ParallelPlanes.through(-planes.normal, centres),
+        errors,
+        (UPPER_FACE, LOWER_FACE),
+        np.repeat([0, 1], [len(fit.pair.upper), len(fit.pair.lower)]),
+    )
 
 
 def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:

@@ -4,7 +4,16 @@ import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
 
-from core.model.residuals import Judgement, Residuals, along_line, judge_residuals, over_picture, without_line
+from core.model.residuals import (
+    Judgement,
+    Residuals,
+    SharedErrors,
+    along_line,
+    judge_residuals,
+    judge_with_shared,
+    over_picture,
+    without_line,
+)
 
 T = np.linspace(-1, 1, 140)
 
@@ -74,3 +83,31 @@ def test_places_where_nothing_is_keep_their_number():
     assert np.isnan(found.profile[[1, 3, 4]]).all()
     assert found.strongest in (0, 2)
     assert found.systematic == pytest.approx(1.0)
+
+
+def judged_with_shared(seed: int, bend: float = 0.0, stated: float = 1.0, known: bool = True) -> Judgement:
+    """Of 400 residuals with own noise of 0.1, a bend that all share with a random size, and one that is a form."""
+    rng = np.random.default_rng(seed)
+    at = rng.uniform(-1, 1, (400, 2))
+    shared = 0.2 * np.column_stack([at[:, 0] ** 2 - 1 / 3, at[:, 0] * at[:, 1]])
+    values = 0.1 * rng.normal(size=400) + shared @ rng.normal(size=2) + bend * (at[:, 1] ** 2 - 1 / 3)
+    cell = (np.floor(3 * (at + 1)) @ [1, 6]).astype(np.intp)
+    own = np.full(400, 0.1 * stated)
+    acting = SharedErrors(own, shared if known else np.zeros((400, 0)), np.column_stack([np.ones(400), at]))
+    return judge_with_shared(Residuals(values, np.hypot(own, stated * 0.1), np.arange(400), cell, 36), acting)
+
+
+def test_a_pattern_that_shared_errors_explain_is_chance_as_rarely_as_stated():
+    found = [judged_with_shared(seed) for seed in range(200)]
+    assert 1 <= sum(one.p < 0.05 for one in found) <= 22
+    assert np.mean([one.alone for one in found]) == pytest.approx(1.0, abs=0.02)
+    assert sum(judged_with_shared(seed, known=False).p < 0.01 for seed in range(20)) > 10
+
+
+def test_a_pattern_beyond_shared_errors_is_found_with_its_size_whatever_the_stated_noise():
+    for stated in (1.0, 0.5):
+        found = judged_with_shared(7, bend=0.3, stated=stated)
+        assert found.p < 1e-6
+        assert found.systematic == pytest.approx(0.3 * np.sqrt(4 / 45), rel=0.3)
+        assert found.profile[3] > 0 > found.profile[15]
+        assert found.alone == pytest.approx(1 / stated, rel=0.1)

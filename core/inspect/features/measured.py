@@ -131,6 +131,7 @@ class Scene:
         *,
         result: str = "",
         rule: Message | None,
+        notes: tuple[Message, ...] = (),
     ) -> Characteristic:
         """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter"."""
         result, doubt = result or kind, doubt_of_light(budget)
@@ -144,7 +145,7 @@ class Scene:
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
-            notes=(doubt,) if doubt else (),
+            notes=(doubt, *notes) if doubt else notes,
             complete=self.errors.complete and doubt is None,
         )
 

@@ -9,6 +9,7 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in, points_in
 from core.inspect.fit.elements import Element
+from core.inspect.fit.judged_form import FACE, notes_on_form
 from core.inspect.fit.plane_fit import fit_plane
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.fit.surface_fit import SurfaceFit, fit_surface
@@ -18,7 +19,8 @@ from core.messages import Message
 
 def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Fit a plane to the face of the region; InputError if there is none."""
-    fit = _fitted(spec, scene, face_in(spec.regions[0], spec.filters, scene))
+    indices = face_in(spec.regions[0], spec.filters, scene)
+    fit = _fitted(spec, scene, indices)
     rule = (
         Message(
             "feature.rule_flatness_of_cells",
@@ -31,7 +33,8 @@ def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
             "range that holds 95 % of the deviations from the plane: points, their noise included",
         )
     )
-    flatness = scene.characteristic(spec, "flatness", fit.form.value, fit.form.budget, rule=rule)
+    notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, (FACE,))
+    flatness = scene.characteristic(spec, "flatness", fit.form.value, fit.form.budget, rule=rule, notes=notes)
     return _result(spec, fit, (flatness,), Element.of_plane(fit))
 
 

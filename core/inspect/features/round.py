@@ -8,6 +8,7 @@ from core.errors import InputError
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.fit.elements import Element
+from core.inspect.fit.judged_form import CYLINDER, SPHERE, notes_on_form
 from core.inspect.fit.round import find_cylinder, find_sphere, sphere_through, too_few_for_a_sphere, with_uneven_light
 from core.inspect.fit.shapes import Cylinder, Sphere
 from core.inspect.fit.surface_fit import FEWEST, SurfaceFit, fit_surface
@@ -28,13 +29,14 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
             too_few_for_a_sphere(len(indices)),
             todo=Message("feature.advice_larger_region", "draw a larger region on it"),
         )
-    start = sphere_through(cloud.points[indices])
+    indices, start = np.sort(indices), sphere_through(cloud.points[indices])
     filters = spec.filters
-    fit = fit_surface(cloud, np.sort(indices), start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
     fit = with_uneven_light(fit, cloud, scene.errors)
+    notes = notes_on_form(cloud, indices, fit.shape, scene.errors, (SPHERE,))
     rule = Message("feature.rule_sphere", "diameter of the sphere of least squares, by the points' covariance")
     form = Message("feature.rule_sphere_form", "range that holds 95 % of the deviations from the sphere")
-    return _result(spec, scene, fit, Element.of_sphere(fit), (rule, form))
+    return _result(spec, scene, fit, Element.of_sphere(fit), (rule, form), notes)
 
 
 def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -43,12 +45,13 @@ def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     region, cloud = spec.regions[0], scene.cloud
     indices = points_in(region, spec.filters, scene)
     on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
-    filters = spec.filters
-    fit = fit_surface(cloud, indices[on], start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    indices, filters = indices[on], spec.filters
+    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
     fit = with_uneven_light(fit, cloud, scene.errors)
+    notes = notes_on_form(cloud, indices, fit.shape, scene.errors, (CYLINDER,))
     rule = Message("feature.rule_cylinder", "diameter of the cylinder of least squares, by the points' covariance")
     form = Message("feature.rule_cylinder_form", "range that holds 95 % of the deviations from the cylinder")
-    return _result(spec, scene, fit, Element.of_cylinder(fit), (rule, form))
+    return _result(spec, scene, fit, Element.of_cylinder(fit), (rule, form), notes)
 
 
 def _result(
@@ -57,15 +60,16 @@ def _result(
     fit: SurfaceFit[Sphere] | SurfaceFit[Cylinder],
     element: Element,
     rules: tuple[Message, Message],
+    notes: tuple[Message, ...],
 ) -> FeatureResult:
-    """`rules` of diameter and form."""
+    """`rules` of diameter and form; `notes` on the latter."""
     twice_the_radius = np.append(np.zeros(fit.parameters - 1), 2.0)
     rows = fit.budget(twice_the_radius)
     return FeatureResult(
         spec,
         characteristics=(
             scene.characteristic(spec, "diameter", 2 * fit.shape.radius, rows, rule=rules[0]),
-            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=rules[1]),
+            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=rules[1], notes=notes),
         ),
         indices=fit.indices,
         residuals=fit.residuals,

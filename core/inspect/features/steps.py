@@ -8,6 +8,7 @@ from core.errors import InputError
 from core.inspect.faces import PARALLEL, SMALLEST_MM2
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
+from core.inspect.fit.judged_form import level, notes_on_form
 from core.inspect.fit.plane_search import search_tolerance
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.fit.surface_fit import fit_surface
@@ -36,6 +37,8 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         tukey=spec.filters.outliers,
         cell_mm=spec.filters.cell_mm,
     )
+    names = [level(number + 1) for number in range(len(faces))]
+    notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, names, part)
     rows = []
     for upper in range(1, len(faces)):
         lower = 0 if spec.over == "lowest" else upper - 1
@@ -47,7 +50,15 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
             lower=lower + 1,
         )
         rows.append(
-            scene.characteristic(spec, "height", height, fit.budget(gradient), result=f"height {upper}", rule=rule)
+            scene.characteristic(
+                spec,
+                "height",
+                height,
+                fit.budget(gradient),
+                result=f"height {upper}",
+                rule=rule,
+                notes=notes if upper == 1 else (),
+            )
         )
     return FeatureResult(
         spec,
