@@ -39,7 +39,8 @@ _QUARTER = 0.3186  # standard deviations that the quieter quarter of Gaussian no
 _STRUCTURED = 1.5  # times another estimate's variance: noise alone never reaches 1.2 over a picture's tiles
 _LEAST_CONTRAST = 20.0  # times the noise between darkest and brightest level; with less no slope is fitted
 _LEAST_APART = 0.05  # share of that range between two levels that give a slope
-_FEW_PLACES, _MOST_PLACES = 60_000, 300_000  # of 3 × 3 px looked at, about: to see whether it may be, and to measure
+_MOST_PLACES = 300_000  # of 3 × 3 px looked at, about
+_COARSER = 3  # times as far apart each way are the few places that show whether all are to be looked at
 _PERHAPS_STRUCTURED = 1.2  # times the variance of a few flat places: with less structure cannot be what rules
 _GROUPS, _LEAST_PER_GROUP = 32, 200  # of places by their grey level: few of them are flat, and these are alike
 _BIN, _SMOOTH = 0.05, 0.2  # of the logarithm of a variance: χ² of six degrees of freedom is 0.6 wide
@@ -127,10 +128,11 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
     level, variance, quiet = _tile_statistics((picture,), residual, ignore)
     middle = float(np.median(level)) if level.size else 0.0
     noise = free_of_structure(_photon_transfer(level, variance), _photon_transfer(level, quiet), middle)
-    few = _flat_places(picture, ignore, _FEW_PLACES)  # most pictures have no such structure: a tenth of the time
-    if few is None or _times(noise, few, middle) <= _PERHAPS_STRUCTURED:
+    stride = max(1, int(np.sqrt(picture.size / _MOST_PLACES)))
+    few = _flat_places(picture, ignore, _COARSER * stride)  # most pictures have no such structure: a tenth of the time
+    if few is not None and _times(noise, few, middle) <= _PERHAPS_STRUCTURED:
         return noise
-    flat = _flat_places(picture, ignore, _MOST_PLACES)
+    flat = _flat_places(picture, ignore, stride)
     return noise if flat is None else free_of_structure(noise, flat, middle)
 
 
@@ -209,11 +211,9 @@ def _photon_transfer(level: Array, variance: Array) -> NoiseModel:
     return NoiseModel(float(np.sqrt(max(float(floor), ROUNDING_VARIANCE))), slope)
 
 
-def _flat_places(
-    picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, most: int = _MOST_PLACES
-) -> NoiseModel | None:
-    """The noise of the flat among about `most` places of a picture; None if it has too few that are not clipped."""
-    level, variance = _places(picture, ignore, most)
+def _flat_places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, stride: int) -> NoiseModel | None:
+    """The noise of the flat places of a picture, of those `stride` px apart; None if too few are not clipped."""
+    level, variance = _places(picture, ignore, stride)
     if level.size < _LEAST_PER_GROUP * _GROUPS:
         return None
     groups = np.array_split(np.argsort(level), _GROUPS)
@@ -222,8 +222,8 @@ def _flat_places(
     return _lower_line(np.maximum(levels, 0.0), np.maximum(variances, ROUNDING_VARIANCE))
 
 
-def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, most: int) -> tuple[Array, Array]:
-    """Mean level of `most` places of 3 × 3 px all over a picture, and the variance that a plane leaves of each.
+def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, stride: int) -> tuple[Array, Array]:
+    """Mean level of places of 3 × 3 px, each `stride` px from the next, and the variance that a plane leaves of each.
 
     None of those that touch the darkest or the brightest value, where noise may be clipped, or what is to be ignored;
     none at all where these are half of the places or more.
@@ -231,7 +231,6 @@ def _places(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | None, most
     rows, columns = (size - 2 for size in picture.shape)
     if min(rows, columns) < 1:
         return np.zeros(0), np.zeros(0)
-    stride = max(1, int(np.sqrt(rows * columns / most)))
     # one row for each of the nine pixels: sums of rows take a fifth of the time of sums over the pixels of each place
     parts = [picture[v : v + rows : stride, u : u + columns : stride].ravel() for v in range(3) for u in range(3)]
     pixels = np.array(parts)
