@@ -5,15 +5,16 @@ An interim check takes the same pictures, but ends by itself when it has enough 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 
-from core.acquire.source import Ended, Frame, Lasers, Picture
+from core.acquire.source import Ended, Frame, Lasers
 from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge, moved_px
 from core.calibrate.camera.missing import PLANE_POSES
 from core.calibrate.fan.poses.plane_pose import TARGET_MOVED
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.targets.target_view import TargetView
 from core.messages import Message, label
 from core.model.arrays import Array
@@ -22,10 +23,13 @@ from core.pipeline.live.commands import Auto, Capture, Command, Configure, Disca
 from core.pipeline.live.context import LiveContext, as_sentence
 from core.pipeline.live.events import PlanesDetail
 from core.pipeline.live.exposure import ExposureAdviser
-from core.pipeline.live.pose import FoundPose, MeasuredPair, find_pose, measure_pair, settings_of
+from core.pipeline.live.pose import FoundPose, find_pose, is_lit, measure_pair, settings_of
 
-MOST_TRIES = 5
-"""So many pictures with the fan off are tried: the first may still have been exposed with the fan on."""
+_STILL_LIT_S = 3.0
+"""For so long pictures that still show the fan are passed over after it was switched off: they were exposed before."""
+
+_SOON_S = 0.5
+"""Pictures of a pose that are no further apart are as close as the camera could take them."""
 
 CHECK_POSES = 3
 """So many poses of an interim check are enough; one will do."""
@@ -37,16 +41,18 @@ _NO_LIGHT = Message("live.no_fan_light", "The fan's light is not seen on the tar
 
 _FAN_ON, _FAN_OFF = Lasers(fan=True, hand=False), Lasers(fan=False, hand=False)
 
-Stage = Literal["looking", "asking", "second picture"]
+Stage = Literal["looking", "first picture", "asking", "second picture", "measuring"]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Pending:
-    """A pose being taken: its picture with the fan on and what that shows."""
+    """A pose being taken: its picture with the fan on, what was seen when it was chosen, and since when it is off."""
 
     on: Frame
+    seen: PoseFeatures
     view: TargetView
-    tries: int = 0
+    off: Frame | None = None
+    off_since_s: float | None = None
 
 
 class LivePlanes:
@@ -62,6 +68,7 @@ class LivePlanes:
         self._judge: CaptureJudge | None = None
         self._look: FoundPose | None = None
         self._stage: Stage = "looking"
+        self._switches = False
         self._pending: _Pending | None = None
         self._refused: tuple[TargetView, Message] | None = None
         self._seen_at: Array | None = None
@@ -74,7 +81,8 @@ class LivePlanes:
         """The fan on; a pose that was not finished when the source was unplugged is given up."""
         self._context.answered()
         self._pending, self._stage = None, "looking"
-        if not self._context.switch(_FAN_ON):
+        self._switches = self._context.switch(_FAN_ON)
+        if not self._switches:
             self._context.notice(
                 Message("live.fan_on_hand_off", "Switch the three-line laser on, and the hand-held laser off.")
             )
@@ -89,13 +97,16 @@ class LivePlanes:
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines
             self._context.worker.start(find_pose, frame, *known, self._seen_at)
+        elif self._stage == "first picture" and self._pending is not None:
+            self._context.switch(_FAN_OFF)
+            self._pending, self._stage = replace(self._pending, on=frame, off_since_s=frame.time_s), "second picture"
         elif self._stage == "second picture" and self._pending is not None:
-            self._measure(self._pending, frame.picture)
+            self._second_picture(self._pending, frame)
 
     def poll(self) -> Frame | None:
         """See what has been found, and take the pose."""
         result = self._context.worker.take()
-        if isinstance(result, MeasuredPair) and self._pending is not None and self._judge is not None:
+        if isinstance(result, PoseFeatures) and self._pending is not None and self._judge is not None:
             self._finish_pair(self._pending, result, self._judge)
         elif isinstance(result, FoundPose) and self._stage == "looking" and self._judge is not None:
             self._judged(result, self._judge)
@@ -154,7 +165,7 @@ class LivePlanes:
         doubt = None if view is None or not verdict.take else self._doubt(look, view)
         self._sentence = doubt or self._sentence
         if view is not None and pose.centrelines and (self._capture or (verdict.take and self._auto and not doubt)):
-            self._begin_pair(look.frame, view)
+            self._begin_pair(look, view)
         elif self._capture:
             self._context.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
         elif doubt or (not verdict.take and verdict.sentence not in (HOLD_STILL, TAKEN)):
@@ -184,20 +195,17 @@ class LivePlanes:
             return self._refused[1]
         return None
 
-    def _begin_pair(self, frame: Frame, view: TargetView) -> None:
-        """The picture with the fan on is taken; now the one with the fan off, if there is to be one."""
-        self._pending = _Pending(frame, view)
+    def _begin_pair(self, look: FoundPose, view: TargetView) -> None:
+        """The pose is chosen; now its pictures."""
+        self._pending = _Pending(look.frame, look.pose, view)
         self._sentence = HOLD_STILL
-        if not self._context.request.pairs:
-            self._measure(self._pending, None)
+        if not self._context.request.pairs or (self._checks and not self._switches):  # nobody switches it for a check
+            self._measure(self._pending)
             return
-        if self._context.switch(_FAN_OFF):
-            self._stage = "second picture"
+        if self._switches:  # the one looked at is old by now: another one, and that with the fan off right after it
+            self._stage = "first picture"
             return
-        if self._checks:  # where a person switches the laser, a check does without
-            self._context.switch(_FAN_ON)
-            self._measure(self._pending, None)
-            return
+        self._context.switch(_FAN_OFF)
         self._stage = "asking"
         leave = Message(
             "live.leave_target_fan_off",
@@ -205,27 +213,32 @@ class LivePlanes:
         )
         self._context.ask(leave, label("Continue"), Capture())
 
-    def _measure(self, pending: _Pending, off: Picture | None) -> None:
-        name, on = self._name(), pending.on.picture
+    def _second_picture(self, pending: _Pending, frame: Frame) -> None:
+        """Take the first picture that was exposed with the fan off."""
+        since_s = frame.time_s if pending.off_since_s is None else pending.off_since_s
+        self._pending = replace(pending, off=frame, off_since_s=since_s)
+        stripes = pending.seen.centrelines
+        if frame.time_s - since_s < _STILL_LIT_S and is_lit(frame.picture, pending.on.picture, stripes):
+            return
+        self._measure(self._pending)
+
+    def _measure(self, pending: _Pending) -> None:
+        name, on, off = self._name(), pending.on.picture, None if pending.off is None else pending.off.picture
         margin_mm = self._context.request.rig.plane_margin_mm
+        self._stage = "measuring"
         self._context.worker.start(measure_pair, name, on, off, self._target, self._camera, self._settings, margin_mm)
 
-    def _finish_pair(self, pending: _Pending, pair: MeasuredPair, judge: CaptureJudge) -> None:
-        """Keep the pose, try another picture, or say why it is of no use."""
-        reason, off = pair.features.reason, pair.off
-        still_on = off is not None and pair.features.view is not None and not pair.features.centrelines
-        if reason and still_on and reason.code != TARGET_MOVED and pending.tries < MOST_TRIES:
-            self._pending = _Pending(pending.on, pending.view, pending.tries + 1)
-            return
-        name = self._name()
-        if reason:
-            why = Message("live.pose_not_taken", "The pose was not taken: {reason}.", reason=reason)
+    def _finish_pair(self, pending: _Pending, features: PoseFeatures, judge: CaptureJudge) -> None:
+        """Keep the pose, or say why it is of no use."""
+        name, off = self._name(), pending.off
+        if features.reason:
+            why = self._why_not(features.reason, pending)
             self._refused = (pending.view, why)
             self._context.notice(why)
         else:
             self._context.write(name, pending.on.picture)
             if off is not None:
-                self._context.write(f"{name}_off", off)
+                self._context.write(f"{name}_off", off.picture)
             self._number += 1
             self._context.recorded += 1
             judge.taken(named(pending.view, name), pending.on.time_s)
@@ -242,6 +255,33 @@ class LivePlanes:
                     "Switch the three-line laser on again, and hold the target another way.",
                 )
             )
+
+    def _why_not(self, reason: Message, pending: _Pending) -> Message:
+        """The sentence for a pose that was refused: whether the target was moved, or its pictures came late."""
+        off = pending.off
+        if off is None or reason.code != TARGET_MOVED:
+            return Message("live.pose_not_taken", "The pose was not taken: {reason}.", reason=reason)
+        apart = {**reason.values, "apart_s": off.time_s - pending.on.time_s}
+        if not self._switches:
+            return Message(
+                "live.pose_moved_by_hand",
+                "The pose was not taken: the target moved by {shift_px:.1f} px while the laser was switched off. Let "
+                "it lean or stand on something.",
+                **apart,
+            )
+        if apart["apart_s"] <= _SOON_S:
+            return Message(
+                "live.pose_moved",
+                "The pose was not taken: the target moved by {shift_px:.1f} px within {apart_s:.1f} s; hold it still "
+                "until it is taken.",
+                **apart,
+            )
+        return Message(
+            "live.pose_late",
+            "The pose was not taken: its two pictures are {apart_s:.1f} s apart, too late for a hand (the target moved "
+            "by {shift_px:.1f} px). Let the target lean on something, or give the computer less to do.",
+            **apart,
+        )
 
     def _name(self) -> str:
         return f"pose{self._number:02d}"

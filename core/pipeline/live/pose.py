@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from core.calibrate.fan.poses.plane_pose import measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.sharpness import edge_blur_px
+from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings
 from core.image.targets import Target
 from core.model import Camera
@@ -19,6 +21,9 @@ from core.model.arrays import Array
 NUMBERING_UNCLEAR = -1
 
 _THIN = 3  # points of a stripe for display
+
+_STILL_LIT = 0.5  # of a stripe's height: the fan is on
+_BESIDE = 4.0  # times a stripe's width: there is none of its light
 
 _ROOM, _LEAST_ROOM_PX = 0.6, 60.0
 """How far around the target's last place it is looked for, as a share of its size, and at least."""
@@ -87,12 +92,20 @@ def _part_of(camera: Camera, size: tuple[int, int], origin: Array) -> Camera:
     return Camera(size, matrix, camera.distortion)
 
 
-@dataclass(frozen=True, eq=False, slots=True)
-class MeasuredPair:
-    """A pose read from its pictures, ready to be kept or not."""
+def is_lit(picture: Picture, lit: Picture, stripes: Sequence[Centreline]) -> bool:
+    """Whether a picture (H, W) shows the stripes of a `lit` one of the same scene at least half as bright."""
+    return _height(picture, stripes) > _STILL_LIT * _height(lit, stripes)
 
-    features: PoseFeatures
-    off: Picture | None
+
+def _height(picture: Picture, stripes: Sequence[Centreline]) -> float:
+    """Mean grey value along stripes above that beside them."""
+
+    def grey(beside: float) -> float:
+        uv = np.concatenate([piece.uv + beside * piece.width[:, None] * piece.normal for piece in stripes])
+        u, v = np.clip(np.rint(uv).astype(int), 0, np.array(picture.shape[::-1]) - 1).T
+        return float(picture[v, u].mean())
+
+    return grey(0.0) - 0.5 * (grey(-_BESIDE) + grey(_BESIDE))
 
 
 def measure_pair(
@@ -103,9 +116,9 @@ def measure_pair(
     camera: Camera | None,
     settings: StripeSettings | None,
     margin_mm: float | None,
-) -> MeasuredPair:
+) -> PoseFeatures:
     """Read a pose as its calibration will."""
-    return MeasuredPair(measure_plane_pose(name, on, off, target, camera, settings, margin_mm), off)
+    return measure_plane_pose(name, on, off, target, camera, settings, margin_mm)
 
 
 def _numbered_stripes(

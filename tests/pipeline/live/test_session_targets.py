@@ -1,3 +1,5 @@
+import time
+
 import numpy as np
 import pytest
 
@@ -5,6 +7,7 @@ from core.acquire.source import Lasers
 from core.files.pictures import read_picture
 from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard, detect
+from core.pipeline.live import planes as live_planes
 from core.pipeline.live.commands import Auto, Capture, Discard, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.simulate.calibration import CalibrationPictures
@@ -176,6 +179,68 @@ def test_a_pose_whose_target_moved_between_the_pictures_is_not_kept(monkeypatch,
     )
     assert ended.recorded == 0
     assert any("moved by" in str(notice.sentence) for notice in window.all(LiveNotice))
+
+
+class Late:
+    """A camera whose pictures show the lasers as they were some frames ago, and a plate that is moved meanwhile."""
+
+    def __init__(self, pose, frames, moved_after=None, by=3):
+        self.pose, self.frames, self.moved_after, self.by = pose, frames, moved_after, by
+        self.lit, self.on_since_off = [], 0
+
+    def __call__(self, lasers, number):
+        self.lit.append(lasers.fan)
+        self.on_since_off = 0 if lasers.fan else self.on_since_off + 1
+        fan = self.lit[max(0, len(self.lit) - 1 - self.frames)]
+        picture = self.pose[0 if fan else 1]
+        moved = self.moved_after is not None and self.on_since_off > self.moved_after
+        return np.roll(picture, self.by, axis=1) if moved else picture
+
+
+def test_a_picture_still_exposed_with_the_fan_on_is_not_taken_for_the_one_without(monkeypatch, tmp_path, plates):
+    measured = []
+    real = live_planes.measure_pair
+    monkeypatch.setattr(live_planes, "measure_pair", lambda *args: measured.append(args[0]) or real(*args))
+    window = Window(answer_to(LiveTaken, Stop()))
+    shown, choices = Late(plates.poses[0], 8), {"frames": UNTIL_STOPPED, "camera": plates.camera}
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, "planes", **choices)
+    assert ended.recorded == 1
+    assert np.array_equal(read_picture(tmp_path / "planes" / "pose00_off.png"), plates.poses[0][1])
+    assert measured == ["pose00"], "pictures with the fan still on are seen to be that before anything is measured"
+
+
+def test_both_pictures_of_a_pose_are_exposed_one_after_the_other(monkeypatch, tmp_path, plates):
+    """However long the pose was looked at: a hand is not still for that long."""
+    real = live_planes.find_pose
+    monkeypatch.setattr(live_planes, "find_pose", lambda *args: time.sleep(0.3) or real(*args))
+    numbered = [number % 250 for number in range(4000)]
+
+    def shown(lasers, number):
+        picture = plates.poses[0][0 if lasers.fan else 1].copy()
+        picture[0, 0] = numbered[number]
+        return picture
+
+    window = Window(answer_to(LiveTaken, Stop()))
+    choices = {"frames": UNTIL_STOPPED, "camera": plates.camera}
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, "planes", **choices)
+    assert ended.recorded == 1
+    on, off = (int(read_picture(tmp_path / "planes" / f"pose00{end}.png")[0, 0]) for end in ("", "_off"))
+    assert (off - on) % 250 <= 2
+
+
+def test_a_target_that_was_moved_is_told_from_pictures_that_came_late(monkeypatch, tmp_path, plates):
+    def told(frames, moved_after):
+        window = Window(answer_to(LiveNotice, Stop()))
+        shown = Late(plates.poses[0], frames, moved_after)
+        choices = {"frames": UNTIL_STOPPED, "camera": plates.camera}
+        views_taken(monkeypatch, tmp_path, plates, window, shown, "planes", **choices)
+        return window.all(LiveNotice)[-1].sentence
+
+    moved, late = told(0, 0), told(12, 6)
+    assert moved.code == "live.pose_moved"
+    assert "hold it still" in str(moved)
+    assert late.code == "live.pose_late"
+    assert "1.3 s apart" in str(late)
 
 
 def test_a_person_switches_the_fan_off_when_the_source_cannot(monkeypatch, tmp_path, plates):

@@ -59,7 +59,13 @@ SOUND = "live/sound"
 TWICE_MS = 250
 """Between the two sounds that say a picture was refused; one says it was taken."""
 
-_REFUSED = ("live.pose_not_taken", "live.nothing_taken")
+_REFUSED = (
+    "live.pose_not_taken",
+    "live.pose_moved",
+    "live.pose_moved_by_hand",
+    "live.pose_late",
+    "live.nothing_taken",
+)
 
 
 class LivePresenter(QObject):
