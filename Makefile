@@ -53,8 +53,9 @@ proofs: $(READY)          ## what many rendered and simulated measurements must 
 
 accuracy: export OPENBLAS_NUM_THREADS = 1
 accuracy: export OMP_NUM_THREADS = 1
-accuracy: proofs          ## measure the manual's accuracy table anew: about 80 scans, an hour or more; goes on where it was cut off
+accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual
+	$(BIN)/python -m tests.accuracy hostile
 
 soak: export OPENBLAS_NUM_THREADS = 1
 soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page; every state of a folder of results; 100 kills each of all that writes

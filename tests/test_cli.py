@@ -217,6 +217,23 @@ def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
     assert "there is something already" in again.sentence
 
 
+def test_simulate_takes_effects_of_real_rigs_from_a_file(tmp_path):
+    from core.files.recording.recording_set import open_set
+
+    effects, out = tmp_path / "effects.toml", tmp_path / "set"
+    effects.write_text("[sensor]\njpeg_quality = 70\n[room]\nflicker = 0.2\n")
+    small = ("--scale", 0.1, "--frames", 1, "--views", 1, "--poses", 1)
+    assert trisect("simulate", "block", "--out", out, *small, "--effects", effects, "--unstated").code == 0
+    found = open_set(out)
+    assert [path.suffix for path in found.frames] == [".jpg"]
+    assert found.rig.stability is None
+    effects.write_text("[sensors]\njpeg_quality = 70\n")
+    assert (
+        "'sensors' is not a field"
+        in trisect("simulate", "block", "--out", tmp_path / "b", "--effects", effects).sentence
+    )
+
+
 def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):
     shutil.copytree(measured, tmp_path / "out")
     command = [sys.executable, "-m", "core.cli", "gauge", str(simulated), "--out", str(tmp_path / "out"), "--json"]

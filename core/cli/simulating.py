@@ -84,6 +84,19 @@ def simulate(
     travel: Annotated[
         float, typer.Option(metavar="MM", help="Without the hand-held laser: the object is moved so far each frame.")
     ] = SCENARIO.travel_mm,
+    effects: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="FILE",
+            help="A TOML file with tables [lens], [sensor], [room], [plates], [warming]: what else real rigs do.",
+        ),
+    ] = None,
+    mirror: Annotated[
+        float, typer.Option(metavar="SHARE", help="Share of the light that flat sides of the object mirror.")
+    ] = SCENARIO.mirror_share,
+    unstated: Annotated[
+        bool, typer.Option("--unstated", help="rig.toml says nothing of how stable the rig and how true plates are.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Render a recording set as the paper's rig would record it; its truth is written beside it, never inside."""
@@ -123,7 +136,11 @@ def simulate(
         pushed_mm=pushed,
         table_mm=table_sunk,
         bumped_px=bumped,
+        mirror_share=mirror,
+        stated=not unstated,
     )
+    if effects is not None:
+        scenario = scenario.with_effects_of(Scenario.read(effects))
     with bars() as progress:
         simulate_set(scenario, out, progress)
     if json:

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
-from core.calibrate.board_shape import TRUE
+from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.change import STABLE
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
@@ -15,13 +16,14 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
+from core.simulate.rays import Map
 from core.simulate.rig import FULL_SIZE, Rig
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Picture, Sensor, generator
-from core.simulate.scene.rays import Map
 from core.simulate.scene.stage import table_pose
 from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres, plane_pictures
+from core.simulate.scene.wrong_plates import scaled
 
 CAMERA_GREY, PLANE_GREY = 230.0, 75.0
 """8-bit grey level of a white surface in the room's light, while the camera and while the fan is calibrated: the target
@@ -53,22 +55,28 @@ def rig_toml(scenario: Scenario) -> str:
             lines=scenario.fan_lines,
             angle=math.radians(5.0) if scenario.fan_lines > 1 else 0.0,
             gauge=gauge,
-            stability=STABLE,
+            stability=STABLE if scenario.stated else None,
             row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale),
-            camera_board=TRUE,
-            plane_board=TRUE,
+            camera_board=TRUE if scenario.stated else BoardTolerance(),
+            plane_board=TRUE if scenario.stated else BoardTolerance(),
         )
     )
+
+
+def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:
+    """The sensor of a scenario, exposed as is right for plates."""
+    effects = replace(scenario.sensor, brightness=1.0)
+    return Sensor(rig.optics, scenario.bits, scenario.noise, effects=effects, seed=scenario.seed)
 
 
 class CalibrationPictures:
     """The camera views and plane poses of one scenario, rendered one at a time."""
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
-        self._seed = scenario.seed
-        self._context = RenderContext(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
-        self._camera_plate = printed(PLATES[scenario.camera_target])
-        self._plane_plate = printed(PLATES[scenario.plane_target])
+        self._seed, self._bow_mm = scenario.seed, scenario.plates.camera_bow_mm
+        self._context = RenderContext(rig, rays, calibration_sensor(scenario, rig), scenario.lens)
+        self._camera_plate = scaled(printed(PLATES[scenario.camera_target]), scenario.plates.camera_scale)
+        self._plane_plate = scaled(printed(PLATES[scenario.plane_target]), scenario.plates.plane_scale)
         views = camera_poses(
             rig.camera, self._camera_plate.outline, scenario.camera_views, generator(self._seed, "camera poses")
         )
@@ -93,7 +101,7 @@ class CalibrationPictures:
 
     def _view(self, name: str, pose: Pose) -> Picture:
         rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
-        return camera_picture(self._context, self._camera_plate, pose, CAMERA_GREY, rng)
+        return camera_picture(self._context, self._camera_plate, pose, CAMERA_GREY, rng, self._bow_mm)
 
 
 def _on_table(rig: Rig, outline: Array) -> Pose:
@@ -111,8 +119,8 @@ class CheckPictures:
 
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._seed = scenario.seed
-        self._context = RenderContext(rig, rays, Sensor(rig.optics, scenario.bits, scenario.noise))
-        self._plate = printed(PLATES[scenario.plane_target])
+        self._context = RenderContext(rig, rays, calibration_sensor(scenario, rig), scenario.lens)
+        self._plate = scaled(printed(PLATES[scenario.plane_target]), scenario.plates.plane_scale)
         poses = plane_poses(
             fan_centres(rig, scenario.check_poses), self._plate.outline, generator(self._seed, "check poses")
         )

@@ -14,19 +14,20 @@ import numpy as np
 
 from core.calibrate.change import displaced_fan
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, write_text
+from core.files.atomic import cannot_write, make_folder, write_bytes, write_text
 from core.files.pictures import write_picture
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.progress import Progress, silent, steps
 from core.simulate.calibration import CalibrationPictures, CheckPictures, rig_toml
+from core.simulate.effects.sensor import SensorEffects
 from core.simulate.hand_motion import HandMotion
+from core.simulate.rays import ray_map
 from core.simulate.rig import FULL_SIZE, Optics, Rig, paper_rig
-from core.simulate.scan import ScanStage
+from core.simulate.scan import ScanStage, StageEffects
 from core.simulate.scenario import Scenario
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.laser import Sheet
-from core.simulate.scene.rays import ray_map
 from core.simulate.scene.scene import Scene
 from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, headings_of, sweep_range
@@ -98,12 +99,14 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
         camera_poses, plane_poses = _copy_calibration(earlier, made, rig)
     else:
         names = [*camera_poses, *plane_poses]
-        _write_all(made, lambda name: calibration.render(name), names, progress, "calibration pictures")
+        _write_all(
+            made, lambda name: calibration.render(name), names, progress, "calibration pictures", scenario.sensor
+        )
     rig = changed_rig(scenario, rig)
     if scenario.check_poses:
         (made / "check").mkdir()
         check = CheckPictures(scenario, rig, ray_map(rig.camera))
-        _write_all(made, check.render, list(check.poses), progress, "calibration pictures")
+        _write_all(made, check.render, list(check.poses), progress, "calibration pictures", scenario.sensor)
     stage, sheets, figures = scan_of(scenario, rig)
     later = moved_stage(scenario, rig)
     shots = {f"frame{i:04d}": (i, sheet) for i, sheet in enumerate(sheets)}
@@ -120,7 +123,7 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
             yield f"scan/{name}.png", profile_picture(scenario, shots[name][0], rig)
 
     first = ["reference"] if scenario.reference and scenario.hand_laser else []
-    _write_all(made, shoot, [*first, *shots], progress, "frames")
+    _write_all(made, shoot, [*first, *shots], progress, "frames", scenario.sensor)
     write_text(made / "rig.toml", rig_toml(scenario), sync=False)
     swept = shots if scenario.hand_laser else {}
     sweeps: dict[str, LightPlane] = {name: moving[index][0].plane for name, (index, _) in swept.items()}
@@ -133,6 +136,7 @@ def scenario_rig(scenario: Scenario) -> Rig:
     """The rig of a scenario."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
     rig = paper_rig(scenario.scale, published_planes=scenario.published_planes, optics=optics, fan_bow=scenario.fan_bow)
+    rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
     return rig if scenario.fan_lines == rig.fan.lines else replace(rig, fan=Fan((rig.fan.planes[1],)))
 
 
@@ -151,10 +155,15 @@ def profile_picture(scenario: Scenario, index: int, rig: Rig | None = None) -> P
 
 def changed_rig(scenario: Scenario, rig: Rig) -> Rig:
     """The rig at the time of the scan: as calibrated but for what has changed since."""
-    if not scenario.turned_urad and not scenario.drifted_px:
+    focal_ppm = scenario.warming.focal_ppm
+    if not scenario.turned_urad and not scenario.drifted_px and not focal_ppm:
         return rig
     fan = displaced_fan(rig.fan, np.array([scenario.turned_urad * 1e-6, 0.0, 0.0]), rig.fan_emitter)
-    return replace(_drifted(rig, scenario.drifted_px), fan=fan)
+    rig = _drifted(rig, scenario.drifted_px)
+    grown = rig.camera.matrix * np.array(
+        [[1 + focal_ppm * 1e-6] * 2 + [1.0], [1.0, 1 + focal_ppm * 1e-6, 1.0], [1.0] * 3]
+    )
+    return replace(rig, camera=Camera(rig.camera.image_size, grown, rig.camera.distortion), fan=fan)
 
 
 def _drifted(rig: Rig, drift_px: float) -> Rig:
@@ -205,11 +214,19 @@ def _stage(scenario: Scenario, rig: Rig, scene: Scene) -> ScanStage:
     return ScanStage(
         rig,
         scene,
-        Sensor(rig.optics, scenario.bits, scenario.noise),
+        Sensor(rig.optics, scenario.bits, scenario.noise, effects=scenario.sensor, seed=scenario.seed),
         seed=scenario.seed,
         ambient_grey=scenario.ambient_grey,
         texture=scenario.texture,
         aim=WORK_POINT,
+        effects=StageEffects(
+            scenario.lens,
+            scenario.room,
+            scenario.warming,
+            scenario.mirror_share,
+            scenario.frames,
+            scenario.readout_ms / 1000,
+        ),
     )
 
 
@@ -219,12 +236,17 @@ def _write_all(
     names: list[str],
     progress: Progress,
     step: str,
+    effects: SensorEffects,
 ) -> None:
     """Render and write the pictures of all `names`, two at once."""
 
     def write(name: str) -> None:
         for path, picture in render(name):
-            write_picture(made / path, picture)
+            if effects.colour or effects.jpeg_quality:
+                file = (made / path).with_suffix(effects.suffix)
+                write_bytes(file, effects.file_of(picture), sync=False)
+            else:
+                write_picture(made / path, picture)
 
     rendered = cast("Generator[None, None, None]", ordered_map(write, names, RENDER_THREADS))
     with closing(rendered) as written:  # so that no thread outlives a cancelled job

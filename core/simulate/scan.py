@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
 import cv2
 import numpy as np
 
+from core.calibrate.change import displaced_fan
 from core.model.arrays import Array
+from core.simulate.effects.lens import IDEAL_LENS, LensEffects
+from core.simulate.effects.room import STEADY_ROOM, RoomEffects
+from core.simulate.effects.warming import NO_WARMING, Warming
+from core.simulate.rays import Map
 from core.simulate.rig import Rig
-from core.simulate.scene.image import Picture, Sensor, blurred, generator
+from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
-from core.simulate.scene.rays import Map
+from core.simulate.scene.mirrors import mirrored_light
 from core.simulate.scene.scene import Scene, SurfaceMaps, surface_maps
 from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
 
@@ -23,6 +31,29 @@ PATCH_PX = 30
 """Side in px at full resolution."""
 LEAST_FACTOR, LARGEST_FACTOR = 0.2, 1.6
 """Of the surface's albedo."""
+
+
+@dataclass(frozen=True, slots=True)
+class StageEffects:
+    """What else happens in a scan.
+
+    `mirror_share` of the lasers' light is mirrored by flat sides of the objects; `frames` is how many pictures are
+    taken, over which the rig warms; `readout_s` the time from the first row of a picture to the last.
+    """
+
+    lens: LensEffects = IDEAL_LENS
+    room: RoomEffects = STEADY_ROOM
+    warming: Warming = NO_WARMING
+    mirror_share: float = 0.0
+    frames: int = 1
+    readout_s: float = 0.0
+
+    def over(self, index: int) -> float:
+        """Share of the scan that is over at frame `index`; the reference, −1, is its beginning."""
+        return (index + 1) / max(self.frames, 1)
+
+
+STILL = StageEffects()
 
 
 class ScanStage:
@@ -42,6 +73,8 @@ class ScanStage:
         Relative standard deviation of the surfaces' albedo.
     aim
         Point (3,) in mm the fan's middle is turned to.
+    effects
+        What else happens.
     """
 
     def __init__(
@@ -54,22 +87,41 @@ class ScanStage:
         ambient_grey: float = 45.0,
         texture: float = 0.0,
         aim: Array,
+        effects: StageEffects = STILL,
     ) -> None:
         self.rig, self.scene, self.sensor, self.seed = rig, scene, sensor, seed
+        self.effects, self._aim = effects, aim
         self.maps = _textured(surface_maps(scene, rig.camera), texture, rig.scale, seed)
         contrast = rig.optics.speckle_contrast
         self._speckle = Speckle(contrast, rig.grain_px, generator(seed, "speckle")) if contrast > 0 else None
         self._room_light = self._room(ambient_grey)
-        self._still = self._room_light + self._fan(aim)
+        self._fan_light = self._fan(rig)
+        self._still = self._room_light + self._fan_light
 
     def reference(self) -> Picture:
         """The picture with the hand-held laser off: room light and fan."""
-        return self.sensor.expose(self._still, generator(self.seed, "reference"))
+        return self._taken(self._still, -1, generator(self.seed, "reference"))
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
         """Frame number `index`, the hand-held laser at one sheet, or at several in the course of the exposure."""
         rng = generator(self.seed, "frame", index)
-        return self.sensor.expose(self.lit_by(*sheets, rng=rng), rng)
+        return self._taken(self.lit_by(*sheets, rng=rng), index, rng)
+
+    def _taken(self, light: Map, index: int, rng: np.random.Generator) -> Picture:
+        """The picture of frame `index` (−1: the reference) of the `light` (h, w) before anything has changed."""
+        effects, room, over = self.effects, self._room_light, self.effects.over(index)
+        if effects.warming.scan_urad and over:
+            turn = np.array([over * effects.warming.scan_urad * 1e-6, 0.0, 0.0])
+            turned = replace(self.rig, fan=displaced_fan(self.rig.fan, turn, self.rig.fan_emitter))
+            light = light + (self._fan(turned) - self._fan_light)
+        brightness = np.float32(self.sensor.effects.brightness)
+        if brightness != 1:
+            light = room + brightness * (light - room)
+        added = effects.room.added(index, room.shape, effects.readout_s, generator(self.seed, "room", index + 1))
+        if added is not None:
+            light, room = light + added * room, (1 + added) * room
+        light, room = (effects.warming.at(over, each, self.rig.camera) for each in (light, room))
+        return self.sensor.expose(light, rng, room)
 
     @property
     def room_light(self) -> Map:
@@ -83,29 +135,38 @@ class ScanStage:
 
     def lit_by(self, *sheets: Sheet, rng: np.random.Generator, fan: bool = True) -> Map:
         """Light (h, w) in grey levels, the mean with the hand-held laser at `sheets`; `rng` chooses its speckle."""
-        light = laser_light(sheets[0], self.scene, self.maps)
-        for sheet in sheets[1:]:
-            laser_light(sheet, self.scene, self.maps, light)
+        light = self._sheets_light(sheets)
         if len(sheets) > 1:
             light /= len(sheets)
-        light = blurred(light, self.rig.blur_px)
+        light = self._image(light)
         light = self._with_speckle(light, rng)
         light += self._still if fan else self._room_light
         return light
 
     def fan_light(self, aim: Array) -> Map:
         """Light of the fan's sheets (h, w) before lens and speckle, in grey levels."""
+        return self._sheets_light(fan_sheets(self.rig, aim))
+
+    def _fan(self, rig: Rig) -> Map:
+        light = self._image(self._sheets_light(fan_sheets(rig, self._aim)))
+        return self._with_speckle(light, generator(self.seed, "fan"))
+
+    def _sheets_light(self, sheets: Sequence[Sheet]) -> Map:
+        """Light of all sheets (h, w) before lens and speckle, in grey levels, with what is mirrored."""
         light = np.zeros(self.maps.albedo.shape, np.float32)
-        for sheet in fan_sheets(self.rig, aim):
+        for sheet in sheets:
             laser_light(sheet, self.scene, self.maps, light)
+            if self.effects.mirror_share:
+                mirrored_light(sheet, self.scene, self.maps, self.effects.mirror_share, light)
         return light
 
-    def _fan(self, aim: Array) -> Map:
-        return self._with_speckle(blurred(self.fan_light(aim), self.rig.blur_px), generator(self.seed, "fan"))
+    def _image(self, light: Map) -> Map:
+        rig = self.rig
+        return self.effects.lens.image(light, rig.blur_px, rig.camera, self.maps.depth, rig.scale)
 
     def _room(self, grey: float) -> Map:
         facing = np.maximum(self.maps.normals @ (LAMP / np.linalg.norm(LAMP)).astype(np.float32), 0)
-        return blurred(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)), self.rig.blur_px)
+        return self._image(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)))
 
     def _with_speckle(self, light: Map, rng: np.random.Generator) -> Map:
         if self._speckle is None:

@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import hashlib
 import json
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields, is_dataclass, replace
 from pathlib import Path
+from typing import Any
 
 from core.errors import InputError
 from core.files.limits import TOML_BYTES
 from core.files.reading import read_text, toml_of
 from core.messages import Message
+from core.simulate.effects.lens import IDEAL_LENS, LensEffects
+from core.simulate.effects.plates import TRUE_PLATES, PlateEffects
+from core.simulate.effects.ranges import require_ranges
+from core.simulate.effects.room import STEADY_ROOM, RoomEffects
+from core.simulate.effects.sensor import IDEAL_SENSOR, SensorEffects
+from core.simulate.effects.warming import NO_WARMING, Warming
 
 OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
 """Objects that can stand on the table."""
@@ -81,6 +89,13 @@ class Scenario:
         The camera: its picture moved by so many px to the right, and 0.6 times as far down.
     inner_share, inner_mm, gloss, gloss_deg
         What the object's surface does with the lasers' light: `core.simulate.scene.scene.Material`.
+    mirror_share
+        Share of the lasers' light that flat sides of the object mirror onto table and object
+        (`core.simulate.scene.mirrors`): 0.04 to 0.1 of plastics and enamel, 0.1 to 0.5 of milled and ground metal.
+    stated
+        rig.toml says that nothing can change and that plates are true; False: it says nothing of either, as most do.
+    lens, sensor, room, plates, warming
+        What real rigs do beyond that, by subject (`core.simulate.effects`); tables of these names in TOML.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     fan_lines
@@ -131,6 +146,13 @@ class Scenario:
     inner_mm: float = 0.8
     gloss: float = 0.0
     gloss_deg: float = 6.0
+    mirror_share: float = 0.0
+    stated: bool = True
+    lens: LensEffects = IDEAL_LENS
+    sensor: SensorEffects = IDEAL_SENSOR
+    room: RoomEffects = STEADY_ROOM
+    plates: PlateEffects = TRUE_PLATES
+    warming: Warming = NO_WARMING
 
     def __post_init__(self) -> None:
         choices = (
@@ -183,23 +205,20 @@ class Scenario:
             ("inner_mm", 0.0, 5.0),
             ("gloss", 0.0, 1000.0),
             ("gloss_deg", 0.5, 45.0),
+            ("mirror_share", 0.0, 1.0),
         )
-        for name, low, high in ranges:
-            if not low <= getattr(self, name) <= high:
-                raise InputError(
-                    Message(
-                        "simulate.out_of_range",
-                        "{value} is not between {low} and {high}",
-                        value=getattr(self, name),
-                        low=low,
-                        high=high,
-                    ),
-                    where=name,
-                )
+        require_ranges(self, ranges)
+        if self.sensor.jpeg_quality and self.bits == 16:
+            raise InputError(Message("simulate.jpeg_is_8_bit", "JPEG files hold 8 bits"), where="sensor.jpeg_quality")
         if self.object == "stl" and not self.stl_path:
             raise InputError(
                 Message("simulate.no_stl_path", "an STL object needs the path of its file"), where="stl_path"
             )
+
+    def with_effects_of(self, other: Scenario) -> Scenario:
+        """Make the same scenario with lens, sensor, room, plates and warming of another one."""
+        effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
+        return replace(self, **effects)
 
     @property
     def key(self) -> str:
@@ -215,28 +234,38 @@ class Scenario:
         InputError
             If it is no TOML, has an unknown key or a value of the wrong type.
         """
-        values = toml_of(text, where)
-        known = {field.name: type(field.default) for field in fields(cls)}
-        for name, value in values.items():
-            if name not in known:
-                raise InputError(
-                    Message("simulate.unknown_field", "'{name}' is not a field of a scenario", name=name), where=where
-                )
-            fits = isinstance(value, known[name]) or (known[name] is float and isinstance(value, int))
-            if not fits or (isinstance(value, bool) and known[name] is not bool):
-                raise InputError(
-                    Message(
-                        "simulate.wrong_type",
-                        "{name} = {value} is not of type {kind}",
-                        name=name,
-                        value=repr(value),
-                        kind=known[name].__name__,
-                    ),
-                    where=where,
-                )
-        return cls(**values)
+        return cls(**_typed(cls, toml_of(text, where), where))
 
     @classmethod
     def read(cls, path: Path) -> Scenario:
         """A scenario from a TOML file; raises InputError as `from_toml` does, or when it cannot be read."""
         return cls.from_toml(read_text(path, most=TOML_BYTES), path)
+
+
+def _typed(kind: type, values: Mapping[str, Any], where: Path | str, within: str = "") -> dict[str, Any]:
+    """The fields of the dataclass `kind` that `values` gives, tables as the dataclasses they are of."""
+    known: dict[str, Any] = {field.name: field.default for field in fields(kind)}
+    found = dict(values)
+    for name, value in values.items():
+        if name not in known:
+            raise InputError(
+                Message("simulate.unknown_field", "'{name}' is not a field of a scenario", name=within + name),
+                where=where,
+            )
+        default, wanted = known[name], type(known[name])
+        table = is_dataclass(default)
+        fits = isinstance(value, dict if table else wanted) or (wanted is float and isinstance(value, int))
+        if not fits or (isinstance(value, bool) and wanted is not bool):
+            raise InputError(
+                Message(
+                    "simulate.wrong_type",
+                    "{name} = {value} is not of type {kind}",
+                    name=within + name,
+                    value=repr(value),
+                    kind="table" if table else wanted.__name__,
+                ),
+                where=where,
+            )
+        if table:
+            found[name] = wanted(**_typed(wanted, value, where, f"{name}."))
+    return found

@@ -1,4 +1,4 @@
-"""`make accuracy`: measure the accuracy table anew. Long: hours; `--short` takes a few minutes."""
+"""`make accuracy`: measure the accuracy table anew, or the hostile one. Long: hours; `--short` takes a few minutes."""
 
 from __future__ import annotations
 
@@ -10,9 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from core.files.atomic import write_text
-from tests.accuracy import bounds, coverage, points
+from tests.accuracy import bounds, coverage, hostile, points
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
+from tests.accuracy.hostile_cases import CHECK_POSES, SEEDS, hostile_cases
 from tests.accuracy.table import between, table, within_2_sigma
 
 ROOT = Path(__file__).parents[2]
@@ -21,12 +22,16 @@ BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.accuracy", description=__doc__)
+    parser.add_argument("what", nargs="?", choices=("accuracy", "hostile"), default="accuracy", help="which table")
     parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
     parser.add_argument("--manual", action="store_true", help="put the table into the manual")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
     parser.add_argument("--processes", type=int, default=PROCESSES)
     chosen = parser.parse_args()
     commit = _commit()
+    if chosen.what == "hostile":
+        _hostile(chosen.out, commit, short=chosen.short)
+        return
     kept = chosen.out / f"{commit}{'-short' if chosen.short else ''}.jsonl"
     scans = cases(short=chosen.short)
     results = run(scans, kept, chosen.processes)
@@ -39,6 +44,15 @@ def main() -> None:
     write_text(chosen.out / "table.md", "\n".join(lines) + "\n")
     if chosen.manual:
         _into_manual(lines)
+
+
+def _hostile(out: Path, commit: str, *, short: bool) -> None:
+    """Print the hostile table, and keep it beside the figures; `short`: one seed, with a check."""
+    cases = hostile_cases(0.25, SEEDS[:1], (CHECK_POSES,)) if short else hostile_cases(0.25)
+    results = hostile.run(cases, out / f"hostile-{commit}.jsonl")
+    lines = [*hostile.table(cases, results), "", *hostile.summary(results.values())]
+    print("\n".join(lines))
+    write_text(out / "hostile.md", "\n".join(lines) + "\n")
 
 
 def _points_rows(scans: list[Case], results: dict[str, Figures], found: points.Points) -> list[str]:

@@ -17,10 +17,10 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare
 from core.simulate.calibration import CalibrationPictures
+from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.sample import sample_scenario
-from core.simulate.scene.rays import ray_map
 
 UNSUSPICIOUS_PX = 1.0
 LARGEST_Z = 6.0

@@ -9,7 +9,7 @@ from core.image.stripes.noise import NoiseModel
 from core.image.stripes.stripe import StripeSettings
 from core.plan.light_lines import faces_of, lit_lines, runs
 from core.plan.seen_stripes import SeenStripes
-from core.simulate.scene.image import blurred
+from core.simulate.blur import blurred
 from core.simulate.scene.laser import laser_light
 from core.simulate.scene.scene import surface_maps
 from tests.plan.small import SMALL

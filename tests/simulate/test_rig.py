@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from core.simulate.rays import ray_map
 from core.simulate.rig import fan_axis, paper_rig, pencil_fan, published_fan
 from core.simulate.scenario import Scenario
 from core.simulate.scene.laser import fan_sheets, laser_light
-from core.simulate.scene.rays import ray_map
 from core.simulate.scene.scene import surface_maps
 from core.simulate.scene.stage import WORK_POINT, build_scene
 

@@ -16,17 +16,18 @@ from core.image.targets import Target
 from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
+from core.simulate.blur import blurred
 from core.simulate.calibration import CAMERA_GREY, PLANE_GREY, PLATES
 from core.simulate.live.motion import HandPath, PlateMotion
 from core.simulate.poses import camera_poses, plane_poses
+from core.simulate.rays import Map, ray_map
 from core.simulate.recording import scan_of, scenario_rig
 from core.simulate.rig import Rig
 from core.simulate.scan import ScanStage
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import printed
-from core.simulate.scene.image import NoiseTile, Picture, Sensor, blurred, generator
+from core.simulate.scene.image import NoiseTile, Picture, Sensor, generator
 from core.simulate.scene.patterns import Pattern, draw_pattern
-from core.simulate.scene.rays import Map, ray_map
 from core.simulate.scene.stage import aim_of, build_scene
 from core.simulate.scene.targets import fan_centres, fan_light, room_shade, speckled
 from core.simulate.sweep import sweep_range

@@ -1,4 +1,4 @@
-"""Pictures from light: lens blur, shot noise, read noise, saturation, whole grey levels.
+"""Pictures from light: shot noise, read noise, saturation, whole grey levels.
 
 Light is counted in 8-bit grey levels throughout; 16-bit pictures are the same times 257.
 """
@@ -8,36 +8,23 @@ from __future__ import annotations
 import zlib
 from dataclasses import dataclass
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
-from scipy.special import erf
 
 from core.compiled import compiled
+from core.simulate.effects.sensor import IDEAL_SENSOR, SensorEffects
+from core.simulate.rays import Map
 from core.simulate.rig import Optics
-from core.simulate.scene.rays import Map
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 NOISE_PLACES = 256
 """Rows down, and columns to the right, that a noise tile can be moved: 65,536 places, four ways round each."""
-BLUR_REACH = 4.5
-"""Half width of the lens's blur in its σ: 7e-6 of the light is beyond."""
 
 
 def generator(seed: int, kind: str, index: int = 0) -> np.random.Generator:
     """Make the random numbers of one picture: the same in whatever order and on however many threads it is rendered."""
     return np.random.default_rng([seed, zlib.crc32(kind.encode()), index])
-
-
-def blurred(light: Map, sigma_px: float) -> Map:
-    """Blur `light` (H, W) by a lens of Gaussian σ `sigma_px` and by the area of a pixel."""
-    reach = int(np.ceil(BLUR_REACH * sigma_px + 0.5))
-    edges = np.arange(-reach, reach + 2) - 0.5
-    kernel = np.diff(erf(edges / (sigma_px * np.sqrt(2)))) if sigma_px > 0 else np.ones(1)
-    kernel = (kernel / kernel.sum()).astype(np.float32)
-    smooth = cv2.sepFilter2D(light, cv2.CV_32F, kernel, kernel, borderType=cv2.BORDER_REPLICATE)
-    return np.asarray(smooth, dtype=np.float32)
 
 
 class NoiseTile:
@@ -78,6 +65,10 @@ class Sensor:
         Where noise is taken from instead of being drawn anew for each picture, which is four times as quick.
     exposure, gain
         Factors on the light collected, and on the signal it makes.
+    effects
+        What else becomes of light and picture.
+    seed
+        Says which of the sensor's pixels are hot.
     """
 
     optics: Optics
@@ -86,9 +77,18 @@ class Sensor:
     tile: NoiseTile | None = None
     exposure: float = 1.0
     gain: float = 1.0
+    effects: SensorEffects = IDEAL_SENSOR
+    seed: int = 0
 
-    def expose(self, light: Map, rng: np.random.Generator) -> Picture:
-        """Expose a picture of `light` (height, width), saturated where it is too bright."""
+    def expose(self, light: Map, rng: np.random.Generator, room: Map | None = None) -> Picture:
+        """Expose a picture of `light` (height, width), saturated where it is too bright.
+
+        Of that light, `room` (height, width) is white; the rest is the lasers'. The picture is (height, width, 3) where
+        the sensor sees colours.
+        """
+        if self.effects != IDEAL_SENSOR:
+            light = self.effects.collected(light, room, self.optics.black_level_grey)
+            light = self.effects.with_hot_pixels(light, generator(self.seed, "hot pixels"))
         picture: Picture = np.empty(light.shape, np.uint16 if self.bits == 16 else np.uint8)
         figures = (
             self.exposure * self.gain,
@@ -100,7 +100,7 @@ class Sensor:
             2**self.bits - 1,
         )
         _expose(light, self._noise(light.shape, rng), np.array(figures, np.float32), picture)
-        return picture
+        return self.effects.developed(picture)
 
     def _noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Map:
         if self.noise <= 0:

@@ -11,6 +11,7 @@ through it along the pixel's ray (without refraction); one that is glossy adds a
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -19,8 +20,8 @@ from numpy.typing import NDArray
 from core.compiled import compiled
 from core.model import LightPlane
 from core.model.arrays import Array, frozen_array, set_field
+from core.simulate.rays import Map
 from core.simulate.rig import Beam, Rig
-from core.simulate.scene.rays import Map
 from core.simulate.scene.scene import MATT, TILE, Material, Scene, SurfaceMaps
 from core.simulate.scene.shadow import ShadowCaster
 
@@ -78,10 +79,17 @@ def fan_sheets(rig: Rig, aim: Array) -> tuple[Sheet, ...]:
     return tuple(Sheet(plane, rig.fan_emitter, aim - rig.fan_emitter, rig.fan_beam) for plane in rig.fan.planes)
 
 
-def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None = None) -> Map:
+def laser_light(
+    sheet: Sheet,
+    scene: Scene,
+    maps: SurfaceMaps,
+    out: Map | None = None,
+    reached: Callable[[Array], NDArray[np.bool_]] | None = None,
+) -> Map:
     """Render the light of one sheet that each pixel's surface point sends back, (height, width) in 8-bit grey levels.
 
-    Added to `out` when it is given. Neither lens nor speckle are in it yet.
+    Added to `out` when it is given. Neither lens nor speckle are in it yet. `reached` says which points (N, 3) light
+    gets to; without it, those that nothing shades.
     """
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
@@ -95,8 +103,9 @@ def laser_light(sheet: Sheet, scene: Scene, maps: SurfaceMaps, out: Map | None =
     cosine = -np.einsum("ni,ni->n", towards, maps.normals[v, u]) / rho
     lit = cosine > 0
     v, u, points, towards, rho, cosine = v[lit], u[lit], points[lit], towards[lit], rho[lit], cosine[lit]
-    caster = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach)
-    open_sky = caster.sees(points)
+    if reached is None:
+        reached = ShadowCaster.near_plane(scene, sheet.plane, sheet.emitter, sheet.axis, reach).sees
+    open_sky = reached(points)
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
     strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)

@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike
 from core.compiled import compiled, inlined
 from core.model import Pose
 from core.model.arrays import Array, frozen_array, set_field
-from core.simulate.scene.rays import Map
+from core.simulate.rays import Map
 
 
 @dataclass(frozen=True, eq=False, slots=True)

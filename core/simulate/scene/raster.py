@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from core.compiled import compiled
 from core.model import Camera
 from core.model.arrays import Array
-from core.simulate.scene.rays import Map
+from core.simulate.rays import Map
 
 NEAREST_MM = 1.0
 """Depth nearer than which nothing is drawn."""

@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 from core.compiled import compiled
 from core.model import Camera, Pose
 from core.model.arrays import Array, frozen_array, set_field
+from core.simulate.rays import Map, ray_map
 from core.simulate.scene.raster import draw_triangles
-from core.simulate.scene.rays import Map, ray_map
 
 TABLE_ALBEDO, OBJECT_ALBEDO = 0.55, 0.7
 """Of a grey table and of a light, matt part."""
@@ -158,7 +158,7 @@ class SurfaceMaps:
 def surface_maps(scene: Scene, camera: Camera, rays: Map | None = None) -> SurfaceMaps:
     """Compute point, normal and albedo seen by each pixel centre of `camera`, along its exact distorted ray.
 
-    `rays` is :func:`core.simulate.scene.rays.ray_map` of the camera, computed here when it is not given.
+    `rays` is :func:`core.simulate.rays.ray_map` of the camera, computed here when it is not given.
     """
     rays = ray_map(camera) if rays is None else rays
     shape = rays.shape[:2]

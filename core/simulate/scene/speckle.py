@@ -10,7 +10,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.simulate.scene.rays import Map
+from core.simulate.rays import Map
 
 LEAST_LIGHT = 0.02
 """Grey levels below which laser light gets no speckle: far below what a picture resolves."""

@@ -9,14 +9,17 @@ import numpy as np
 
 from core.model import Pose
 from core.model.arrays import Array
+from core.simulate.blur import blurred
+from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.poses import GOLDEN_SHARE
+from core.simulate.rays import Map
 from core.simulate.rig import Rig
-from core.simulate.scene.image import Picture, Sensor, blurred, generator
+from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.laser import fan_sheets, laser_light
 from core.simulate.scene.patterns import Pattern, draw_pattern
-from core.simulate.scene.rays import Map
 from core.simulate.scene.scene import Scene, SurfaceMaps
 from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
+from core.simulate.scene.wrong_plates import rays_to_bowed
 
 DIFFUSE_SHARE, FRONT_SHARE = 0.35, 0.65
 """Of the room's light on a plate: from all sides, and with the cosine of its tilt."""
@@ -36,42 +39,59 @@ def room_shade(pose: Pose, grey: float) -> np.float32:
 
 
 class RenderContext(NamedTuple):
-    """What rendering needs: the rig, the rays of its camera's pixels (h, w, 2), and the sensor."""
+    """What rendering needs: the rig, the rays of its camera's pixels (h, w, 2), the sensor, and what the lens does."""
 
     rig: Rig
     rays: Map
     sensor: Sensor
+    lens: LensEffects = IDEAL_LENS
+
+    def image(self, light: Map, points: Map) -> Map:
+        """Light (h, w) of points (h, w, 3) in mm as the lens shows it."""
+        rig = self.rig
+        return self.lens.image(light, rig.blur_px, rig.camera, points[..., 2], rig.scale)
 
 
 def camera_picture(
-    context: RenderContext, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator
+    context: RenderContext, pattern: Pattern, pose: Pose, grey: float, rng: np.random.Generator, bow_mm: float = 0.0
 ) -> Picture:
-    """One view of a target with the lasers off; `grey` is the level of a white plate that faces the camera."""
-    light = blurred(room_light(pattern, pose, context.rays, grey)[1], context.rig.blur_px)
-    return context.sensor.expose(light, rng)
+    """One view of a target with the lasers off; `grey` is the level of a white plate that faces the camera.
+
+    The target's left and right edges are bent by `bow_mm` out of its plane.
+    """
+    rays = rays_to_bowed(pattern, pose, context.rays, bow_mm)
+    points, light = room_light(pattern, pose, rays, grey)
+    light = context.image(light, points)
+    return context.sensor.expose(light, rng, light)
 
 
 def plane_pictures(
     context: RenderContext, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
 ) -> tuple[Picture, Picture]:
     """The two pictures of pose `index` of the plane target: with the fan on, and off."""
-    rig, rays, sensor = context
+    rig, rays, sensor = context[:3]
     points, light = room_light(pattern, pose, rays, grey)
-    light = blurred(light, rig.blur_px)
+    light = context.image(light, points)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
-    fan = speckled(fan_light(rig, points, albedo, pose), rig, generator(seed, "plane speckle", index))
-    on = sensor.expose(light + fan, generator(seed, "plane on", index))
-    return on, sensor.expose(light, generator(seed, "plane off", index))
+    fan = context.image(bare_fan_light(rig, points, albedo, pose), points)
+    fan = speckled(fan, rig, generator(seed, "plane speckle", index))
+    on = sensor.expose(light + fan, generator(seed, "plane on", index), light)
+    return on, sensor.expose(light, generator(seed, "plane off", index), light)
 
 
 def fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
     """The fan's light (h, w) on a plate, as the lens shows it, before speckle."""
+    return blurred(bare_fan_light(rig, points, albedo, pose), rig.blur_px)
+
+
+def bare_fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:
+    """The fan's light (h, w) on a plate before lens and speckle."""
     normals = np.broadcast_to((-pose.rotation[:, 2]).astype(np.float32), points.shape)
     maps = SurfaceMaps(points, normals, albedo)
     fan = np.zeros(albedo.shape, np.float32)
     for sheet in fan_sheets(rig, pose.translation):
         laser_light(sheet, Scene(None), maps, fan)
-    return blurred(fan, rig.blur_px)
+    return fan
 
 
 def speckled(light: Map, rig: Rig, rng: np.random.Generator) -> Map:

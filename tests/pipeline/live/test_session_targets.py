@@ -11,9 +11,9 @@ from core.pipeline.live import planes as live_planes
 from core.pipeline.live.commands import Auto, Capture, Discard, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.simulate.calibration import CalibrationPictures
+from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
 from core.simulate.scenario import Scenario
-from core.simulate.scene.rays import ray_map
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
 
 RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))

@@ -15,11 +15,11 @@ from core.simulate.live.exposure_timer import RATE_HZ, ExposureTimer
 from core.simulate.live.motion import CROSSING_S, PASS_S, HandPath
 from core.simulate.live.scene import LiveScene, Moment
 from core.simulate.live.source import SimulatedSource
+from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
 from core.simulate.sample import sample_scenario
 from core.simulate.scenario import Scenario
 from core.simulate.scene.image import generator
-from core.simulate.scene.rays import ray_map
 from core.simulate.scene.stage import aim_of, build_scene
 from core.simulate.scene.targets import RenderContext, camera_picture, fan_light, room_light
 from core.simulate.sweep import sweep_range

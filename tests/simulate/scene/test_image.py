@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from core.simulate.blur import blurred
 from core.simulate.rig import Optics
-from core.simulate.scene.image import Sensor, blurred, generator
+from core.simulate.scene.image import Sensor, generator
 from core.simulate.scene.speckle import Speckle
 
 PLAIN = Optics()

@@ -7,11 +7,11 @@ import pytest
 from scipy.optimize import brentq
 
 from core.model import LightPlane, Pose
+from core.simulate.blur import blurred
+from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
-from core.simulate.scene.image import blurred
 from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
 from core.simulate.scene.objects import box
-from core.simulate.scene.rays import ray_map
 from core.simulate.scene.scene import MATT, Material, Mesh, Scene, Sphere, surface_maps
 from core.simulate.scene.stage import WORK_POINT, table_pose
 

@@ -4,9 +4,9 @@ import trimesh
 
 from core.errors import InputError
 from core.model import Camera, Pose
+from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
 from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl
-from core.simulate.scene.rays import ray_map
 from core.simulate.scene.scene import Mesh, Scene, Sphere, surface_maps
 from core.simulate.scene.stage import table_pose
 

@@ -1,0 +1,128 @@
+"""A sensor that blooms and smears, has hot pixels or a colour mosaic, and pictures kept as JPEG."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from core.compiled import compiled
+from core.simulate.effects.ranges import require_ranges
+from core.simulate.rays import Map
+
+LASER_AT = (1.0, 0.12, 0.06)
+"""Response of red, green and blue sites to light of 650 nm over that of the red ones."""
+FULL_GREY = 255.0
+
+
+@dataclass(frozen=True, slots=True)
+class SensorEffects:
+    """What a sensor does beyond noise, and what becomes of its pictures.
+
+    Parameters
+    ----------
+    brightness
+        Factor on the lasers' light in the pictures of the scan: exposed too long, stripes saturate.
+    bloom
+        Share of the light beyond saturation that a full pixel passes on to the one below it. Frame-transfer CCDs
+        without drains pass nearly all on, sensors with anti-blooming gates leave less than 0.1.
+    smear
+        Of the light of a column that all its pixels collect while it is read out: −100 to −60 dB in interline CCDs,
+        1e-5 to 1e-3.
+    hot_share
+        Of the pixels that have a large dark current, by up to half of full scale: 1e-5 to 1e-3 in warm sensors.
+    colour
+        A Bayer mosaic, red at its first site, demosaiced bilinearly: pictures of three colours. The lasers are red.
+    jpeg_quality
+        Pictures are JPEG files of this quality with colours at half the size both ways (4:2:0); 0: lossless.
+
+    References
+    ----------
+    Theuwissen, A., Solid-State Imaging with Charge-Coupled Devices (1995), 5.5 (blooming, smear). EMVA Standard 1288,
+    release 4.0, 8 (defect pixels). ITU-T T.81 (JPEG). Bayer, B. E., US 3,971,065 (1976).
+    """
+
+    brightness: float = 1.0
+    bloom: float = 0.0
+    smear: float = 0.0
+    hot_share: float = 0.0
+    colour: bool = False
+    jpeg_quality: int = 0
+
+    def __post_init__(self) -> None:
+        require_ranges(
+            self,
+            (
+                ("brightness", 0.01, 100.0),
+                ("bloom", 0.0, 0.99),
+                ("smear", 0.0, 0.1),
+                ("hot_share", 0.0, 0.1),
+                ("jpeg_quality", 0, 100),
+            ),
+        )
+
+    def collected(self, light: Map, room: Map | None, black: float) -> Map:
+        """Light (h, w) at each site before noise; `room` (h, w) is the share of it that is white, the rest is red."""
+        if self.colour:
+            white = np.zeros_like(light) if room is None else room
+            light = white + (light - white) * _response(light.shape)
+        if self.smear:
+            light = (
+                light + np.float32(self.smear) * light.mean(axis=0, keepdims=True, dtype=np.float32) * light.shape[0]
+            )
+        if self.bloom:
+            light = _bloomed(light, np.float32(FULL_GREY - black), np.float32(self.bloom))
+        return light
+
+    def with_hot_pixels(self, light: Map, rng: np.random.Generator) -> Map:
+        """Light (h, w) with the dark current of hot pixels, the same ones wherever `rng` begins in the same way."""
+        if not self.hot_share:
+            return light
+        hot = rng.random(light.shape, dtype=np.float32) < self.hot_share
+        light = light.copy()
+        light[hot] += rng.uniform(0, FULL_GREY / 2, np.count_nonzero(hot)).astype(np.float32)
+        return light
+
+    def developed(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint8] | NDArray[np.uint16]:
+        """The picture (h, w) as it is kept: (h, w, 3) blue, green, red from a mosaic."""
+        if not self.colour:
+            return picture
+        return np.asarray(cv2.cvtColor(picture, cv2.COLOR_BayerRGGB2BGR), dtype=picture.dtype)  # type: ignore[return-value]
+
+    @property
+    def suffix(self) -> str:
+        """Ending of the picture's files."""
+        return ".jpg" if self.jpeg_quality else ".png"
+
+    def file_of(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> bytes:
+        """What the file of a picture (h, w) or (h, w, 3) holds."""
+        settings = [cv2.IMWRITE_JPEG_QUALITY, self.jpeg_quality]
+        settings += [cv2.IMWRITE_JPEG_SAMPLING_FACTOR, cv2.IMWRITE_JPEG_SAMPLING_FACTOR_420]
+        done, data = cv2.imencode(self.suffix, picture, settings if self.jpeg_quality else [])
+        assert done
+        return bytes(data)
+
+
+IDEAL_SENSOR = SensorEffects()
+"""Of nothing but noise, its pictures lossless."""
+
+
+def _response(shape: tuple[int, ...]) -> Map:
+    """Response (h, w) of a mosaic's sites to the lasers."""
+    red, green, blue = LASER_AT
+    tile = np.array([[red, green], [green, blue]], np.float32)
+    return np.tile(tile, ((shape[0] + 1) // 2, (shape[1] + 1) // 2))[: shape[0], : shape[1]]
+
+
+@compiled()
+def _bloomed(light, full, share):  # type: ignore[no-untyped-def]
+    """Light (h, w) with what full pixels pass on to those below them."""
+    out = light.copy()
+    for u in range(light.shape[1]):
+        over = np.float32(0)
+        for v in range(light.shape[0]):
+            out[v, u] += over
+            over = max(out[v, u] - full, np.float32(0)) * share
+    return out

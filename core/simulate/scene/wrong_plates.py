@@ -1,0 +1,49 @@
+"""Plates drawn larger than they are said to be, or bowed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from core.model import Pose
+from core.simulate.rays import Map
+from core.simulate.scene.patterns import Pattern
+
+_ROUNDS = 4
+"""Rounds in which the point of a bowed plate that a ray meets is found: the last moves it by less than 1e-6 mm."""
+
+
+def scaled(pattern: Pattern, larger: float) -> Pattern:
+    """The pattern with all lengths larger by a share."""
+    if not larger:
+        return pattern
+    dots = None if pattern.dots is None else pattern.dots * (1 + larger)
+    return replace(
+        pattern,
+        x_edges=pattern.x_edges * (1 + larger),
+        y_edges=pattern.y_edges * (1 + larger),
+        dots=dots,
+        dot_radius=pattern.dot_radius * (1 + larger),
+    )
+
+
+def rays_to_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> Map:
+    """Rays (h, w, 2) that meet a flat plate where `rays` meet the bowed one: it is drawn as flat along them."""
+    if not bow_mm:
+        return rays
+    x0, x1 = pattern.x_edges[[0, -1]]
+    middle, half = (x0 + x1) / 2, (x1 - x0) / 2
+    ahead = np.dstack([rays, np.ones(rays.shape[:2])]).astype(np.float64)
+    facing, along = ahead @ pose.rotation[:, 2], float(pose.rotation[:, 2] @ pose.translation)
+    met = facing > 1e-6
+    facing = np.where(met, facing, 1.0)
+    height = np.zeros(rays.shape[:2])
+    for _ in range(_ROUNDS):
+        on_plate = (ahead * ((along + height) / facing)[..., None] - pose.translation) @ pose.rotation
+        height = -bow_mm * np.minimum(((on_plate[..., 0] - middle) / half) ** 2, 4.0)
+    on_plate[..., 2] = 0.0
+    flat = on_plate @ pose.rotation.T + pose.translation
+    met &= flat[..., 2] > 0
+    seen = flat[..., :2] / np.where(met, flat[..., 2], 1.0)[..., None]
+    return np.where(met[..., None], seen, rays).astype(np.float32)

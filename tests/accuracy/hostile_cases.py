@@ -1,0 +1,212 @@
+"""Which effects of real rigs the hostile table tries, how strong, and which notes name each."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from core.simulate.effects.lens import LensEffects
+from core.simulate.effects.plates import PlateEffects
+from core.simulate.effects.room import RoomEffects
+from core.simulate.effects.sensor import SensorEffects
+from core.simulate.effects.warming import Warming
+from core.simulate.scenario import Scenario
+
+SEEDS = (1, 2, 3)
+CHECK_POSES = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Effect:
+    """One effect, or several at once, at growing strengths: each a label and fields of a scenario."""
+
+    title: str
+    strengths: Sequence[tuple[str, Mapping[str, Any]]]
+
+
+EFFECTS = (
+    Effect("nothing", [("–", {})]),
+    Effect(
+        "second bounces between table and part's sides",
+        [(f"{share:.0%}", {"mirror_share": share}) for share in (0.1, 0.3, 0.6)],
+    ),
+    Effect(
+        "lamps that flicker at 100 Hz",
+        [
+            ("20 %", {"room": RoomEffects(flicker=0.2)}),
+            ("60 %", {"room": RoomEffects(flicker=0.6)}),
+            ("60 %, rows in 71 ms", {"room": RoomEffects(flicker=0.6), "readout_ms": 71.0}),
+        ],
+    ),
+    Effect(
+        "a lamp switched within the scan",
+        [
+            ("+50 %", {"room": RoomEffects(lamp_frame=15, lamp_change=0.5)}),
+            ("+300 %", {"room": RoomEffects(lamp_frame=15, lamp_change=3.0)}),
+            ("−80 %", {"room": RoomEffects(lamp_frame=15, lamp_change=-0.8)}),
+        ],
+    ),
+    Effect("a shadow that passes", [(f"{share:.0%}", {"room": RoomEffects(shadow=share)}) for share in (0.3, 0.8)]),
+    Effect(
+        "the rig warms within the scan",
+        [
+            ("0.1 px", {"warming": Warming(scan_px=0.1, scan_focal_ppm=50, scan_urad=20)}),
+            ("0.3 px", {"warming": Warming(scan_px=0.3, scan_focal_ppm=150, scan_urad=100)}),
+            ("1 px", {"warming": Warming(scan_px=1.0, scan_focal_ppm=500, scan_urad=300)}),
+        ],
+    ),
+    Effect(
+        "the rig warmed since its calibration",
+        [
+            ("0.1 px", {"drifted_px": 0.1, "turned_urad": 50.0, "warming": Warming(focal_ppm=100)}),
+            ("0.3 px", {"drifted_px": 0.3, "turned_urad": 262.0, "warming": Warming(focal_ppm=300)}),
+            ("1 px", {"drifted_px": 1.0, "turned_urad": -262.0, "warming": Warming(focal_ppm=-500)}),
+        ],
+    ),
+    Effect(
+        "exposed too long, blooming",
+        [
+            ("4 ×, 5 %", {"sensor": SensorEffects(brightness=4.0, bloom=0.05, smear=1e-5)}),
+            ("4 ×, 50 %", {"sensor": SensorEffects(brightness=4.0, bloom=0.5, smear=1e-4)}),
+            ("8 ×, 90 %", {"sensor": SensorEffects(brightness=8.0, bloom=0.9, smear=1e-3)}),
+        ],
+    ),
+    Effect(
+        "camera's target bowed",
+        [(f"{bow} mm", {"plates": PlateEffects(camera_bow_mm=bow)}) for bow in (0.2, 0.6, 1.5)],
+    ),
+    Effect(
+        "camera's target larger",
+        [(f"{1000 * larger:g} ‰", {"plates": PlateEffects(camera_scale=larger)}) for larger in (0.001, 0.005, 0.02)],
+    ),
+    Effect(
+        "plane target larger",
+        [(f"{1000 * larger:g} ‰", {"plates": PlateEffects(plane_scale=larger)}) for larger in (0.001, 0.005, 0.02)],
+    ),
+    Effect("lens with k3", [(f"{k3:g}", {"lens": LensEffects(k3=k3)}) for k3 in (0.3, 1.0, 3.0)]),
+    Effect("coma", [(f"{px:g} px", {"lens": LensEffects(coma_px=px)}) for px in (2.0, 6.0)]),
+    Effect("defocus", [(f"{mm:g} mm", {"lens": LensEffects(aperture_mm=mm)}) for mm in (1.0, 3.0, 6.0)]),
+    Effect("JPEG", [(f"quality {q}", {"sensor": SensorEffects(jpeg_quality=q)}) for q in (90, 60, 30)]),
+    Effect(
+        "Bayer mosaic",
+        [
+            ("lossless", {"sensor": SensorEffects(colour=True)}),
+            ("JPEG 4:2:0, 75", {"sensor": SensorEffects(colour=True, jpeg_quality=75)}),
+        ],
+    ),
+    Effect("hot pixels", [(f"{share:g}", {"sensor": SensorEffects(hot_share=share)}) for share in (1e-4, 2e-3)]),
+    Effect(
+        "translucent part",
+        [
+            (f"{share:.0%} from {mm} mm", {"inner_share": share, "inner_mm": mm})
+            for share, mm in ((0.15, 0.8), (0.35, 1.2))
+        ],
+    ),
+    Effect("glossy part", [(f"{gloss:g} ×", {"gloss": gloss}) for gloss in (3.0, 20.0)]),
+    Effect("fan lines that bow", [(f"{bow}", {"fan_bow": bow}) for bow in (0.003, 0.01, 0.05)]),
+    Effect("speckle", [(f"contrast {contrast}", {"speckle": contrast}) for contrast in (0.35, 0.6)]),
+    Effect(
+        "hand that moves",
+        [
+            ("14 mm/s", {"readout_ms": 71.0, "hand_mm_s": 14.0}),
+            ("28 mm/s, tremor", {"readout_ms": 71.0, "hand_mm_s": 28.0, "tremor_mm": 0.35}),
+        ],
+    ),
+    Effect(
+        "something moves within the scan",
+        [
+            ("part up by 0.1 mm", {"lifted_mm": 0.1, "moved_frame": 22}),
+            ("part up by 0.4 mm", {"lifted_mm": 0.4, "moved_frame": 22}),
+            ("camera by 0.5 px", {"bumped_px": 0.5, "moved_frame": 18}),
+        ],
+    ),
+    Effect(
+        "three at once",
+        [
+            (
+                "warm rig, flicker, JPEG 60",
+                {
+                    "drifted_px": 0.3,
+                    "turned_urad": 100.0,
+                    "room": RoomEffects(flicker=0.4),
+                    "sensor": SensorEffects(jpeg_quality=60),
+                },
+            ),
+            (
+                "translucent, bowed fan, shadow",
+                {"inner_share": 0.25, "fan_bow": 0.005, "room": RoomEffects(shadow=0.6)},
+            ),
+            (
+                "second bounces, blooming, coma",
+                {
+                    "mirror_share": 0.4,
+                    "sensor": SensorEffects(brightness=4.0, bloom=0.3),
+                    "lens": LensEffects(coma_px=3.0),
+                },
+            ),
+            (
+                "bowed board, k3, hot pixels",
+                {
+                    "plates": PlateEffects(camera_bow_mm=0.4),
+                    "lens": LensEffects(k3=0.6),
+                    "sensor": SensorEffects(hot_share=5e-4),
+                },
+            ),
+        ],
+    ),
+)
+
+
+@dataclass(frozen=True, slots=True)
+class HostileCase:
+    """One scan: the effect, its strength, and the scenario."""
+
+    effect: str
+    strength: str
+    scenario: Scenario
+
+    @property
+    def name(self) -> str:
+        """Its own for each scenario: results are kept under it."""
+        return f"{self.effect}, {self.strength}, {self.scenario.key}"
+
+
+def base(scale: float) -> Scenario:
+    """The rig to which all happens: nothing is stated of plates and stability, as in most rig.toml."""
+    many = scale >= 0.5
+    return Scenario(
+        scale=scale,
+        frames=48 if many else 36,
+        camera_views=14 if many else 10,
+        plane_poses=9 if many else 8,
+        stated=False,
+    )
+
+
+def hostile_cases(
+    scale: float, seeds: Sequence[int] = SEEDS, checks: Sequence[int] = (0, CHECK_POSES)
+) -> list[HostileCase]:
+    """All scans, those of one strength after one another."""
+    return [
+        HostileCase(effect.title, label, replace(base(scale), seed=seed, check_poses=check, **fields))
+        for seed in seeds
+        for check in checks
+        for effect in EFFECTS
+        for label, fields in effect.strengths
+    ]
+
+
+def calibration_of(scenario: Scenario) -> Scenario:
+    """The scenario of a case's calibration pictures alone: cases for which it is the same share them."""
+    ideal = base(scenario.scale)
+    return replace(
+        ideal,
+        seed=scenario.seed,
+        fan_bow=scenario.fan_bow,
+        speckle=scenario.speckle,
+        lens=scenario.lens,
+        plates=scenario.plates,
+        sensor=replace(scenario.sensor, brightness=1.0),
+        frames=0,
+    )
