@@ -24,7 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
-from scipy.special import fdtrc
+from scipy.special import chdtrc, fdtrc
 
 from core.model.arrays import Array
 
@@ -204,6 +204,35 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
         p=p,
         systematic=float(np.sqrt(variance)) if p < SIGNIFICANT else 0.0,
         alone=alone,
+    )
+
+
+def judge_with_covariance(residuals: Residuals, covariance: Array) -> Judgement:
+    """Compare residuals of a known `covariance` (N, N) with it, and look for a pattern over the cells beyond it.
+
+    For few residuals which hang together in any way, such as what a fit has estimated of errors with a prior.
+    `residuals.expected` is not asked for anything that `covariance` says.
+    """
+    values, cells = residuals.values, residuals.cell
+    count = np.bincount(cells, minlength=residuals.cells)
+    seen = np.flatnonzero(count)
+    means = (cells == seen[:, None]) / count[seen, None]
+    profile, noise = means @ values, means @ covariance @ means.T
+    size, axes = np.linalg.eigh((noise + noise.T) / 2)
+    known = size > _ALONE * size.max(initial=1e-300)
+    of_pattern = float(((axes[:, known].T @ profile) ** 2 / size[known]).sum())
+    p = float(chdtrc(np.count_nonzero(known), of_pattern)) if known.any() else 1.0
+    square = float(np.mean(profile**2) - np.trace(noise) / len(seen)) if len(seen) else 0.0
+    of_all = np.full(residuals.cells, np.nan)
+    of_all[seen] = profile
+    return Judgement(
+        rms=_rms(values),
+        expected=float(np.sqrt(np.trace(covariance) / max(len(values), 1))),
+        run_length=_run_length(values, residuals.group),
+        profile=of_all,
+        count=count,
+        p=p,
+        systematic=float(np.sqrt(max(square, 0.0))) if p < SIGNIFICANT else 0.0,
     )
 
 

@@ -169,6 +169,7 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
+    explained = watched.first_after or part.movements or of_hand or sweeps.notes
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,
@@ -178,6 +179,7 @@ def _solve(
         + part.note(names, len(sweeps.frames))
         + of_hand
         + sweeps.notes
+        + (() if explained else sweeps.judged)
         + (datum.note,),
         datum,
         read_out,

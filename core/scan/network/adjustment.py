@@ -23,6 +23,7 @@ from core.model.robust import huber_weights, mad_sd, tukey_weights
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment, Solution
+from core.scan.network.fan_residuals import CellErrors
 from core.scan.network.geometry import CrossingRays
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut
@@ -79,6 +80,8 @@ class Network:
         (Q, 3) sweep, centreline and cell along it of each cell of the sweeps' own centrelines.
     line_covariance
         (Q, 3) of the error of the sweep's π with that of the cell; with K as many as a sweep has numbers.
+    fan_off
+        What the sweeps say of the fan's cells.
     """
 
     pis: Array
@@ -92,6 +95,7 @@ class Network:
     fan_covariance: Array
     line_cells: Index
     line_covariance: Array
+    fan_off: CellErrors
 
 
 def solve_network(
@@ -128,6 +132,7 @@ def solve_network(
         equations.shared_with_fan(solution),
         equations.errors.sweep_cells,
         equations.shared_with_own_lines(solution),
+        CellErrors.of(equations, solution),
     )
 
 

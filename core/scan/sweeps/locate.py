@@ -18,6 +18,7 @@ from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
 from core.scan.network.adjustment import solve_network, solve_planes
 from core.scan.network.equations import Adjustment
+from core.scan.network.fan_residuals import notes_on_network
 from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut
@@ -35,7 +36,7 @@ class LocatedSweeps:
     """Solved planes: `frames` (S,) and, per crossing, the weight it had.
 
     `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
-    `core.scan.network.adjustment.Network`; F = Q = 0 where not known.
+    `core.scan.network.adjustment.Network`; F = Q = 0 where not known. `judged`: what is wrong with the residuals.
     """
 
     frames: NDArray[np.int64]
@@ -48,6 +49,7 @@ class LocatedSweeps:
     fan_covariance: Array = field(default_factory=lambda: np.zeros((0, 0)))
     line_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     line_covariance: Array = field(default_factory=lambda: np.zeros((0, 3)))
+    judged: tuple[Message, ...] = ()
 
     @property
     def middle_planes(self) -> tuple[Array, Array]:
@@ -177,6 +179,7 @@ def locate_together(
         network.fan_covariance,
         network.line_cells,
         network.line_covariance,
+        notes_on_network(network.scale, network.fan_off, camera.image_size),
     )
 
 
