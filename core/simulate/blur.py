@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import cv2
 import numpy as np
 from scipy.special import erf
 
-from core.simulate.rays import Map
+if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
+    from core.simulate.rays import Map
+
 
 BLUR_REACH = 4.5
 """Half width of the lens's blur in its σ: 7e-6 of the light is beyond."""

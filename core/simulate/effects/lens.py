@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
@@ -11,7 +12,9 @@ from core.model import Camera
 from core.model.arrays import Array
 from core.simulate.blur import blurred
 from core.simulate.effects.ranges import require_ranges
-from core.simulate.rays import Map
+
+if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
+    from core.simulate.rays import Map
 
 LEVELS = 6
 """Blurs between which that of each pixel is interpolated, by the square of their σ."""

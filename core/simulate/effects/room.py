@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from core.simulate.effects.ranges import require_ranges
-from core.simulate.rays import Map
+
+if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
+    from core.simulate.rays import Map
 
 LAMP_HZ = 100.0
 """Twice the mains frequency."""

@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.compiled import compiled
 from core.simulate.effects.ranges import require_ranges
-from core.simulate.rays import Map
+
+if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
+    from core.simulate.rays import Map
 
 LASER_AT = (1.0, 0.12, 0.06)
 """Response of red, green and blue sites to light of 650 nm over that of the red ones."""
@@ -116,13 +118,11 @@ def _response(shape: tuple[int, ...]) -> Map:
     return np.tile(tile, ((shape[0] + 1) // 2, (shape[1] + 1) // 2))[: shape[0], : shape[1]]
 
 
-@compiled()
-def _bloomed(light, full, share):  # type: ignore[no-untyped-def]
+def _bloomed(light: Map, full: np.float32, share: np.float32) -> Map:
     """Light (h, w) with what full pixels pass on to those below them."""
     out = light.copy()
-    for u in range(light.shape[1]):
-        over = np.float32(0)
-        for v in range(light.shape[0]):
-            out[v, u] += over
-            over = max(out[v, u] - full, np.float32(0)) * share
+    over = np.zeros_like(out[0])
+    for row in out:
+        row += over
+        over = np.maximum(row - full, np.float32(0)) * share
     return out

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
 
 from core.model import Camera
 from core.simulate.effects.ranges import require_ranges
-from core.simulate.rays import Map
+
+if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
+    from core.simulate.rays import Map
 
 
 @dataclass(frozen=True, slots=True)
