@@ -61,6 +61,8 @@ CORNER = Mark("#35E0D0", "+")
 CORNER_LEFT_OUT = Mark("#FF5C57", "x")
 RESIDUAL = "#FFB000"
 COVERED = "#3DDC84"
+WANTED = "#FFD54A"
+"""Where the target should be held next."""
 
 # viridis without its dark third, which would drown in a dark picture
 _SIGMA_STOPS = "6f7ff0 4f9be0 3bb5b8 4fc987 95d94a fde725"

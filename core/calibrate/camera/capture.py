@@ -20,6 +20,7 @@ from core.calibrate.camera.missing import (
     view_geometry,
     what_is_missing,
 )
+from core.calibrate.camera.wanted_view import wanted_view
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
@@ -135,7 +136,7 @@ class CaptureJudge:
                 "live.too_blurred", "Too blurred (edges {blur_px:.1f} px wide): hold still or focus.", blur_px=blur_px
             )
             return Verdict(False, blurred)
-        already_there = self._already_there(view)
+        already_there = self._already_there(view_geometry(view, self._camera), self._cells(view.uv))
         return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there)
 
     def know(self, views: Iterable[TargetView]) -> None:
@@ -157,6 +158,26 @@ class CaptureJudge:
         """Advise on what the views taken so far lack."""
         return missing_from(self.views, [geometry for _, geometry in self._taken], self._image_size, self._series)
 
+    def wanted(self) -> Array | None:
+        """Outline (5, 2) in pixels, closed, of the target where it would add most; None if nothing is missing.
+
+        Nor is anything wanted before a first view was taken.
+        """
+        known = [geometry for _, geometry in self._taken if geometry is not None]
+        if not known or not self.missing():
+            return None
+        points = np.concatenate([view.points[:, :2] for view in self.views])
+        covered = self.cells
+
+        def adds(geometry: ViewGeometry, uv: Array) -> float | None:
+            cells = self._cells(uv)
+            if self._already_there(geometry, cells) is not None:
+                return None
+            return float(np.mean(cells & ~covered)) if self._series.everywhere else 0.0
+
+        middle = None if self._series.everywhere else np.mean([view.uv.mean(axis=0) for view in self.views], axis=0)
+        return wanted_view(np.array([points.min(axis=0), points.max(axis=0)]), self._camera, known, adds, middle)
+
     def _just_taken(self, time_s: float) -> bool:
         return 0 <= time_s - self._taken_at < _SHOWN_FOR_S
 
@@ -173,10 +194,9 @@ class CaptureJudge:
             for (before, view), (after, moved) in pairwise(recent)
         )
 
-    def _already_there(self, view: TargetView) -> Message | None:
+    def _already_there(self, geometry: ViewGeometry | None, cells: NDArray[np.bool_]) -> Message | None:
         """The sentence for a view like one that was taken; None if it adds something."""
         thing = self._series.thing
-        geometry, cells = view_geometry(view, self._camera), self._cells(view.uv)
         here = False
         for other, seen in self._taken:
             covered = self._cells(other.uv)

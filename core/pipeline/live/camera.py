@@ -12,6 +12,7 @@ from core.image.targets import Target, detect
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
+from core.model.arrays import Array
 from core.pipeline.live.commands import Auto, Capture, Command, Discard
 from core.pipeline.live.context import LiveContext, as_sentence
 from core.pipeline.live.events import CameraDetail
@@ -48,6 +49,7 @@ class LiveCamera:
         self._look: FoundView | None = None
         self._sentence: Message | None = None
         self._missing: tuple[Message, ...] = ()
+        self._wanted: Array | None = None
         self._number = 0
 
     def begin(self) -> None:
@@ -60,7 +62,7 @@ class LiveCamera:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._context.request.camera)
             self._judge.know(self._context.request.there)
-            self._missing = self._judge.missing()
+            self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
         self._context.worker.start(
             find_view, frame, self._context.request.rig.camera_target, self._context.request.camera
         )
@@ -96,6 +98,7 @@ class LiveCamera:
             missing=self._missing,
             views=len(self._judge.views),
             auto=self._auto,
+            wanted=self._wanted,
         )
 
     def rest(self) -> None:
@@ -110,7 +113,7 @@ class LiveCamera:
                 self._auto = on
             case Discard(name) if self._judge is not None and self._context.put_aside(name):
                 self._judge.forget(name)
-                self._missing = self._judge.missing()
+                self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
                 self._context.recorded -= 1
 
     def finish(self) -> None:
@@ -122,7 +125,7 @@ class LiveCamera:
         self._context.write(name, frame.picture)
         self._context.recorded += 1
         judge.taken(named(view, name), frame.time_s)
-        self._sentence, self._missing = TAKEN, judge.missing()
+        self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.wanted()
         self._context.took(name, frame.picture)
         self._context.dealt_with(frame)
 

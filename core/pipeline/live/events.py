@@ -38,6 +38,8 @@ class CameraDetail:
         How many views are taken.
     auto
         Whether views are taken without being told.
+    wanted
+        (5, 2) closed outline in pixels of the target where it would add most; None if nowhere in particular.
     """
 
     index: int
@@ -47,6 +49,7 @@ class CameraDetail:
     missing: tuple[Message, ...]
     views: int
     auto: bool
+    wanted: Array | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -66,6 +69,7 @@ class PlanesDetail:
     missing: tuple[Message, ...]
     poses: int
     auto: bool
+    wanted: Array | None = None
 
 
 ScanStage = Literal["reference", "ready", "scanning", "paused"]

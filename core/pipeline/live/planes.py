@@ -74,6 +74,7 @@ class LivePlanes:
         self._seen_at: Array | None = None
         self._sentence: Message | None = None
         self._missing: tuple[Message, ...] = ()
+        self._wanted: Array | None = None
         self._number = 0
         self._adviser = ExposureAdviser()
 
@@ -93,7 +94,7 @@ class LivePlanes:
             height, width = frame.picture.shape
             self._judge = CaptureJudge((width, height), self._camera, series=PLANE_POSES)
             self._judge.know(self._context.request.there)
-            self._missing = self._judge.missing()
+            self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
         if self._stage == "looking":
             known = self._target, self._camera, self._settings, self._lines
             self._context.worker.start(find_pose, frame, *known, self._seen_at)
@@ -128,6 +129,7 @@ class LivePlanes:
             missing=self._missing,
             poses=len(self._judge.views),
             auto=self._auto,
+            wanted=self._wanted,
         )
 
     def rest(self) -> None:
@@ -147,7 +149,7 @@ class LivePlanes:
                 self._auto = on
             case Discard(name) if self._judge is not None and self._context.put_aside(name, f"{name}_off"):
                 self._judge.forget(name)
-                self._missing = self._judge.missing()
+                self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
                 self._context.recorded -= 1
 
     def finish(self) -> None:
@@ -242,7 +244,7 @@ class LivePlanes:
             self._number += 1
             self._context.recorded += 1
             judge.taken(named(pending.view, name), pending.on.time_s)
-            self._sentence, self._missing = TAKEN, judge.missing()
+            self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.wanted()
             self._context.took(name, pending.on.picture)
             if self._checks and self._context.recorded >= CHECK_POSES:
                 raise Ended

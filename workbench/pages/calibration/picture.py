@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QLabel, QWidget
 from core.model.arrays import Array
 from core.pipeline.live.events import CameraDetail, LiveView, PlanesDetail
 from workbench.language import text_of, tr
-from workbench.views.colours import CORNER
+from workbench.views.colours import CORNER, WANTED
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column
 from workbench.views.plots.meters import HintBar
@@ -122,8 +122,13 @@ class PictureTab(QWidget):
             self.image.remove_layer("corners")
         else:
             self._draw_corners(detail.uv)
+        if detail.wanted is None:
+            self.image.remove_layer("wanted")
+        else:
+            self.image.set_lines("wanted", [detail.wanted], colour=WANTED, width=3.0, title=tr("wanted next"))
         self._draw_more(detail)
         enough = () if detail.missing else (tr("Nothing is missing: press Stop, and it is calibrated."),)
         seen = () if detail.sentence is None else (detail.sentence,)
         self.image.announce("".join(map(text_of, seen)))
-        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *enough])
+        where = () if detail.wanted is None else (tr("The outline in the picture shows where it would add most."),)
+        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *where, *enough])

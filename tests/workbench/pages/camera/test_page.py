@@ -44,8 +44,9 @@ def lane(camera_bench):
     return cast(HandLane, camera_bench.live)
 
 
-def live_view(uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",)):
-    detail = CameraDetail(7, uv, plain(sentence), np.eye(12, 16, dtype=bool), tuple(map(plain, missing)), 2, True)
+def live_view(uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",), wanted=None):
+    cells = np.eye(12, 16, dtype=bool)
+    detail = CameraDetail(7, uv, plain(sentence), cells, tuple(map(plain, missing)), 2, True, wanted)
     return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, 2, 0, detail)
 
 
@@ -144,6 +145,17 @@ def test_the_target_is_printed_where_the_dialog_says(page, qtbot, monkeypatch, t
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "board")
     qtbot.mouseClick(page.target.print, LEFT)
     qtbot.waitUntil((tmp_path / "board.pdf").exists, timeout=20000)
+
+
+def test_the_live_picture_shows_where_the_target_is_wanted_next(page, lane, qtbot):
+    page.source.set_mode("live")
+    start_live(page, lane, qtbot)
+    outline = np.array([[100.0, 120.0], [200.0, 130.0], [190.0, 210.0], [105.0, 200.0], [100.0, 120.0]])
+    lane.current.view.emit(live_view(wanted=outline))
+    assert "wanted" in page.picture.image.layer_names()
+    assert "The outline in the picture" in page.picture.hints.text
+    lane.current.view.emit(live_view())
+    assert "wanted" not in page.picture.image.layer_names()
 
 
 def test_a_live_picture_is_shown_with_its_corners_and_answered_once(page, lane, qtbot):
