@@ -29,7 +29,7 @@ from tests.study.grr_tables import AIAG
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
-from workbench.pages.report.presenter import Stage
+from workbench.pages.report.stage import Stage
 from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.theme import is_polishing

@@ -15,8 +15,9 @@ from workbench.pages.inspect.features.plot import PlotTab
 from workbench.pages.inspect.panels import FacesPanel, ResultPanel
 from workbench.pages.inspect.picks_panel import PicksPanel
 from workbench.pages.inspect.picture import PictureTab
-from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.repeats.tab import RepeatsTab
+from workbench.pages.inspect.stage import Stage
 from workbench.pages.inspect.studies.tab import StudiesTab
 from workbench.pages.inspect.surface import SurfaceTab
 from workbench.pages.step_page import StepPage

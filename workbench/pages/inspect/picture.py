@@ -10,7 +10,8 @@ from core.inspect.plan.feature_spec import Polygon
 from workbench.language import tr
 from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
-from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
+from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
+from workbench.pages.inspect.stage import Stage
 from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column, in_row, muted

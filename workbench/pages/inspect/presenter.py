@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +22,7 @@ from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.picks import InspectPicks
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.inspect.scan import InspectScan
+from workbench.pages.inspect.stage import Facts, Stage, WhyNot, stage_of, why_not_measure
 from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.pages.presenter import StepPresenter
 from workbench.step_state import State
@@ -34,19 +34,6 @@ RELIEF = "relief"
 
 MOST_POINTS_SENT = 100_000
 """So many of the chosen points are enough for an outline."""
-
-
-class Stage(StrEnum):
-    """How far the inspection is."""
-
-    NO_SCAN = "no scan"
-    READING = "reading"
-    UNREADABLE = "unreadable"
-    MEASURING = "measuring"
-    UNMEASURED = "unmeasured"
-    FAILED = "failed"
-    MEASURED = "measured"
-    OUTDATED = "outdated"
 
 
 class InspectPresenter(StepPresenter):
@@ -88,19 +75,21 @@ class InspectPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the inspection is."""
-        if self._measuring is not None:
-            return Stage.MEASURING
-        if "scan" not in self.model.results:
-            return Stage.NO_SCAN
-        if self.scan.view is None:
-            return Stage.UNREADABLE if self.scan.problem else Stage.READING
-        if self._unmeasurable:
-            return Stage.FAILED
-        if self.scan.stale:
-            return Stage.READING
-        if self.scan.view.gauge is None:
-            return Stage.UNMEASURED
-        return Stage.MEASURED if self.state.state is State.DONE else Stage.OUTDATED
+        return stage_of(self._facts())
+
+    def _facts(self) -> Facts:
+        scan = self.scan
+        return Facts(
+            scan="scan" in self.model.results,
+            shown=scan.view is not None,
+            unreadable=bool(scan.problem),
+            stale=scan.stale,
+            measuring=self._measuring is not None,
+            failed=bool(self._unmeasurable),
+            thickness=scan.gauge is not None,
+            outdated=self.state.state is not State.DONE,
+            face_missing=bool(self.faces.missing()),
+        )
 
     def blocker(self) -> str:
         return tr("Scan the part first.") if "scan" not in self.model.results else ""
@@ -123,13 +112,13 @@ class InspectPresenter(StepPresenter):
     @property
     def can_measure(self) -> str:
         """Why the thickness cannot be measured now, or ""."""
-        if "scan" not in self.model.results:
-            return tr("Scan the part first.")
-        if self.scan.problem:
-            return tr("The scan cannot be read.")
-        if self._measuring is not None:
-            return tr("The thickness is being measured.")
-        return self.faces.missing()
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.NO_SCAN: tr("Scan the part first."),
+            WhyNot.UNREADABLE: tr("The scan cannot be read."),
+            WhyNot.MEASURING: tr("The thickness is being measured."),
+            WhyNot.FACE_MISSING: self.faces.missing(),
+        }[why_not_measure(self._facts())]
 
     # ---- measuring
 

@@ -16,7 +16,8 @@ from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.picks import Pick, Span
-from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.pages.inspect.presenter import InspectPresenter
+from workbench.pages.inspect.stage import Stage
 from workbench.refresh import Refresh
 from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
 from workbench.views.layouts import in_column

@@ -10,7 +10,8 @@ from core.files.results.export_list import EXPORTS
 from core.report.template import PAPERS
 from core.translations import languages, own_name
 from workbench.language import tr
-from workbench.pages.report.presenter import ReportPresenter, Stage
+from workbench.pages.report.presenter import ReportPresenter
+from workbench.pages.report.stage import Stage
 from workbench.pages.report.words import USUAL_EXPORTS, export_words
 from workbench.pages.step_page import StepPage
 from workbench.theme import icon

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +13,7 @@ from core.report.template import SECTIONS
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.report.stage import Facts, Stage, WhyNot, stage_of, why_not_export, why_not_make
 from workbench.step_state import State
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -21,16 +21,6 @@ from workbench.work.tasks import Task
 PAGE_WIDTH_PX = 1400
 
 EXPORT_FOLDER = "export folder"
-
-
-class Stage(StrEnum):
-    """How far the report is."""
-
-    NONE = "none"
-    READY = "ready"
-    MAKING = "making"
-    MADE = "made"
-    OUTDATED = "outdated"
 
 
 class ReportPresenter(StepPresenter):
@@ -114,11 +104,20 @@ class ReportPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the report is."""
-        if self._making is not None:
-            return Stage.MAKING
-        if not self.ready():
-            return Stage.NONE
-        return {State.DONE: Stage.MADE, State.OUTDATED: Stage.OUTDATED}.get(self.state.state, Stage.READY)
+        return stage_of(self._facts())
+
+    def _facts(self) -> Facts:
+        results, state = self.model.results, self.state.state
+        return Facts(
+            camera="camera" in results,
+            scan=self.ready(),
+            thickness="inspect" in results,
+            features="features" in results,
+            report=state in (State.DONE, State.OUTDATED),
+            outdated=state is State.OUTDATED,
+            making=self._making is not None,
+            read_only=self.read_only,
+        )
 
     def ready(self) -> bool:
         """Whether there is something to report."""
@@ -155,11 +154,14 @@ class ReportPresenter(StepPresenter):
 
     def why_not_make(self) -> str:
         """Why the report cannot be made now, or ""."""
-        if self._making is not None:
-            return tr("The report is being made.")
-        if self.ready() and self.read_only:
-            return tr("The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy).")
-        return self.blocker()
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.MAKING: tr("The report is being made."),
+            WhyNot.NO_SCAN: self.blocker(),
+            WhyNot.READ_ONLY: tr(
+                "The project is read-only: export the report elsewhere, or go on in a copy (File, Save a copy)."
+            ),
+        }[why_not_make(self._facts())]
 
     def do_run(self) -> None:
         """Make the report into the project's results."""
@@ -177,16 +179,13 @@ class ReportPresenter(StepPresenter):
 
     def export_missing(self, kind: str) -> str:
         """Why this cannot be handed over yet, or ""."""
-        needs, results = EXPORTS[kind].needs, self.model.results
-        if needs == "camera":
-            return "" if "camera" in results else tr("Calibrate the camera first.")
-        if not self.ready():
-            return tr("Scan the part first.")
-        if kind == "pdf" and self._making is not None:
-            return tr("The report is being made.")
-        if needs == "inspect" and "inspect" not in results and (kind == "json" or "features" not in results):
-            return tr("Measure the thickness first.")
-        return ""
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.NO_CAMERA: tr("Calibrate the camera first."),
+            WhyNot.NO_SCAN: tr("Scan the part first."),
+            WhyNot.MAKING: tr("The report is being made."),
+            WhyNot.NO_THICKNESS: tr("Measure the thickness first."),
+        }[why_not_export(self._facts(), kind)]
 
     def export_place(self, kind: str) -> Path:
         """The file proposed for an export: where the last one was put, called like the part."""

@@ -10,7 +10,8 @@ from PySide6.QtWidgets import QWidget
 from core.pipeline.live.events import LiveView, ScanDetail
 from workbench.language import tr
 from workbench.pages.scan.overlays import PREVIEW_SIGMA_MM
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.pages.scan.stage import Stage
 from workbench.views.layouts import in_column
 from workbench.views.scene.view import Colouring, SceneView
 

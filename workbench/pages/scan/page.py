@@ -18,9 +18,10 @@ from workbench.pages.scan.check_card import CheckCard
 from workbench.pages.scan.cloud import ScanCloud
 from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan.picture import ScanPicture, View
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.profiles import ProfilesPanel
 from workbench.pages.scan.run import short
+from workbench.pages.scan.stage import Stage
 from workbench.pages.step_page import StepPage
 from workbench.pages.words import mm
 from workbench.views.forms.live_panel import LivePanel, LiveStrip

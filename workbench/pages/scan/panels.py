@@ -14,8 +14,9 @@ from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
 from workbench.pages.channels import add_channel
 from workbench.pages.scan import words
-from workbench.pages.scan.presenter import VALIDITY, ScanPresenter, Stage
+from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY
+from workbench.pages.scan.stage import Stage
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted

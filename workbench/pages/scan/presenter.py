@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from enum import StrEnum
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +25,7 @@ from workbench.pages.scan import stability
 from workbench.pages.scan.check import RigCheck
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
+from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
 from workbench.pages.sources import folder_of, put_source
@@ -40,20 +40,6 @@ VALIDITY: tuple[tuple[str, str, float], ...] = (
     ("check_days", label("Check"), 1.0),
 )
 """Key, name, and where it starts when a limit is first stated, in days."""
-
-
-class Stage(StrEnum):
-    """How far the scan is."""
-
-    NONE = "none"
-    LISTING = "listing"
-    EMPTY = "empty"
-    LIVE = "live"
-    RECORDED = "recorded"
-    MEASURING = "measuring"
-    FAILED = "failed"
-    MEASURED = "measured"
-    OUTDATED = "outdated"
 
 
 class ScanPresenter(StepPresenter):
@@ -96,22 +82,25 @@ class ScanPresenter(StepPresenter):
     @property
     def stage(self) -> Stage:
         """How far the scan is."""
-        if self.live.running:
-            return Stage.LIVE
-        if self.run.measuring:
-            return Stage.MEASURING
-        if self.run.problem:
-            return Stage.FAILED
-        state = self.state.state
-        if state is State.DONE:
-            return Stage.MEASURED
-        if state is State.OUTDATED:
-            return Stage.OUTDATED
-        if not self.project.sources.scan:
-            return Stage.NONE
-        if self.work.frames is None:
-            return Stage.LISTING
-        return Stage.RECORDED if self.work.frames else Stage.EMPTY
+        return stage_of(self._facts())
+
+    def _facts(self) -> Facts:
+        accepted, state, work = self.project.accepted, self.state.state, self.work
+        return Facts(
+            live=self.live.running,
+            check_live=self.check_live.running,
+            measuring=self.run.measuring,
+            failed=bool(self.run.problem),
+            measured=state in (State.DONE, State.OUTDATED),
+            outdated=state is State.OUTDATED,
+            camera=bool(accepted.camera),
+            planes=bool(accepted.fan),
+            calibrations_read=work.calibrations_read,
+            source=bool(self.project.sources.scan),
+            listed=work.frames is not None,
+            frames=bool(work.frames),
+            counting=not self.project.options.excluded.issuperset(work.names),
+        )
 
     @property
     def scrubbing(self) -> bool:
@@ -137,24 +126,17 @@ class ScanPresenter(StepPresenter):
     @property
     def cannot_measure(self) -> str:
         """Why the scan cannot be measured now, or ""."""
-        accepted, work = self.project.accepted, self.work
-        if self.live.running:
-            return tr("Stop the recording first.")
-        if self.run.measuring:
-            return tr("The scan is being measured.")
-        if not accepted.camera:
-            return tr("Accept a camera calibration first.")
-        if not accepted.fan:
-            return tr("Accept the laser planes first.")
-        if not self.project.sources.scan:
-            return tr("Record a scan, or choose a recording, first.")
-        if work.frames is None:
-            return tr("The frames are being listed.")
-        if not work.frames:
-            return work.no_frames or tr("Choose a folder that holds the frames of a scan.")
-        if all(name in self.project.options.excluded for name in work.names):
-            return tr("All frames are left out; let some of them count again.")
-        return ""
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.LIVE: tr("Stop the recording first."),
+            WhyNot.MEASURING: tr("The scan is being measured."),
+            WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
+            WhyNot.NO_PLANES: tr("Accept the laser planes first."),
+            WhyNot.NO_SOURCE: tr("Record a scan, or choose a recording, first."),
+            WhyNot.LISTING: tr("The frames are being listed."),
+            WhyNot.NO_FRAMES: self.work.no_frames or tr("Choose a folder that holds the frames of a scan."),
+            WhyNot.ALL_LEFT_OUT: tr("All frames are left out; let some of them count again."),
+        }[buttons_of(self._facts()).measure]
 
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
@@ -323,23 +305,21 @@ class ScanPresenter(StepPresenter):
 
     def _cannot_record(self) -> str:
         """Why no recording can start now, or ""."""
-        if self.run.measuring:
-            return tr("The scan is being measured; wait for it, or cancel it.")
-        if self.check_live.running:
-            return tr("Pictures of the check are being taken.")
-        if not self.work.calibrations_read:
-            return tr("The calibrations are being read.")
-        return ""
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.MEASURING: tr("The scan is being measured; wait for it, or cancel it."),
+            WhyNot.CHECK_LIVE: tr("Pictures of the check are being taken."),
+            WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
+        }[buttons_of(self._facts()).record]
 
     def _cannot_take(self) -> str:
         """Why no pictures of a check can be taken now, or ""."""
-        if not self.calibrated:
-            return tr("Accept camera and laser planes first: they are what is checked.")
-        if self.live.running:
-            return tr("Stop the recording first.")
-        if not self.work.calibrations_read:
-            return tr("The calibrations are being read.")
-        return ""
+        return {
+            WhyNot.NOTHING: "",
+            WhyNot.NOT_CALIBRATED: tr("Accept camera and laser planes first: they are what is checked."),
+            WhyNot.LIVE: tr("Stop the recording first."),
+            WhyNot.READING_CALIBRATIONS: tr("The calibrations are being read."),
+        }[buttons_of(self._facts()).take_check]
 
     def _check_taken(self, ended: LiveEnded) -> None:
         """The pictures are the check's by now: check."""

@@ -14,7 +14,8 @@ from core.messages import plain
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.page import InspectPage
-from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.pages.inspect.presenter import InspectPresenter
+from workbench.pages.inspect.stage import Stage
 from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton

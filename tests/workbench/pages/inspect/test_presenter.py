@@ -13,7 +13,8 @@ from core.files.project.keys import finished
 from core.study.type1 import type1_study
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.presenter import RELIEF, InspectPresenter, Stage
+from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
+from workbench.pages.inspect.stage import Stage
 from workbench.pages.inspect.words import repeats_tsv
 from workbench.work import jobs
 

@@ -10,7 +10,8 @@ from core.files.plan.plan_file import read_plan, write_plan
 from core.pipeline.steps.inspect_step import inspect_step
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 from workbench.bench import Bench
-from workbench.pages.inspect.presenter import InspectPresenter, Stage
+from workbench.pages.inspect.presenter import InspectPresenter
+from workbench.pages.inspect.stage import Stage
 from workbench.step_state import step_states
 
 

@@ -18,7 +18,8 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
-from workbench.pages.report.presenter import ReportPresenter, Stage
+from workbench.pages.report.presenter import ReportPresenter
+from workbench.pages.report.stage import Stage
 from workbench.step_state import State
 from workbench.work import jobs
 

@@ -18,7 +18,8 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.pages.scan.stage import Stage
 from workbench.views import ask
 from workbench.work import jobs
 

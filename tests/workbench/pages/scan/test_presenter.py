@@ -13,7 +13,8 @@ from core.files.project.keys import finished
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.pages.scan.stage import Stage
 from workbench.step_state import State
 from workbench.work import jobs
 

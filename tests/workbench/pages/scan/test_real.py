@@ -11,7 +11,8 @@ from workbench.bench import Bench
 from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
-from workbench.pages.scan.presenter import ScanPresenter, Stage
+from workbench.pages.scan.presenter import ScanPresenter
+from workbench.pages.scan.stage import Stage
 
 
 @pytest.fixture

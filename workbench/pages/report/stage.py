@@ -1,0 +1,77 @@
+"""How far the report is, what can be made and what can be handed over, told by plain facts."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+from typing import NamedTuple
+
+from core.files.results.export_list import EXPORTS
+
+
+class Stage(StrEnum):
+    """How far the report is."""
+
+    NONE = "none"
+    READY = "ready"
+    MAKING = "making"
+    MADE = "made"
+    OUTDATED = "outdated"
+
+
+class WhyNot(StrEnum):
+    """Why something cannot be done now; nothing: it can."""
+
+    NOTHING = ""
+    MAKING = "making"
+    NO_SCAN = "no scan"
+    NO_CAMERA = "no camera"
+    NO_THICKNESS = "no thickness"
+    READ_ONLY = "read-only"
+
+
+class Facts(NamedTuple):
+    """What the stage rests on; `camera` to `report`: there is such a result."""
+
+    camera: bool
+    scan: bool
+    thickness: bool
+    features: bool
+    report: bool
+    outdated: bool
+    """The report is not what the project would give now."""
+    making: bool
+    read_only: bool
+    """The project cannot be written to."""
+
+
+def stage_of(facts: Facts) -> Stage:
+    """How far it is."""
+    if facts.making:
+        return Stage.MAKING
+    if not facts.scan:
+        return Stage.NONE
+    if not facts.report:
+        return Stage.READY
+    return Stage.OUTDATED if facts.outdated else Stage.MADE
+
+
+def why_not_make(facts: Facts) -> WhyNot:
+    """Whether the report can be made into the project's results."""
+    if facts.making:
+        return WhyNot.MAKING
+    if not facts.scan:
+        return WhyNot.NO_SCAN
+    return WhyNot.READ_ONLY if facts.read_only else WhyNot.NOTHING
+
+
+def why_not_export(facts: Facts, kind: str) -> WhyNot:
+    """Whether one of EXPORTS can be handed over."""
+    needs = EXPORTS[kind].needs
+    if needs == "camera":
+        return WhyNot.NOTHING if facts.camera else WhyNot.NO_CAMERA
+    if not facts.scan:
+        return WhyNot.NO_SCAN
+    if kind == "pdf" and facts.making:
+        return WhyNot.MAKING
+    measured = facts.thickness or (facts.features and kind != "json")
+    return WhyNot.NO_THICKNESS if needs == "inspect" and not measured else WhyNot.NOTHING
