@@ -114,8 +114,15 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
 
 
 def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot):
+    """A rig that has not changed passes.
+
+    Its first pose is one picture, the same in each run, and the calibration is one draw. With seed 1 that picture is
+    an unlucky one: χ² over its freedom is 2.3 by itself where 16 others of the same pose have 0.3 to 3.6, 1.1 in the
+    mean, so p was 0.02 to 0.46 in ten runs. It is no bias: tests/accuracy/test_live_check.py looks at six rigs'
+    pictures against many calibrations. With seed 2 it is a usual one.
+    """
     p = page.presenter
-    p.live.settings.set_id("scale = 0.25")
+    p.live.settings.set_id("scale = 0.25\nseed = 2")
     with Watchdog() as dog:
         qtbot.mouseClick(page.check.take, Qt.MouseButton.LeftButton)
         qtbot.waitUntil(lambda: p.check.stage is CheckStage.CHECKING, timeout=90_000)
@@ -123,14 +130,13 @@ def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot
         idle(page, qtbot)
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
     look = p.check.look
-    # whether it passes is chance in one check of a hundred; of a rig that has moved p is below 1e-20
-    assert look.used == 3 and look.p > 1e-6, str(look.sentence)
+    assert look.used == 3 and look.passed, str(look.sentence)
     assert p.project.sources.check.startswith("recordings/check-")
     assert p.stage is Stage.OUTDATED, "the scan rests on the pictures of the check"
     p.do_live()
     qtbot.waitUntil(lambda: bool(p.live.checks), timeout=30_000)
     (told,) = [check for check in p.live.checks if check.name == "check"]
-    assert told.state == ("ok" if look.passed else "failed")
+    assert told.state == "ok"
     p.do_live()
     qtbot.waitUntil(lambda: not p.live.running, timeout=20_000)
     p.cancel()
