@@ -83,6 +83,10 @@ class Stability:
         if not all(0 <= sd < np.inf for sd in self._each):
             raise ValueError(f"a stability is a number not below 0: {self}")
 
+    def times(self, turn: float, shift: float, centre: float, focal: float) -> Stability:
+        """A rig that changes by so many times more."""
+        return Stability(turn * self.turn, shift * self.shift_mm, centre * self.centre_px, focal * self.focal_share)
+
     @property
     def _each(self) -> tuple[float, ...]:
         return self.turn, self.shift_mm, self.centre_px, self.focal_share

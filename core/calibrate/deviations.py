@@ -13,17 +13,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, cast
 
 import numpy as np
 
 from core.calibrate.camera.covariance import principal_deviations
-from core.calibrate.camera.reprojection import parameters_of
-from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.results import CameraCalibration, FanCalibration, Readjustment
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-Source = Literal["camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change"]
+Source = Literal["camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change", "readjusted"]
 SCALES: tuple[Source, ...] = ("scale", "assumed scale")
 """The sources that are the size of the plane target, which no picture of it shows."""
 UNEXPLAINED: Source = "bend"
@@ -39,7 +39,8 @@ class Deviation:
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
-    "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`). Where
+    "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`),
+    "readjusted" (what a re-adjustment leaves uncertain of that). Where
     nobody has stated how large the last two may be, their sources say that they are assumed.
     """
 
@@ -68,7 +69,14 @@ def calibration_deviations(camera: CameraCalibration, fan: FanCalibration) -> tu
     At most 10 deviations of the camera, 3N of the fan, one of how its light is bent, and one of the scale, largest
     first within each source; none where there is no covariance.
     """
-    return (*_of_camera(camera, fan), *_of_fan(camera.camera, fan), *_of_scale(camera.camera, fan))
+    if fan.readjusted is not None:
+        return (*_of_readjustment(camera.camera, fan, fan.readjusted), *_of_bends(camera.camera, fan))
+    return (
+        *_of_camera(camera, fan),
+        *_of_fan(camera.camera, fan),
+        *_of_bends(camera.camera, fan),
+        *_of_scale(camera.camera, fan),
+    )
 
 
 def fan_behind(fan: FanCalibration, calibrated: Camera, camera: Camera) -> Fan:
@@ -93,8 +101,21 @@ def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
         if value > NEGLIGIBLE * values[-1]:
             yield Deviation("fan", camera, moved_fan(fan.fan, np.sqrt(value) * vector))
+
+
+def _of_bends(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     if fan.bends is not None:
         yield Deviation("bend", camera, replace(fan.fan, bends=fan.bends))
+
+
+def _of_readjustment(camera: Camera, fan: FanCalibration, known: Readjustment) -> Iterator[Deviation]:
+    here = parameters_of(camera)
+    for source, step in zip(known.sources, known.deviations, strict=True):
+        yield Deviation(
+            cast(Source, source),
+            camera_of(here + step[: len(here)], camera.image_size),
+            moved_fan(fan.fan, step[len(here) :]),
+        )
 
 
 def _of_scale(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:

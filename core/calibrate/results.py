@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from datetime import datetime
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +108,67 @@ class PlanePose:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Readjustment:
+    """What was done to camera and fan by the pictures of a check (`core.calibrate.readjustment`).
+
+    Parameters
+    ----------
+    of
+        The id of camera and fan before.
+    taken_at, pictures_id, hashes, poses
+        When the newest picture was taken, what names them all, SHA-256 by their names, and how many poses say
+        something.
+    change, sd
+        (9,) what was found to have changed and its standard uncertainty: turns of the fan about the camera's axes (3)
+        in rad and its shifts (3) in mm, shifts of the picture (2) in px, and the focal length as a share of it.
+    widened
+        (4,) how many times larger turns, shifts, drifts and changes of the focal length were reckoned with than the
+        rig's stability has them.
+    p_before, p_after
+        Probability that noise and the calibrations' uncertainty would set the stripes so far off as they were before,
+        and as they are now.
+    deviations, sources
+        (K, 10 + 3N) steps of the camera's parameters and the fan's π, one standard uncertainty each, independent of
+        each other: all that is uncertain of them now; and the source of each.
+    before
+        That of the calibrations before, if they were re-adjusted themselves.
+    """
+
+    of: str
+    taken_at: datetime
+    pictures_id: str
+    hashes: Mapping[str, str]
+    poses: int
+    change: Array
+    sd: Array
+    widened: Array
+    p_before: float
+    p_after: float
+    deviations: Array
+    sources: tuple[str, ...]
+    before: Readjustment | None = None
+
+    @property
+    def note(self) -> Message:
+        """What was done, in a sentence."""
+        turn, shift, drift, focal = np.split(np.asarray(self.change), [3, 6, 8])
+        return Message(
+            "fan.readjusted",
+            "Camera and fan were re-adjusted by {poses} poses of a check of {date}: fan turned by {turn_urad:.0f} µrad "
+            "and moved by {shift_um:.0f} µm, picture by {drift_px:.2f} px, focal length by {focal_ppm:+.0f}·10⁻⁶ "
+            "(p before {p_before:.1g}, after {p_after:.2g}).",
+            poses=self.poses,
+            date=self.taken_at.astimezone().strftime("%Y-%m-%d %H:%M"),
+            turn_urad=1e6 * float(np.linalg.norm(turn)),
+            shift_um=1e3 * float(np.linalg.norm(shift)),
+            drift_px=float(np.linalg.norm(drift)),
+            focal_ppm=1e6 * float(focal[0]),
+            p_before=self.p_before,
+            p_after=self.p_after,
+        )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class FanCalibration:
     """A calibrated fan with its covariance and quality.
 
@@ -124,7 +186,7 @@ class FanCalibration:
     that the target's poses have corrected, which belongs to this fan; None where it was left as it is. `board` is the
     shape of the plane target where its flatness is uncertain; else it is flat. `bends` (N, 3, 3) are how the light was
     seen to be off its planes, as in `Fan`: one standard uncertainty, for what bends it is not known; None where it is
-    straight.
+    straight. `readjusted` where camera and fan were moved since by the pictures of a check.
     """
 
     fan: Fan
@@ -148,6 +210,7 @@ class FanCalibration:
     camera_covariance: Array | None = None
     board: BoardShape = field(default_factory=BoardShape)
     bends: Array | None = None
+    readjusted: Readjustment | None = None
 
     @property
     def minority(self) -> Message | None:

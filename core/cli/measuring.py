@@ -36,9 +36,10 @@ from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
+from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import Workspace, read_calibration
+from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
 from core.progress import Progress
 from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
@@ -179,6 +180,21 @@ def run_check(
     with alone_with(folder, out, channel=chosen.channel) as work:
         check = check_step(work, chosen, progress, celsius)
         return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
+
+
+def run_adjusting(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
+    """Re-adjust camera and fan by the pictures of the check."""
+    with alone_with(folder, out, channel=chosen.channel) as work:
+        done = readjust_step(work, chosen, progress)
+        rows, values = output.readjustment_rows(done), output.readjustment_json(done)
+        return _shown(work, READJUST, rows, values, "planes", "calibrated")
+
+
+def undo_adjusting(folder: Path, out: Path) -> Shown:
+    """Put camera and fan back as they were calibrated."""
+    with alone_with(folder, out) as work:
+        undo_readjustment(work)
+        return _shown(work, READJUST, [], {}, "planes")
 
 
 def run_artefact(folder: Path, out: Path, id_: str, celsius: float | None) -> tuple[ArtefactCheck, Shown]:

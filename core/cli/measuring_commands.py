@@ -153,11 +153,27 @@ def check(
     history: Annotated[
         bool, typer.Option("--history", help="Check nothing: show the checks of this rig so far, with their limits.")
     ] = False,
+    adjust: Annotated[
+        bool,
+        typer.Option("--adjust", help="Re-adjust camera and laser in DIR by the check, if it shows that they changed."),
+    ] = False,
+    undo: Annotated[
+        bool, typer.Option("--undo", help="Check nothing: put camera and laser in DIR back as they were calibrated.")
+    ] = False,
     json: Json = False,
 ) -> None:
     """Check by pictures of the day in SET/check whether camera and laser are where they were calibrated, in DIR."""
     from core.cli import measuring
 
+    if undo:
+        measuring.undo_adjusting(folder, out).show(as_json=json)
+        return
+    if adjust:
+        options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
+        with bars() as progress:
+            shown = measuring.run_adjusting(folder, out, options, progress)
+        shown.show(as_json=json)
+        return
     if history:
         past, shown = measuring.rig_history(folder, out)
         shown.show(as_json=json)

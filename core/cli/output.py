@@ -12,7 +12,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration, Readjustment
 from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
@@ -21,6 +21,7 @@ from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
+from core.pipeline.steps.readjust_step import ProposedReadjustment
 from core.pipeline.steps.validity import date_of
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
@@ -163,6 +164,53 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
         "step_mm": check.step_mm,
         "error_mm": check.error_mm,
         "unseen_mm": check.unseen_mm,
+    }
+
+
+def readjustment_rows(done: ProposedReadjustment) -> Rows:
+    """What was changed, how sure that is, and what it does."""
+    parts = zip(("fan turned", "fan moved", "picture moved", "focal length"), _changed_parts(done.record), strict=True)
+    return [
+        ("poses", f"{done.record.poses} used"),
+        *((name, f"{change} ± {sd} {unit} (k = 1)") for name, (change, sd, unit) in parts),
+        ("stripes off by", f"{done.offset_px[1]:.3f} px, before {done.offset_px[0]:.3f} px (RMS)"),
+        ("chance", f"p = {done.record.p_after:.2g}, before {done.record.p_before:.2g}"),
+        (
+            f"a step of {done.step_mm:g} mm",
+            f"measured {done.correction_mm:+.3f} mm larger, ± {2 * done.u_mm:.3f} mm (k = 2) by camera and fan",
+        ),
+    ]
+
+
+def _changed_parts(record: Readjustment) -> list[tuple[str, str, str]]:
+    """Change, standard uncertainty and unit of turn, shift, drift and focal length."""
+    parts = ((1e6, slice(3), "µrad"), (1e3, slice(3, 6), "µm"), (1.0, slice(6, 8), "px"), (1e6, slice(8, 9), "·10⁻⁶"))
+    return [
+        (
+            ", ".join(f"{by * value:+.3g}" for value in record.change[part]),
+            ", ".join(f"{by * value:.3g}" for value in record.sd[part]),
+            unit,
+        )
+        for by, part, unit in parts
+    ]
+
+
+def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
+    """The same for programs; planes.json has it in full."""
+    record = done.record
+    return {
+        "of": record.of,
+        "id": done.calibration.id,
+        "poses": record.poses,
+        "change": record.change.tolist(),
+        "sd": record.sd.tolist(),
+        "p_before": record.p_before,
+        "p_after": record.p_after,
+        "offset_px": list(done.offset_px),
+        "offset_mm": list(done.offset_mm),
+        "step_mm": done.step_mm,
+        "correction_mm": done.correction_mm,
+        "u_mm": done.u_mm,
     }
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
@@ -16,10 +18,11 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, measure_check
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.readjust_step import readjust_step
 from core.pipeline.steps.report_step import prepare_report, report_step
 from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import Workspace
+from core.pipeline.steps.workspace import READJUST, Workspace
 from core.progress import Progress, silent
 from core.scan.results import FrameRecord
 from core.second_process import SecondProcess
@@ -87,8 +90,8 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress, beside)
     check = measure_check(found, camera.camera, options, progress, beside) if found.check else None
-    if check is not None:
-        check_step(work, options, progress, poses=check)
+    if check is not None and not check_step(work, options, progress, poses=check).passed and found.rig.readjust:
+        fan = _readjusted(work, fan, options, progress, check)
     if beside is not None:
         beside.submit(prepare_report, None)
     measured = scan_step(work, options, progress, check=check, seen=seen, beside=beside)
@@ -108,6 +111,18 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
         notes=work.record().all_notes,
         files=work.written(),
     )
+
+
+def _readjusted(
+    work: Workspace, fan: FanCalibration, options: Options, progress: Progress, check: Sequence[PoseFeatures]
+) -> FanCalibration:
+    """The fan re-adjusted by the check, as rig.toml wants it; as it was where that is refused, and why is said."""
+    try:
+        return readjust_step(work, options, progress, check).calibration.fan
+    except InputError as error:
+        with work.step(READJUST) as log:
+            log.notes.append(error.message)
+        return fan
 
 
 def _looking(

@@ -52,12 +52,16 @@ class CheckedPose:
         (S,) the same in the picture.
     sd_mm
         (S,) their standard uncertainty by what the picture shows.
+    squares, freedom
+        Sum of squares of the stripes' offsets and slopes in units of their covariance, and how many there are.
     """
 
     located: LocatedPose
     offset_mm: Array
     offset_px: Array
     sd_mm: Array
+    squares: float = 0.0
+    freedom: int = 0
 
 
 def check_poses(
@@ -68,7 +72,7 @@ def check_poses(
     checked, evidence = [], Evidence.none(len(deviations))
     for pose in found:
         if not pose.used:
-            checked.append(CheckedPose(pose, *(np.zeros(0) for _ in range(3))))
+            checked.append(CheckedPose(pose, np.zeros(0), np.zeros(0), np.zeros(0)))
             continue
         one, said = _check(pose, camera, fan, deviations)
         checked.append(one)
@@ -150,7 +154,8 @@ def _check(
     offset = here[:: stripes.parts] / np.sqrt(2)
     sd = np.sqrt(np.diag(expected)[:: stripes.parts] / 2)
     per_px = np.array([_mm_per_px(stripe, settled, camera, fan.fan.pis[line]) for line, stripe in pose.stripes.items()])
-    return CheckedPose(replace(pose, pose=settled), offset, offset / per_px, sd), evidence
+    squares = float(here @ weighed[:, -1])
+    return CheckedPose(replace(pose, pose=settled), offset, offset / per_px, sd, squares, len(here)), evidence
 
 
 def _settled(view: TargetView, camera: Camera, pose: Pose) -> tuple[Pose, Array]:

@@ -240,6 +240,12 @@ class _Validity(Table):
     check_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
 
 
+class _Check(Table):
+    """[check]: what a whole run does with a check that fails."""
+
+    readjust: bool = Field(False, description="true or false")
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
 
@@ -255,6 +261,7 @@ class RigTables(Table):
         None, description="a table [stability] with turn_urad, shift_um, centre_px and focal_ppm"
     )
     validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
+    check: _Check | None = Field(None, description="a table [check] with readjust")
     name: str | None = Field(
         None,
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
@@ -340,6 +347,8 @@ class Rig:
     row_time_us: float | None = None
     """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
     channels: Channels = Channels()
+    readjust: bool = False
+    """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
 
     def channel_of(self, part: str) -> Channel | None:
         """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any.
@@ -416,6 +425,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["stability"] = tables.stability.stability()
     if tables.validity is not None:
         stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
+    if tables.check is not None:
+        stated["readjust"] = tables.check.readjust
     if tables.camera is not None:
         stated["row_time_us"] = tables.camera.row_time_us
     if tables.channels is not None:
@@ -446,6 +457,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "stability": None if rig.stability is None else _stability_table(rig.stability),
         "validity": _present(asdict(rig.validity)) or None,
         "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
+        "check": {"readjust": True} if rig.readjust else None,
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 

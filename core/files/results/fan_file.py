@@ -5,13 +5,13 @@ from __future__ import annotations
 import hashlib
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field, model_validator
 
 from core import __version__
-from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose
+from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose, Readjustment
 from core.errors import InputError
 from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import write_json
@@ -25,6 +25,7 @@ from core.files.tables import (
     OrNan,
     ResultFile,
     Row3,
+    Time,
     counted_pose,
     kept,
 )
@@ -32,6 +33,9 @@ from core.messages import Command, Message, label
 from core.model import Camera, Fan, LightPlane
 
 _PARAMETERS = len(CAMERA_PARAMETERS)
+_CHANGES = 9
+"""Turns, shifts, drifts of the picture, and the focal length."""
+_ReadjustedSource = Literal["camera", "fan", "scale", "assumed scale", "change", "assumed change", "readjusted"]
 _VECTOR = label("three finite numbers, not all zero")
 
 
@@ -73,6 +77,22 @@ class _Camera(ResultFile):
     )
 
 
+class _Readjusted(ResultFile):
+    of: str
+    taken_at: Time
+    pictures_id: str
+    pictures: dict[str, str] = Field(default_factory=dict)
+    poses: int
+    change: Annotated[list[Finite], Field(min_length=_CHANGES, max_length=_CHANGES)]
+    sd: Annotated[list[Finite], Field(min_length=_CHANGES, max_length=_CHANGES)]
+    widened: Annotated[list[Finite], Field(min_length=4, max_length=4)]
+    p_before: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
+    p_after: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
+    deviations: list[list[Finite]]
+    sources: list[_ReadjustedSource]
+    before: _Readjusted | None = None
+
+
 class _PlanesFile(ResultFile):
     planes: list[_Plane] = Field(min_length=1, description="a list of one or more light planes")
     free_planes: list[_Plane] = Field(default_factory=list)
@@ -87,6 +107,7 @@ class _PlanesFile(ResultFile):
     camera: _Camera | None = None
     board: BoardTable | None = None
     bends: list[Annotated[list[Row3], Field(min_length=3, max_length=3)]] | None = None
+    readjusted: _Readjusted | None = None
     pencil_gap_mm: OrNan = math.nan
     constraint_suits: bool | None = None
     verdict: OptionalMessage = None
@@ -128,6 +149,19 @@ class _PlanesFile(ResultFile):
                     planes=len(self.planes),
                 ),
             )
+        known = self.readjusted
+        while known is not None:
+            if [len(row) for row in known.deviations] != [_PARAMETERS + size] * len(known.sources):
+                raise Clash(
+                    "readjusted",
+                    Message(
+                        "fan.readjusted_shape",
+                        "has deviations that are not {sources} rows of {size} numbers",
+                        sources=len(known.sources),
+                        size=_PARAMETERS + size,
+                    ),
+                )
+            known = known.before
         if self.free_planes and len(self.free_planes) != len(self.planes):
             raise Clash(
                 "free_planes",
@@ -178,6 +212,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             "camera": _corrected_camera(calibration),
             "board": board_table(calibration.board) if calibration.board.values.any() else None,
             "bends": calibration.bends,
+            **({} if calibration.readjusted is None else {"readjusted": _readjusted_table(calibration.readjusted)}),
             "poses": [_pose(pose) for pose in calibration.poses],
         },
     )
@@ -248,6 +283,45 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         camera_covariance=None if file.camera is None else np.array(file.camera.covariance),
         board=board_shape(file.board),
         bends=None if file.bends is None else np.array(file.bends),
+        readjusted=_readjusted(file.readjusted),
+    )
+
+
+def _readjusted_table(known: Readjustment) -> dict[str, Any]:
+    return {
+        "of": known.of,
+        "taken_at": known.taken_at.isoformat(),
+        "pictures_id": known.pictures_id,
+        "pictures": dict(known.hashes),
+        "poses": known.poses,
+        "change": known.change,
+        "sd": known.sd,
+        "widened": known.widened,
+        "p_before": known.p_before,
+        "p_after": known.p_after,
+        "deviations": known.deviations,
+        "sources": list(known.sources),
+        "before": None if known.before is None else _readjusted_table(known.before),
+    }
+
+
+def _readjusted(file: _Readjusted | None) -> Readjustment | None:
+    if file is None:
+        return None
+    return Readjustment(
+        of=file.of,
+        taken_at=file.taken_at,
+        pictures_id=file.pictures_id,
+        hashes=file.pictures,
+        poses=file.poses,
+        change=np.array(file.change),
+        sd=np.array(file.sd),
+        widened=np.array(file.widened),
+        p_before=file.p_before,
+        p_after=file.p_after,
+        deviations=np.array(file.deviations),
+        sources=tuple(file.sources),
+        before=_readjusted(file.before),
     )
 
 

@@ -21,6 +21,7 @@ BENT_LIGHT = Message("inspection.cause_bent_light", "light of the fan that lies 
 SCALE = Message("inspection.cause_scale", "scale of the targets")
 SCALE_ASSUMED = Message("inspection.cause_scale_assumed", "scale of the targets (assumed)")
 CHANGE = Message("inspection.cause_change", "change since the calibration")
+READJUSTED = Message("inspection.cause_readjusted", "change since the calibration, re-adjusted")
 CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
 
 PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
@@ -44,6 +45,7 @@ CALIBRATIONS: Mapping[str, Message] = {
     "assumed scale": SCALE_ASSUMED,
     "change": CHANGE,
     "assumed change": CHANGE_ASSUMED,
+    "readjusted": READJUSTED,
 }
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 

@@ -5,13 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 
 from core.calibrate.change import (
     DEFAULT_STABILITY,
+    STABLE,
     Change,
     Evidence,
+    Stability,
     changes,
     judge,
     lasting,
@@ -66,8 +69,18 @@ def check_step(
         )
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
+    paths = check_paths(found)
+    if _readjusted_by(found, calibration):
+        raise InputError(
+            Message(
+                "check.made_readjustment",
+                "camera and fan were re-adjusted by these very pictures: they are no check of it",
+            ),
+            where=found.where(CHECK),
+            todo=Message("advice.record_check_anew", "record one to three new pictures"),
+        )
     with work.step("check") as log:
-        deviations, evidence, checked, change = _judged(found, calibration, options, progress, poses=poses)
+        deviations, evidence, checked, change = judged(found, calibration, options, progress, poses=poses)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and all(reason.code != NO_STRIPE_NEAR for reason in reasons):
             raise InputError(
@@ -76,7 +89,6 @@ def check_step(
                 todo=Message("check.advice", "hold the target where all lines meet it; else calibrate again"),
             )
         nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
-        paths = [path for pair in found.check for path in (pair.on, pair.off) if path is not None]
         check = InterimCheck(
             calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
@@ -99,6 +111,17 @@ def check_step(
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
         write_check(log.path("check"), check)
     return check
+
+
+def check_paths(found: RecordingSet) -> list[Path]:
+    """The pictures of the check."""
+    return [path for pair in found.check for path in (pair.on, pair.off) if path is not None]
+
+
+def _readjusted_by(found: RecordingSet, calibration: Calibration) -> bool:
+    """Whether the pictures of the check are those by which camera and fan were re-adjusted."""
+    known = calibration.fan.readjusted
+    return known is not None and bool(found.check) and found.id_of(check_paths(found)) == known.pictures_id
 
 
 def _kept(found: RecordingSet, check: InterimCheck, celsius: float | None) -> tuple[Message, ...]:
@@ -136,10 +159,12 @@ def since_calibration(
     InputError
         If the check's pictures have another size than the camera's.
     """
+    if _readjusted_by(found, calibration):  # what they know is in the calibrations
+        found, poses = replace(found, check=()), None
     apart = _days_apart(found)
     if apart <= SAME_DAY:
-        return _judged(found, calibration, options, progress, of_measured, poses)[-1]
-    change = _judged(replace(found, check=()), calibration, options, progress, of_measured)[-1]
+        return judged(found, calibration, options, progress, of_measured, poses)[-1]
+    change = judged(replace(found, check=()), calibration, options, progress, of_measured)[-1]
     other_day = Message(
         "check.another_day",
         "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
@@ -157,7 +182,19 @@ def _days_apart(found: RecordingSet) -> float:
     return abs(apart.total_seconds()) / 86_400.0
 
 
-def _judged(
+def _stability(found: RecordingSet, calibration: Calibration) -> Stability | None:
+    """How far the rig may have changed since its calibration, or since a re-adjustment.
+
+    On the day of its pictures a re-adjustment is what a check is: they show the rig as it was in the scan.
+    """
+    known = calibration.fan.readjusted
+    if known is None or found.check or not found.frames:
+        return found.rig.stability
+    apart = abs(taken_at(found.frames) - known.taken_at).total_seconds() / 86_400.0
+    return STABLE if apart <= SAME_DAY else found.rig.stability
+
+
+def judged(
     found: RecordingSet,
     calibration: Calibration,
     options: Options,
@@ -174,7 +211,7 @@ def _judged(
         seen = measure_check(found, camera, options, progress) if poses is None else poses
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
-    change = judge(camera, fan.fan, deviations, evidence, found.rig.stability)
+    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration))
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)

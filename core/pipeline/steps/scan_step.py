@@ -109,6 +109,8 @@ def scan_step(
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
         doubt = MOVED_WITHIN if scan.moved else doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
+        if calibration.fan.readjusted is not None:
+            said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
         scan = replace(scan, notes=(*notes, *assumed_stability(found), *_assumed_shutter(found, scan)))
         log.frames.extend(scan.frames)

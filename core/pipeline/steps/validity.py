@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator
 from datetime import datetime, timedelta
 
+from core.calibrate.results import Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
@@ -44,6 +45,8 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             "The history of this rig's checks cannot be read ({reason}): nothing measured proves conformity.",
             reason=error.message,
         )
+    if (known := calibration.fan.readjusted) is not None:
+        checks = (*checks, _as_check(known, calibration.id))
     nearest = min(checks, key=lambda check: abs(check.taken_at - when), default=None)
     if nearest is not None and nearest.verdict == "failed":
         return Message(
@@ -53,6 +56,11 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             date=date_of(nearest.taken_at),
         )
     return _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
+
+
+def _as_check(known: Readjustment, calibration_id: str) -> PastCheck:
+    """A re-adjustment, which lapses as a check does."""
+    return PastCheck(known.taken_at, calibration_id, known.pictures_id, "passed", known.p_after, 1.0)
 
 
 def stated_validity(rig: Rig) -> tuple[Message, ...]:

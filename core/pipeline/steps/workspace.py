@@ -29,6 +29,7 @@ FILES = {
     "camera": "camera.json",
     "planes": "planes.json",
     "poses": "planes.npz",
+    "calibrated": "planes-calibrated.json",
     "check": "check.json",
     "cloud": "cloud.ply",
     "mesh": "mesh.ply",
@@ -47,7 +48,7 @@ FILES = {
 
 CLEARED = (
     *("report", "gauge", "faces", "inspection", "inspected", "profile", "profile_table", "profiles"),
-    *("mesh", "cloud", "scan", "check", "planes", "poses", "camera", "run"),
+    *("mesh", "cloud", "scan", "check", "calibrated", "planes", "poses", "camera", "run"),
 )
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
 _PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
@@ -56,15 +57,18 @@ _PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
 _OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
 _OF_CLOUD = ("gauge", "faces", "inspection", "inspected")
 _REST_ON: Mapping[str, tuple[str, ...]] = {
-    "camera": ("planes", "poses", "check", *_OF_SURFACE, *_OF_CLOUD),
-    "planes": ("check", *_OF_SURFACE, *_OF_CLOUD),
+    "camera": ("planes", "poses", "calibrated", "check", *_OF_SURFACE, *_OF_CLOUD),
+    "planes": ("calibrated", "check", *_OF_SURFACE, *_OF_CLOUD),
     "cloud": _OF_CLOUD,
     "profiles": _OF_CLOUD,
 }
 """What no longer holds once one of these is another. The report stays: it is whole, and says what it is of."""
+READJUST = "readjust"
+"""The step that moves the planes by a check, and leaves the record of how they were calibrated."""
 _MADE = {
     "camera": "camera",
     "planes": "planes",
+    "calibrated": READJUST,
     "check": "check",
     "cloud": "scan",
     "profile": "profile",
@@ -152,7 +156,7 @@ class Workspace:
         Parameters
         ----------
         name
-            camera, planes, check, scan, profile, gauge or report.
+            camera, planes, check, readjust, scan, profile, gauge or report.
         measures
             Whether the step measures anything: then its beginning is the time the report prints.
         """
@@ -191,7 +195,8 @@ def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> Non
     old |= {one for name in old for one in _REST_ON.get(name, ())} - same
     run = out / FILES["run"]
     if run.exists() and old - {"report"}:  # it never tells of other results than those beside it
-        write_run(run, read_run(run).without({step, *(made for result, made in _MADE.items() if result in old)}))
+        undone = {made for result, made in _MADE.items() if result in old} - ({"planes"} if step == READJUST else set())
+        write_run(run, read_run(run).without({step, *undone}))
     put_results(out, beside, old)
 
 

@@ -135,6 +135,8 @@ def fan_facts(look: ReportLook, calibration: FanCalibration) -> dict[str, str]:
     if calibration.constraint_suits is not None:
         gap = words.fixed(calibration.pencil_gap_mm, 3)
         facts[words("Free planes from one pencil")] = words("at most {gap} mm in the work volume", gap=gap)
+    if calibration.readjusted is not None:
+        facts[words("Re-adjusted")] = words.known(calibration.readjusted.note)
     if calibration.verdict:
         facts[words("Check of the constraint")] = words.known(calibration.verdict)
     return facts

@@ -23,6 +23,7 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
+from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
@@ -98,6 +99,78 @@ def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned
         assert one.verdict is Verdict.NOT_PROVEN, "in the report and in what is handed over"
         assert decision_sentence(one) == verdict_sentence(gauge)
     assert "the notes tell why" in verdict_sentence(gauge)
+
+
+@pytest.mark.accuracy
+def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_back(turned, tmp_path):
+    """The mount turned by 400 µrad: without re-adjustment nothing is conforming, see above."""
+    work = work_in(turned, tmp_path)
+    before = work.path("planes").read_bytes()
+    done = readjust_step(work)
+    assert done.record.p_before < PROVES_NOTHING < done.record.p_after
+    assert done.offset_px[1] < 0.3 * done.offset_px[0]
+    scan_step(work, COARSE)
+    gauge = gauge_step(work)
+    assert abs(gauge.thickness_mm - 50) <= gauge.U_mm < 0.08
+    assert gauge.verdict is Verdict.CONFORMING
+    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_readjusted"]
+    assert row.u_mm < 0.03
+    assert not [row for row in gauge.budget if row.source.code.startswith("inspection.cause_change")]
+    assert "fan.readjusted" in {note.code for note in work.record().all_notes}, "never silently"
+    with pytest.raises(InputError, match="these very pictures"):
+        check_step(work)
+    undo_readjustment(work)
+    assert work.path("planes").read_bytes() == before
+    assert not work.path("gauge").exists(), "it was measured with other planes"
+
+
+@pytest.mark.accuracy
+def test_on_another_day_a_readjustment_counts_no_more_than_a_calibration(turned, tmp_path):
+    work = work_in(turned, tmp_path)
+    readjust_step(work)
+    frames = []
+    for path in work.found.frames:
+        copy = tmp_path / path.name
+        shutil.copy(path, copy)
+        os.utime(copy, (0, 0))
+        frames.append(copy)
+    later = replace(work.found, frames=tuple(frames))
+    sources = {one.source for one in since_calibration(later, work.calibration(), Options()).deviations}
+    assert {"readjusted", "assumed change"} <= sources
+    same_day = since_calibration(work.found, work.calibration(), Options())
+    assert "assumed change" not in {one.source for one in same_day.deviations}
+
+
+@pytest.mark.accuracy
+def test_a_whole_run_readjusts_where_rig_toml_wants_it(turned, tmp_path):
+    made = shutil.copytree(turned / "set", tmp_path / "set")
+    rig = made / "rig.toml"
+    rig.write_text(rig.read_text() + "\n[check]\nreadjust = true\n")
+    result = run(made, tmp_path / "out", COARSE)
+    assert result.fan.readjusted is not None
+    assert "fan.readjusted" in {note.code for note in result.notes}
+    assert result.gauge is not None and abs(result.gauge.thickness_mm - 50) <= result.gauge.U_mm
+
+
+def test_a_rig_that_has_not_changed_is_not_readjusted(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    before = work.path("planes").read_bytes()
+    with pytest.raises(InputError, match="adjusting to its noise would make them worse"):
+        readjust_step(work)
+    said = trisect("check", unchanged / "set", "--out", work.out, "--adjust")
+    assert said.code == 2 and "nothing was re-adjusted" in said.err
+    assert trisect("check", unchanged / "set", "--out", work.out, "--undo").code == 2
+    assert work.path("planes").read_bytes() == before
+
+
+@pytest.mark.accuracy
+def test_a_readjustment_is_told_by_the_command_line(turned, tmp_path):
+    out = work_in(turned, tmp_path).out
+    said = trisect("check", turned / "set", "--out", out, "--adjust")
+    assert said.code == 0, said.err
+    assert "fan turned" in said.out and "re-adjusted by 2 poses" in said.out
+    said = trisect("check", turned / "set", "--out", out, "--undo", "--json")
+    assert said.code == 0, said.err
 
 
 @pytest.mark.accuracy

@@ -1,0 +1,178 @@
+"""Re-adjust step: camera and fan moved by the pictures of a check, on request → planes.json, planes-calibrated.json."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.calibrate.deviations import Deviation, calibration_deviations
+from core.calibrate.fan.interim_check import check_poses, step_errors
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.readjustment import CheckPictures, nothing_changed, readjusted
+from core.calibrate.results import Readjustment
+from core.errors import InputError
+from core.files.atomic import write_bytes
+from core.files.reading import file_hash, read_bytes
+from core.files.recording.options import Options
+from core.files.recording.recording_set import CHECK, RecordingSet
+from core.files.recording.set_listing import taken_at
+from core.files.results.camera_file import read_camera
+from core.files.results.fan_file import write_fan
+from core.messages import Message
+from core.model.arrays import Array
+from core.pipeline.steps.check_step import STEP_MM, check_paths, judged, measure_check
+from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
+from core.progress import Progress, silent
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ProposedReadjustment:
+    """What a re-adjustment would make of camera and fan, and what that does.
+
+    Parameters
+    ----------
+    calibration
+        Camera and fan as they would be.
+    offset_px, offset_mm
+        RMS distances of the stripes from where they are expected, before and after.
+    step_mm, correction_mm, u_mm
+        A step of this height would be measured larger by `correction_mm`, and what camera and fan leave uncertain of it
+        (standard uncertainty).
+    """
+
+    calibration: Calibration
+    offset_px: tuple[float, float]
+    offset_mm: tuple[float, float]
+    step_mm: float
+    correction_mm: float
+    u_mm: float
+
+    @property
+    def record(self) -> Readjustment:
+        """What would be done."""
+        assert self.calibration.fan.readjusted is not None
+        return self.calibration.fan.readjusted
+
+    @property
+    def sentence(self) -> Message:
+        """What it would change."""
+        return Message(
+            "readjust.proposed",
+            "The stripes would be off by {after_px:.2f} px in place of {before_px:.2f} px ({after_mm:.3f} mm in place "
+            "of {before_mm:.3f} mm), and a step of {step_mm:g} mm measured {correction_mm:+.3f} mm larger, ± "
+            "{U_mm:.3f} mm by camera and fan (k = 2).",
+            before_px=self.offset_px[0],
+            after_px=self.offset_px[1],
+            before_mm=self.offset_mm[0],
+            after_mm=self.offset_mm[1],
+            step_mm=self.step_mm,
+            correction_mm=self.correction_mm,
+            U_mm=2 * self.u_mm,
+        )
+
+
+def propose_readjustment(
+    found: RecordingSet,
+    calibration: Calibration,
+    options: Options,
+    progress: Progress = silent,
+    poses: Sequence[PoseFeatures] | None = None,
+) -> ProposedReadjustment:
+    """Work out how camera and fan would be re-adjusted by the pictures of the check; nothing is written.
+
+    `poses` are what `measure_check` has found, if it was asked before.
+
+    Raises
+    ------
+    InputError
+        If there is no check, or `core.calibrate.readjustment.readjusted` refuses.
+    """
+    if not found.check:
+        raise InputError(
+            Message("readjust.no_check", "a re-adjustment needs the pictures of a check"),
+            where=found.rig_file.parent / CHECK,
+            todo=Message("advice.record_check", "hold the plane target into the fan and record one to three pictures"),
+        )
+    camera, fan = calibration.camera, calibration.fan
+    seen = measure_check(found, camera.camera, options, progress) if poses is None else poses
+    deviations, evidence, checked, change = judged(found, calibration, options, progress, poses=seen)
+    if (refused := nothing_changed(change.p)) is not None:
+        raise refused
+    paths = check_paths(found)
+    pictures = CheckPictures(
+        squares=sum(pose.squares for pose in checked),
+        freedom=sum(pose.freedom for pose in checked),
+        poses=sum(pose.located.used for pose in checked),
+        taken_at=taken_at(paths),
+        pictures_id=found.id_of(paths),
+        hashes={found.name_of(path): file_hash(path) for path in paths},
+    )
+    moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, pictures, found.rig.stability))
+    there = moved.camera.camera
+    left = calibration_deviations(moved.camera, moved.fan)
+    again, _ = check_poses(seen, there, moved.fan, left)
+    nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
+    step_mm = nominal or STEP_MM
+    here = step_errors(again, there, moved.fan.fan, (*left, _as_it_was(calibration)), step_mm)
+    return ProposedReadjustment(
+        moved,
+        (_rms([pose.offset_px for pose in checked]), _rms([pose.offset_px for pose in again])),
+        (_rms([pose.offset_mm for pose in checked]), _rms([pose.offset_mm for pose in again])),
+        step_mm,
+        -float(here[-1]),
+        float(np.linalg.norm(here[:-1])),
+    )
+
+
+def readjust_step(
+    work: Workspace,
+    options: Options | None = None,
+    progress: Progress = silent,
+    poses: Sequence[PoseFeatures] | None = None,
+) -> ProposedReadjustment:
+    """Re-adjust camera and fan by the pictures of the check: planes.json holds both, and a record of what was done.
+
+    The file before is kept as planes-calibrated.json; what was measured with it goes.
+
+    Raises
+    ------
+    InputError
+        As `propose_readjustment`; then nothing has changed.
+    """
+    proposed = propose_readjustment(work.found, work.calibration(), options or Options(), progress, poses)
+    with work.step(READJUST) as log:
+        kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
+        write_bytes(log.path("calibrated"), read_bytes(kept))
+        write_fan(log.path("planes"), proposed.calibration.fan, read_camera(work.path("camera")).camera)
+        log.notes.extend((proposed.record.note, proposed.sentence))
+    return proposed
+
+
+def undo_readjustment(work: Workspace) -> None:
+    """Put planes.json back as it was calibrated.
+
+    Raises
+    ------
+    InputError
+        If camera and fan were not re-adjusted.
+    """
+    if not work.path("calibrated").exists():
+        raise InputError(
+            Message("readjust.not_readjusted", "camera and fan are as they were calibrated"), where=work.path("planes")
+        )
+    with work.step(READJUST, measures=False) as log:
+        write_bytes(log.path("planes"), read_bytes(work.path("calibrated")))
+        log.gone.add("calibrated")
+        log.notes.append(
+            Message("readjust.undone", "The re-adjustment was undone: camera and fan are as they were calibrated.")
+        )
+
+
+def _as_it_was(calibration: Calibration) -> Deviation:
+    return Deviation("change", calibration.camera.camera, calibration.fan.fan)
+
+
+def _rms(offsets: Sequence[Array]) -> float:
+    return float(np.sqrt(np.mean(np.square(np.concatenate(offsets)))))
