@@ -26,6 +26,7 @@ _BLOCKS = (1, 2, 3, 4, 6, 9, 13)
 _REDUCED = (4, 8, 16)
 """Factors of the reduced pictures: grains up to so many px are averaged."""
 _MORE_LIGHT, _SHORT, _MOSTLY = 4.0, 0.3, 0.8  # times the light of grains; their length over it, and share within it
+_NO_GRAIN = 40.0  # times its width: a run so long is none; the longest runs along grains have been 12
 _SMALLEST_REDUCED = 24  # px that a reduced picture must have each way
 
 # Held by tests/image/stripes/test_extraction.py (settings are chosen) on rendered stripes of σ 0.9 to 5 px, of several
@@ -69,6 +70,8 @@ def choose_settings(
     doi:10.1023/A:1008097225773.
     """
     found = _chosen(picture, full_scale, mask, 1)
+    if found is not None and found.longest > _NO_GRAIN * found.settings.width_px:
+        return found.settings
     for factor in _REDUCED:
         size = (picture.shape[1] // factor, picture.shape[0] // factor)
         if min(size) < _SMALLEST_REDUCED:
