@@ -89,12 +89,15 @@ def batch(
     workers: Annotated[int | None, typer.Option(metavar="N", help="Sets at a time; else one for each core.")] = None,
     method: MethodOption = Method.NETWORK,
     sigma_cut: SigmaCut = 0.05,
+    stripe_width: StripeWidth = 0.0,
+    contrast: Contrast = 0.0,
+    channel: ChannelOption = None,
     json: Json = False,
 ) -> None:
     """Measure many recording sets side by side, each into a folder of its name in DIR."""
     from core.cli import measuring
 
-    options = measuring.options(method, sigma_cut)
+    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
     with bars() as progress:
         results = measuring.run_sets(sets, out, executor, workers, options, progress)
     measuring.show_sets(results, as_json=json)

@@ -15,6 +15,7 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording.options import Options
+from core.image.stripes.stripe import StripeSettings
 from core.pipeline import batch
 from core.pipeline.batch import STEP, STOP, run_batch
 from core.pipeline.executors import executor_of
@@ -113,6 +114,19 @@ def test_the_command_leaves_with_the_worst_code_of_its_sets(quick, tmp_path, nam
     rows = json.loads(said.out)["sets"]
     assert [Path(row["folder"]).name for row in rows] == list(names)
     assert [bool(row["error"]) for row in rows] == ["bad" in name for name in names]
+
+
+def test_the_command_tells_all_sets_width_and_contrast_of_their_stripes(tmp_path, monkeypatch):
+    told = []
+
+    def run(folder, out, options, progress):
+        told.append((options.stripe, options.plane_stripe, options.channel))
+        raise InputError("enough", where=folder)
+
+    monkeypatch.setattr(batch, "run", run)
+    words = ("--executor", "threads", "--stripe-width", "9", "--contrast", "30", "--channel", "green")
+    trisect("batch", *sets(tmp_path, "a"), "--out", tmp_path / "out", *words)
+    assert told == [(StripeSettings(9.0, 30.0), StripeSettings(9.0, 30.0), "green")]
 
 
 def test_the_table_names_every_set_and_what_kept_one_from_being_measured(quick, tmp_path):

@@ -71,10 +71,10 @@ FOUND_BY: Mapping[str, tuple[str, ...]] = {
     "camera": (label("pictures of the camera target"), label("camera target"), label("colour channel")),
     "planes": (
         label("camera calibration"), label("pictures of the plane target"), label("plane target"),
-        label("colour channel"),
+        label("colour channel"), label("stripes on the plane target"),
     ),
 }  # fmt: skip
-"""Of what a calibration rests on, that which decides what is found in its pictures."""
+"""Of what a calibration rests on, that which decides what is found in its pictures; the last only where it is given."""
 
 ACCEPTED: Mapping[str, str] = {
     "camera": label("accepted camera calibration"), "planes": label("accepted laser planes"),

@@ -57,6 +57,10 @@ class StripeSettings:
         return filter_for(self.stripe_px)
 
 
+USUAL_STRIPE = StripeSettings(6.0, 60.0)
+"""What is looked for where nothing is given and nothing was found."""
+
+
 def filter_for(stripe_px: float) -> float:
     """σ in pixels of the Gaussian filter for a stripe of σ `stripe_px`."""
     return max(FILTER_IN_SIGMA * stripe_px, _SMALLEST_FILTER_PX)

@@ -81,7 +81,7 @@ def find_poses(folder: Path, project: Project, progress: Progress = silent) -> t
     """
     compile_ahead(progress)
     found = project_set(folder, project)
-    poses = measure_poses(found, accepted_camera(folder, project), progress)
+    poses = measure_poses(found, accepted_camera(folder, project), progress, project.options.plane_stripe)
     keep_poses(folder, project, found, poses)
     return poses
 

@@ -96,7 +96,8 @@ def show_pose(
     InputError
         If no camera is accepted, or the picture is not there.
     """
-    return pose_stages(project_set(folder, project), pose, accepted_camera(folder, project), fan, progress)
+    camera, stripe = accepted_camera(folder, project), project.options.plane_stripe
+    return pose_stages(project_set(folder, project), pose, camera, fan, progress, stripe)
 
 
 def recall_poses(

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.plane_pose import stripe_strength
+from core.calibrate.fan.poses.pose_features import NO_STRIPE, PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages, numbered_stripes
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
+from core.image.stripes.stripe import USUAL_STRIPE, StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
 from core.progress import Progress, silent
@@ -20,8 +22,9 @@ def pose_stages(
     camera: Camera,
     fan: Fan | None = None,
     progress: Progress = silent,
+    stripe: StripeSettings | None = None,
 ) -> PoseStages:
-    """Look at one pose; without a fan its stripes have no numbers yet.
+    """Look at one pose; without a fan its stripes have no numbers yet. `stripe` is what was looked for, if given.
 
     Raises
     ------
@@ -37,5 +40,11 @@ def pose_stages(
     picture = found.read(pair.on)
     corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
     stripes = numbered_stripes(pose, camera, fan)
+    ridge = None
+    if pose.reason is not None and pose.reason.code == NO_STRIPE:
+        off = None if pair.off is None else found.read(pair.off)
+        strength = stripe_strength(picture, off, stripe or USUAL_STRIPE)
+        ridge = in_8_bit(strength, float(strength.max()))
     progress("pose", 1, 1)
-    return PoseStages(pose.name, in_8_bit(picture, white_level(picture)), corners, stripes, pose.reason, pose.notes)
+    shown = in_8_bit(picture, white_level(picture))
+    return PoseStages(pose.name, shown, corners, stripes, pose.reason, pose.notes, ridge)

@@ -158,4 +158,7 @@ def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Pa
         "camera": camera,
         "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
     }
+    stripe = project.options.plane_stripe
+    if step == "planes" and stripe is not None:
+        rests_on["stripe"] = [stripe.width_px, stripe.contrast]
     return hashlib.sha256(json.dumps(rests_on, default=str).encode()).hexdigest()[:16]

@@ -5,11 +5,14 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.fan.poses.pose_features import NO_STRIPE
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.project.data import Accepted
+from core.image.stripes.stripe import StripeSettings
 from core.messages import plain
-from core.pipeline.project.calibration import accept_fan, find_poses, solve_poses, solve_views
+from core.pipeline.project.calibration import accept_fan, find_poses, found_poses, solve_poses, solve_views
+from core.pipeline.project.details import show_pose
 from core.pipeline.project.measuring import measure_scan
 from tests.simulated import contents, copy_of
 
@@ -49,6 +52,20 @@ def test_too_few_views_left_says_so(done):
     names = frozenset(one.name for one in done.seen.views[2:])
     with pytest.raises(InputError, match=r"only 2 of 8 views are not left out by hand"):
         solve_views(done.folder, done.with_options(excluded=names), done.seen)
+
+
+def test_stripes_on_the_plate_are_looked_for_as_the_project_says_and_a_picture_shows_why_none_is_found(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    given = done.with_options(plane_stripe=StripeSettings(8.0, 1000.0))
+    (pose, *_) = found = find_poses(folder, given)
+    assert {one.reason.code for one in found} == {NO_STRIPE}
+    assert [one.name for one in found_poses(folder, given)] == [one.name for one in found]
+    assert found_poses(folder, done.project) == ()
+    stages = show_pose(folder, given, pose)
+    assert stages.ridge is not None
+    assert stages.ridge.shape == stages.picture.shape
+    assert stages.ridge.max() >= 250
+    assert show_pose(folder, done.project, done.poses[0]).ridge is None
 
 
 def test_a_pose_left_out_has_no_part_in_the_fan_and_says_so(done):

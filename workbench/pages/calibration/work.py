@@ -231,7 +231,7 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
     def found_key(self, project: Project) -> Key:
         """What finding rests on, as it is in `project`."""
         keys = rests_on(self.STEP, project, {})
-        return tuple(keys[name] for name in FOUND_BY[self.STEP])
+        return tuple(keys.get(name, "") for name in FOUND_BY[self.STEP])
 
     def solve_key(self, project: Project) -> Key:
         """What solving rests on, as it is in `project`; it begins with `found_key`."""

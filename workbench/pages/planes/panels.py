@@ -14,6 +14,7 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.channels import add_channel
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
+from workbench.pages.stripes import add_stripe, set_stripe_editable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
@@ -117,6 +118,7 @@ class LaserForm(SettingsForm):
             tr("Hold the planes to one pencil"),
             tr("Steadier; used only where the free planes agree with it."),
         )
+        add_stripe(self, tr("Width and contrast of the stripes are taken from each pose's own pictures."))
         add_channel(self)
         self.edited.connect(self._tell)
 
@@ -130,8 +132,10 @@ class LaserForm(SettingsForm):
                 "angle": angle,
                 "constrain": options.constrain_fan,
                 "channel": rig.channel_of("planes") or "",
+                **self._presenter.stripe_values(),
             }
         )
+        set_stripe_editable(self, options.plane_stripe is None)
         one = tr("One line has no neighbour.") if rig.lines == 1 else ""
         for key in ("angle", "constrain"):
             self.set_editable(key, not one, one)

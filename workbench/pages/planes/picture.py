@@ -7,6 +7,7 @@ from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
+from core.calibrate.fan.poses.pose_features import NO_STRIPE
 from core.pipeline.live.events import PlanesDetail
 from workbench.language import text_of, tr
 from workbench.pages.calibration.picture import PictureTab
@@ -33,6 +34,8 @@ class PoseTab(PictureTab):
         notes = " ".join(map(text_of, features.notes)) if features is not None else ""
         reason = text_of(features.reason or "") if features is not None else ""
         said = words.pose_sentence(p.current, p.quality_of(p.current), reason)
+        if features is not None and features.reason is not None and features.reason.code == NO_STRIPE:
+            notes = tr("Shown is how strongly each place looks like a stripe.")
         return f"{said} {notes}".strip()
 
     def _invitation(self) -> str:
@@ -54,7 +57,7 @@ class PoseTab(PictureTab):
             )
 
     def _show_pose(self, stages: Any) -> None:
-        self._show_picture(stages.name, stages.picture)
+        self._show_picture(stages.name, stages.picture if stages.ridge is None else stages.ridge)
         if self._presenter.live.running:
             return
         if len(stages.corners):

@@ -6,15 +6,18 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import Any
 
+from core.calibrate.fan.poses.pose_features import usual_stripe
 from core.calibrate.results import PlanePose
 from core.files.project.data import Project
 from core.files.project.keys import finished
 from core.files.results.fan_file import fan_id
+from core.image.stripes.stripe import StripeSettings
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Fan
 from workbench.bench import Bench
 from workbench.language import tr
+from workbench.pages import stripe_settings
 from workbench.pages.calibration.history import PlanesHistory
 from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
@@ -104,9 +107,21 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- laser
 
     def set_laser(self, field: str, value: Any) -> None:
-        """Change "lines", "angle" (rad; None: not stated), "constrain" or "channel" ("": found); undoable."""
+        """Change "lines", "angle" (rad; None: not stated), "constrain", "channel" ("": found) or one of
+        `workbench.pages.stripe_settings.FIELDS`; undoable. What cannot be is refused with a sentence.
+        """
         project = self.project
-        if field == "constrain":
+        if field in stripe_settings.FIELDS:
+            try:
+                stripe = stripe_settings.changed_stripe(
+                    project.options.plane_stripe, self._found_stripe(), field, value
+                )
+            except ValueError as error:
+                self.bench.notices.failed(error)
+                self.changed.emit()
+                return
+            after = replace(project, options=replace(project.options, plane_stripe=stripe))
+        elif field == "constrain":
             after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
         elif field == "channel":
             after = replace(project, rig=project.rig.with_channel("planes", value or None))
@@ -114,6 +129,13 @@ class PlanesPresenter(CalibrationPresenter):
             changes: dict[str, Any] = {field: value or 0.0}
             after = replace(project, rig=replace(project.rig, **changes))
         self.model.edit(tr("change the laser"), after, f"laser {field}")
+
+    def stripe_values(self) -> dict[str, Any]:
+        """Width and contrast of the stripes as given, or as they are in the poses measured."""
+        return stripe_settings.stripe_values(self.project.options.plane_stripe, self._found_stripe())
+
+    def _found_stripe(self) -> StripeSettings | None:
+        return usual_stripe(self.work.poses or ())
 
     def set_pairs(self, on: bool) -> None:
         """Whether each pose is also taken with the laser off; remembered by the program, as the rig stays the same."""

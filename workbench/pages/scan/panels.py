@@ -17,6 +17,7 @@ from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY
 from workbench.pages.scan.stage import Stage
+from workbench.pages.stripes import add_stripe, set_stripe_editable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted
@@ -131,22 +132,7 @@ class SettingsPanel(QWidget):
             NumberRange(0.001, 10.0, decimals=3, step=0.01, unit="mm"),
             tr("Points with a larger standard uncertainty of depth are left out."),
         )
-        form.add_check(
-            "automatic", tr("Stripe found automatically"),
-            tr("Width and contrast of the stripes are taken from the pictures, for each laser."),
-        )  # fmt: skip
-        form.add_number(
-            "width_px",
-            tr("Stripe width"),
-            NumberRange(1.0, 200.0, decimals=1, step=0.5, unit="px"),
-            tr("From where the light rises out of the background to where it is gone."),
-        )
-        form.add_number(
-            "contrast",
-            tr("Stripe contrast"),
-            NumberRange(1.0, 65535.0, decimals=0, step=5.0, unit=tr("grey levels")),
-            tr("Height above the background where the stripe is rather faint."),
-        )
+        add_stripe(form, tr("Width and contrast of the stripes are taken from the pictures, for each laser."))
         add_channel(form)
         form.add_section(tr("Shutter of the camera"))
         form.add_number(
@@ -180,9 +166,7 @@ class SettingsPanel(QWidget):
         """Show the settings."""
         values = self._presenter.settings()
         self.form.set_values(values)
-        why = tr("Found automatically; take away the tick above to give it.")
-        for key in ("width_px", "contrast"):
-            self.form.set_editable(key, not values["automatic"], why)
+        set_stripe_editable(self.form, values["automatic"])
 
 
 class ResultPanel(QWidget):

@@ -12,7 +12,6 @@ from core.files.project.data import Project
 from core.files.project.keys import changed, rests_on
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
-from core.image.stripes.stripe import StripeSettings
 from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.scan.features.frames import FrameRecord
@@ -29,11 +28,9 @@ from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_o
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
 from workbench.pages.sources import folder_of, put_source
+from workbench.pages.stripe_settings import FIELDS as STRIPE_FIELDS
+from workbench.pages.stripe_settings import changed_stripe, stripe_values
 from workbench.step_state import State
-
-USUAL_STRIPE = StripeSettings(6.0, 60.0)
-"""Where width and contrast start when they are to be given and nothing has been measured yet."""
-
 
 VALIDITY: tuple[tuple[str, str, float], ...] = (
     ("calibration_days", label("Calibration"), 30.0),
@@ -354,28 +351,13 @@ class ScanPresenter(StepPresenter):
 
 def values_of(options: Options, look: ShownScan | None) -> dict[str, Any]:
     """The fields; width and contrast as they were found where they are found automatically."""
-    stripe = _stripe(options, look)
-    return {
-        "method": str(options.method),
-        "sigma_cut_mm": options.sigma_cut_mm,
-        "automatic": options.stripe is None,
-        "width_px": stripe.width_px,
-        "contrast": stripe.contrast,
-    }
+    stripe = stripe_values(options.stripe, look.stripe if look is not None else None)
+    return {"method": str(options.method), "sigma_cut_mm": options.sigma_cut_mm, **stripe}
 
 
 def changed_options(options: Options, look: ShownScan | None, field: str, value: Any) -> Options:
     """The options with one field changed; InputError or ValueError if it cannot be so."""
-    stripe = _stripe(options, look)
-    if field == "automatic":
-        return replace(options, stripe=None if value else stripe)
-    if field in ("width_px", "contrast"):
-        return replace(options, stripe=replace(stripe, **{field: float(value)}))
+    if field in STRIPE_FIELDS:
+        found = look.stripe if look is not None else None
+        return replace(options, stripe=changed_stripe(options.stripe, found, field, value))
     return replace(options, **{field: value})
-
-
-def _stripe(options: Options, look: ShownScan | None) -> StripeSettings:
-    """As given, or as the last measurement found it."""
-    found = look.stripe if look is not None else None
-    usual = StripeSettings(round(found.width_px, 1), round(found.contrast)) if found is not None else USUAL_STRIPE
-    return options.stripe or usual

@@ -29,6 +29,8 @@ from core.image.stripes.noise import (
     estimate_noise_of_pair,
     free_of_structure,
 )
+from core.image.stripes.ridge_picture import ridge_strength
+from core.image.stripes.stripe import USUAL_STRIPE
 from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -46,6 +48,8 @@ PULL_PX = 0.05
 """A point that the plate's change of brightness may pull further than this is left out."""
 DARK = 0.4
 """A point where the picture is darker than this share of the plate around the target's points is left out."""
+STRONGEST = 0.999
+"""Quantile over the target of what looks like a stripe: a few hot pixels are none."""
 SHORTEST = 12
 """Runs with fewer points left are dropped."""
 
@@ -118,7 +122,7 @@ def measure_plane_pose(
     carrier = Plate(target, view, camera, margin_mm)
     centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, colour.compression)
     if not centrelines:
-        return PoseFeatures(name, view, (), Message("fan.no_stripe", "no stripe was found: is the fan on?"))
+        return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
     level = DARK * _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
     centrelines = without_clutter(centrelines, camera)
@@ -131,6 +135,24 @@ def measure_plane_pose(
         )
         notes = (note,)
     return PoseFeatures(name, view, centrelines, notes=notes)
+
+
+def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:
+    """How strongly each pixel (H, W) of the laser's light looks like such a stripe, in grey levels of its height."""
+    light = on.astype(np.float32)
+    return ridge_strength(light if off is None else light - off.astype(np.float32), settings)
+
+
+def _no_stripe(on: Picture, off: Picture | None, view: TargetView, settings: StripeSettings) -> Message:
+    """Why no stripe was found, by what looks most like one about the target."""
+    strength = stripe_strength(on, off, settings)[_window(view, on.shape, margin=0.25)]
+    return Message(
+        "fan.no_stripe",
+        "no stripe was found: is the fan on? What looks most like a stripe {width_px:g} px wide on the target has "
+        "{grey:.0f} grey levels",
+        width_px=settings.width_px,
+        grey=float(np.quantile(strength, STRONGEST)),
+    )
 
 
 def _stripes(

@@ -2,11 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
+import numpy as np
+
 from core.image.stripes.centreline import Centreline
+from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
 from core.image.targets.target_view import TargetView
 from core.messages import Message
+
+NO_STRIPE = "fan.no_stripe"
+"""Code of the reason that no stripe was found."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -32,3 +39,13 @@ class PoseFeatures:
     centrelines: tuple[Centreline, ...]
     reason: Message | None = None
     notes: tuple[Message, ...] = ()
+
+
+def usual_stripe(poses: Iterable[PoseFeatures]) -> StripeSettings | None:
+    """Width and contrast of most stripes of some poses; None where none was found."""
+    lines = [line for pose in poses for line in pose.centrelines]
+    if not lines:
+        return None
+    width = float(np.median(np.concatenate([line.width for line in lines])))
+    height = float(np.quantile(np.concatenate([line.strength for line in lines]), CONTRAST_QUANTILE))
+    return StripeSettings(WIDTH_IN_SIGMA * width, height) if width > 0 and height > 0 else None

@@ -35,7 +35,8 @@ class PoseStages:
     """The picture (H, W) of a pose with the fan on, and what was found.
 
     `corners` (N, 2) in pixels are the target's points, none if it was not found; `stripes` the straight stripes with
-    the fan line each is of; `reason` why the pose cannot be used, None if it can.
+    the fan line each is of; `reason` why the pose cannot be used, None if it can. `ridge` (H, W), where no
+    stripe was found, is how strongly each place looks like one, the strongest white.
     """
 
     name: str
@@ -44,6 +45,7 @@ class PoseStages:
     stripes: tuple[NumberedStripe, ...]
     reason: Message | None
     notes: tuple[Message, ...]
+    ridge: NDArray[np.uint8] | None = None
 
 
 def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = None) -> tuple[NumberedStripe, ...]:

@@ -8,7 +8,8 @@ from scipy.special import expit
 from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
-from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import NO_STRIPE, PoseFeatures, usual_stripe
+from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, TargetNotFound, detect
 from core.model import Pose
 from tests.calibrate import fan_scenes
@@ -169,6 +170,20 @@ def test_no_target_and_no_stripe_are_reasons_not_errors(pair):
     assert "all black" in str(measure_plane_pose("p", black, None, TARGET, CAMERA).reason)
     dark_fan = measure_plane_pose("p", pair.off, pair.off, TARGET, CAMERA)
     assert "no stripe" in str(dark_fan.reason)
+    assert dark_fan.reason is not None
+    assert dark_fan.reason.values["grey"] < 3.0
+    too_faint = measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA, StripeSettings(8.0, 1000.0))
+    assert too_faint.reason is not None
+    assert too_faint.reason.code == NO_STRIPE
+    assert too_faint.reason.values["grey"] > 30.0
+
+
+def test_the_stripes_of_poses_tell_their_usual_width(pair):
+    assert usual_stripe([]) is None
+    found = measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA)
+    usual = usual_stripe([found])
+    assert usual is not None
+    assert usual.width_px == pytest.approx(4 * np.median(np.concatenate([line.width for line in found.centrelines])))
 
 
 def test_saturated_points_are_flagged():

@@ -232,6 +232,8 @@ def test_the_pose_shown_gets_the_numbers_of_its_lines_once_they_are_solved(
         (lambda p: p.set_laser("angle", math.radians(4.0)), lambda p: p.project.rig.angle),
         (lambda p: p.set_laser("angle", None), lambda p: p.project.rig.angle),
         (lambda p: p.set_laser("constrain", False), lambda p: p.project.options.constrain_fan),
+        (lambda p: p.set_laser("automatic", False), lambda p: p.project.options.plane_stripe),
+        (lambda p: p.set_laser("width_px", 9.0), lambda p: p.project.options.plane_stripe),
         (lambda p: p.target.set_target("size_mm", 55.0), lambda p: p.project.rig.plane_target.side_mm),
         (lambda p: p.target.set_target("kind", "charuco"), lambda p: type(p.project.rig.plane_target)),
     ],
