@@ -230,7 +230,7 @@ def choose_sweep_stripe(
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, Message) and picture.shape == reference.base.shape:
-            difference = reference.difference(picture).astype(np.float32, copy=False)
+            difference = reference.of_lasers(picture)[0].astype(np.float32, copy=False)
             settings = choose_settings(difference, reference.full_scale)
             if settings is not None:
                 seen.append(settings)
@@ -282,9 +282,9 @@ class FrameReader:
         if nothing := _shows_nothing(picture, full_scale):
             return FrameFeatures(index, name, (), nothing)
         with stage(self.times, "difference"):
-            difference = self.reference.difference(picture)
+            difference, change = self.reference.of_lasers(picture)
             check = check_reference(difference, fan)
-            light = self.reference.light_change(check.light)
+            light = self.reference.light_change(change)
         if check.lost:
             return FrameFeatures(index, name, (), LOST, check.shift_px, light)
         if check.shift_px > self.move_limit_px:

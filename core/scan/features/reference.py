@@ -25,6 +25,7 @@ from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.scan.features.crossings import CrossingWindow
+from core.scan.features.room_light import RoomLight
 
 SAMPLE = 15
 """At most this many frames, spread over the scan, make a quantile reference: memory does not grow with the scan."""
@@ -182,7 +183,7 @@ class ReferenceFeatures:
     """What the picture with the fan alone shows, and what frames are compared with.
 
     `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
-    the picture; `fan` the fan's centrelines, `stripe` how they were looked for.
+    the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` the room's light it shows.
     """
 
     base: Picture
@@ -190,6 +191,7 @@ class ReferenceFeatures:
     noise: NoiseModel
     fan: tuple[Centreline, ...]
     stripe: StripeSettings
+    room: RoomLight
 
     @property
     def image_size(self) -> tuple[int, int]:
@@ -200,6 +202,17 @@ class ReferenceFeatures:
     def difference(self, picture: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
         """A frame minus the picture, both (H, W)."""
         return picture_difference(picture, self.base)
+
+    def of_lasers(self, picture: Picture) -> tuple[NDArray[np.int16] | NDArray[np.float32], float]:
+        """A frame minus the picture, both (H, W), less what the room's light has changed since, and that change.
+
+        The change is in grey levels, as `RoomLight.change` states it; 0: it was too small to be taken off.
+        """
+        difference = self.difference(picture)
+        changed = self.room.change(difference)
+        if changed is None:
+            return difference, 0.0
+        return difference.astype(np.float32) - changed[0], changed[1]
 
     def light_change(self, grey: float) -> float:
         """A change of the background by `grey` levels as a share of it; 0 where stripes do not feel it."""
@@ -222,7 +235,14 @@ def read_reference(picture: Picture, options: FeatureOptions | None = None) -> R
     base = picture.astype(np.float32)
     noise = replace(estimate_noise(base), compression=options.compression)
     stripe, fan = _fan_centrelines(base, full_scale, noise, options)
-    return ReferenceFeatures(picture, full_scale, noise.of_difference(float(np.median(base))), fan, stripe)
+    return ReferenceFeatures(
+        picture,
+        full_scale,
+        noise.of_difference(float(np.median(base))),
+        fan,
+        stripe,
+        RoomLight.of(picture, fan, full_scale),
+    )
 
 
 def _fan_centrelines(
