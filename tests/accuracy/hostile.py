@@ -42,7 +42,10 @@ ALWAYS = frozenset(
         "target.flatness_assumed",
         "scan.stability_assumed",
         "scan.datum",
-        "scan.some_frames_without_points",
+        "scan.frames_without_points",
+        "scan.many_frames_without_points",
+        "scan.scale_fixed",
+        "scan.scale_weak",
     }
 )
 """Codes of notes that say nothing of an effect."""

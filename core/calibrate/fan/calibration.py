@@ -147,7 +147,10 @@ def fit_fan(
     if not isinstance(verdict.start, FreePlanes):
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
     errors = prediction_errors(used, _bundle_poses(located), camera, plate)
-    summary = summarise(located, free, used, verdict, errors, further)
+    flat = None
+    if plate is not None and options.seen_bowed is None:
+        flat = solve(verdict.start, _bundle_poses(located), camera)
+    summary = summarise(located, free, used, verdict, errors, further, flat)
     return replace(
         summary,
         notes=(*summary.notes, *options.target.notes("plane_target", shape_known=options.seen_bowed is not None)),

@@ -16,7 +16,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.stripe_lines import StripeLine
 from core.calibrate.fan.poses.target_plane import on_target
-from core.messages import Message
+from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 from core.model.residuals import Judgement, Residuals, along_line, judge_residuals, without_line
@@ -108,6 +108,18 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
             where=where,
             **values,
         ),
+    )
+
+
+def bow_or_bend(judgement: Judgement) -> Message:
+    """Note that stripes bend alike on a flat target, of which `judgement` is, and that a bow has been taken for it."""
+    return Message(
+        "fan.bow_or_bend",
+        "in all poses the stripes bend alike by {mm:.3f} mm: a bowed target does that, and light that is no plane. "
+        "Taken is a bowed target, as its flatness is not stated to be better; the uncertainty contains the other. Use "
+        "a flat target and state its flatness ({field})",
+        mm=float(np.nanmax(judgement.profile) - np.nanmin(judgement.profile)),
+        field=Field("plane_target.flatness_mm"),
     )
 
 

@@ -12,7 +12,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.target_plane import on_target
-from core.calibrate.fan.straightness import bends_of, judge_lines, notes_on_lines, off_planes_mm
+from core.calibrate.fan.straightness import bends_of, bow_or_bend, judge_lines, notes_on_lines, off_planes_mm
 from core.calibrate.fan.verdict import Verdict, fan_of
 from core.calibrate.results import LEFT_OUT, FanCalibration, PlanePose
 from core.messages import Field, Message
@@ -28,6 +28,10 @@ WORTH_A_NOTE_MM = 0.05
 SCATTERED = 3.0
 """Poses that disagree by this many times their noise do so by themselves, not by chance of points and stripes."""
 
+SURELY_WORSE = 1.2
+"""If the target's own points scatter so many times more about a flat target, it is they that show it bowed. Those of a
+square cannot, grids of corners do: tests/calibrate/fan/test_straightness.py."""
+
 SATURATED_SHARE = 1 / 3
 """A share of saturated stripe points worth a warning."""
 
@@ -39,10 +43,12 @@ def summarise(
     verdict: Verdict,
     prediction_errors: Array,
     notes: Sequence[Message],
+    flat: Bundle | None = None,
 ) -> FanCalibration:
     """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front.
 
-    `prediction_errors` in mm are those of the poses that are used.
+    `prediction_errors` in mm are those of the poses that are used. Where nothing but the stripes tells the target's
+    bow, `flat` is the fit in use with a flat target.
     """
     pis = used.planes.pis
     adjusted, errors = iter(used.poses), iter(prediction_errors.tolist())
@@ -54,11 +60,17 @@ def summarise(
     )
     lines = judge_lines(located, used.poses, pis, used.shape)
     bends, bent_mm = None, 0.0
+    of_lines = notes_on_lines(lines)
     if lines.systematic:
-        points = [np.concatenate([pose.points[line] for pose in poses]) for line in range(len(pis))]
-        distances = [np.concatenate([pose.distances[line] for pose in poses]) for line in range(len(pis))]
-        bends = bends_of(points, distances, pis)
+        points = _by_line([pose.points for pose in poses])
+        bends = bends_of(points, _by_line([pose.distances for pose in poses]), pis)
         bent_mm = off_planes_mm(points, bends)
+    if flat is not None and flat.corner_scale < SURELY_WORSE * used.corner_scale:
+        on_flat = judge_lines(located, flat.poses, flat.planes.pis, flat.shape)
+        if on_flat.systematic:
+            bends = _bends_if_flat(located, flat, pis)
+            bent_mm = off_planes_mm(_by_line([pose.points for pose in poses]), bends)
+            of_lines = (*of_lines, bow_or_bend(on_flat))
     free_fan = fan_of(free.planes, free.covariance)
     return FanCalibration(
         fan=fan_of(used.planes, used.covariance),
@@ -73,7 +85,7 @@ def summarise(
         notes=(
             *notes,
             *_notes(located, poses),
-            *notes_on_lines(lines),
+            *of_lines,
             *_notes_on_scatter(prediction_errors, max(used.expected_mm, bent_mm)),
             *_notes_on_predictions(poses),
             *_notes_on_bow(used.shape),
@@ -86,6 +98,24 @@ def summarise(
         board=used.shape,
         bends=bends,
     )
+
+
+def _by_line(of_poses: Sequence[Sequence[Array]]) -> list[Array]:
+    """What poses have of each line, (n, …), joined line by line."""
+    return [np.concatenate(own) for own in zip(*of_poses, strict=True)]
+
+
+def _bends_if_flat(located: Sequence[LocatedPose], flat: Bundle, pis: Array) -> Array:
+    """Forms (N, 3, 3) in 1/mm of how the light is off the planes `pis` (N, 3) if it is not the target that is bowed."""
+    used = (pose for pose in located if pose.used)
+    poses = [
+        _plane_pose(pose, place, flat.planes.pis, flat.shape) for pose, place in zip(used, flat.poses, strict=True)
+    ]
+    bends = bends_of(
+        _by_line([pose.points for pose in poses]), _by_line([pose.distances for pose in poses]), flat.planes.pis
+    )
+    moved = np.einsum("ni,nj->nij", flat.planes.pis - pis, pis)  # with π·X = 1 another plane is such a form, too
+    return np.asarray(bends + (moved + moved.transpose(0, 2, 1)) / 2)
 
 
 def _plane_pose(
