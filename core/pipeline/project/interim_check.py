@@ -4,15 +4,25 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from core.files.project.calibration_store import put_in_place
+from core.errors import InputError
+from core.files.project.calibration_store import (
+    keep_fan,
+    put_in_place,
+    read_stored,
+    read_stored_camera,
+    read_stored_fan,
+    read_stored_poses,
+)
 from core.files.project.data import Project
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.rig_history import RigHistory
+from core.messages import Message
 from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set
 from core.pipeline.steps.check_step import check_step
+from core.pipeline.steps.readjust_step import ProposedReadjustment, propose_readjustment
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import FILES, Workspace
+from core.pipeline.steps.workspace import FILES, Calibration, Workspace
 from core.progress import Progress, silent
 
 CHECK = "check"
@@ -41,6 +51,51 @@ def show_check(folder: Path) -> InterimCheck | None:
     return read_check(path) if path.exists() else None
 
 
-def check_history(project: Project) -> RigHistory:
+def check_history(folder: Path, project: Project) -> RigHistory:
     """Every check of the project's rig that is known on this computer; InputError if the file is damaged."""
-    return history_of(project.rig, f"{project.accepted.camera}-{project.accepted.fan}")
+    return history_of(project.rig, _accepted(folder, project).id)
+
+
+def propose_project_readjustment(folder: Path, project: Project, progress: Progress = silent) -> ProposedReadjustment:
+    """Work out how the accepted camera and fan would be re-adjusted by the project's check; nothing is kept.
+
+    Raises
+    ------
+    InputError
+        As `core.pipeline.steps.readjust_step.propose_readjustment`, or if no calibration is accepted.
+    """
+    return propose_readjustment(project_set(folder, project), _accepted(folder, project), project.options, progress)
+
+
+def accept_readjustment(
+    folder: Path, project: Project, proposed: ProposedReadjustment, progress: Progress = silent
+) -> str:
+    """Keep a re-adjusted fan, and the camera that belongs to it; returns its id: the caller makes it the accepted one.
+
+    Raises
+    ------
+    InputError
+        If another calibration has been accepted since, or nothing can be written.
+    """
+    progress("keeping the calibration", 0, 1)
+    if proposed.record.of != _accepted(folder, project).id:
+        raise InputError(
+            Message("readjust.of_other_calibration", "another calibration has been accepted since"),
+            todo=Message("advice.check_and_readjust", "check again"),
+        )
+    camera = read_stored_camera(folder, project.accepted.camera)
+    before = read_stored(folder, "fan", project.accepted.fan)
+    return keep_fan(
+        folder,
+        proposed.calibration.fan,
+        camera.camera,
+        read_stored_poses(folder, project.accepted.fan),
+        {**({} if before is None else before.settings), "readjusted_from": project.accepted.fan},
+        {**({} if before is None else before.inputs), **proposed.record.hashes},
+    )
+
+
+def _accepted(folder: Path, project: Project) -> Calibration:
+    camera = read_stored_camera(folder, project.accepted.camera)
+    fan = read_stored_fan(folder, project.accepted.fan, camera.camera)
+    return Calibration(fan.camera_used(camera), fan)

@@ -22,7 +22,9 @@ from core.calibrate.change import (
 from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.results import FanCalibration
 from core.errors import InputError
+from core.files.reading import file_hash
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
@@ -69,14 +71,14 @@ def check_step(
         )
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
-    paths = check_paths(found)
-    if _readjusted_by(found, calibration):
+    found = fresh_check(found, calibration.fan)
+    if not found.check:
         raise InputError(
             Message(
                 "check.made_readjustment",
                 "camera and fan were re-adjusted by these very pictures: they are no check of it",
             ),
-            where=found.where(CHECK),
+            where=work.found.where(CHECK),
             todo=Message("advice.record_check_anew", "record one to three new pictures"),
         )
     with work.step("check") as log:
@@ -89,6 +91,7 @@ def check_step(
                 todo=Message("check.advice", "hold the target where all lines meet it; else calibrate again"),
             )
         nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
+        paths = check_paths(found)
         check = InterimCheck(
             calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
@@ -118,10 +121,19 @@ def check_paths(found: RecordingSet) -> list[Path]:
     return [path for pair in found.check for path in (pair.on, pair.off) if path is not None]
 
 
-def _readjusted_by(found: RecordingSet, calibration: Calibration) -> bool:
-    """Whether the pictures of the check are those by which camera and fan were re-adjusted."""
-    known = calibration.fan.readjusted
-    return known is not None and bool(found.check) and found.id_of(check_paths(found)) == known.pictures_id
+def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:
+    """The set without those pictures of its check by which camera and fan were re-adjusted: what they know is in these.
+
+    The same pictures are known by what is in them.
+    """
+    used: set[str] = set()
+    known = fan.readjusted
+    while known is not None:
+        used |= set(known.hashes.values())
+        known = known.before
+    if not used:
+        return found
+    return replace(found, check=tuple(pair for pair in found.check if file_hash(pair.on) not in used))
 
 
 def _kept(found: RecordingSet, check: InterimCheck, celsius: float | None) -> tuple[Message, ...]:
@@ -159,8 +171,7 @@ def since_calibration(
     InputError
         If the check's pictures have another size than the camera's.
     """
-    if _readjusted_by(found, calibration):  # what they know is in the calibrations
-        found, poses = replace(found, check=()), None
+    found = fresh_check(found, calibration.fan)
     apart = _days_apart(found)
     if apart <= SAME_DAY:
         return judged(found, calibration, options, progress, of_measured, poses)[-1]
@@ -208,7 +219,9 @@ def judged(
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
     checked: tuple[CheckedPose, ...] = ()
     if found.check:
+        names = {pair.name for pair in found.check}
         seen = measure_check(found, camera, options, progress) if poses is None else poses
+        seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
     change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration))

@@ -22,7 +22,7 @@ from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import write_fan
 from core.messages import Message
 from core.model.arrays import Array
-from core.pipeline.steps.check_step import STEP_MM, check_paths, judged, measure_check
+from core.pipeline.steps.check_step import STEP_MM, check_paths, fresh_check, judged, measure_check
 from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
 from core.progress import Progress, silent
 
@@ -87,8 +87,9 @@ def propose_readjustment(
     Raises
     ------
     InputError
-        If there is no check, or `core.calibrate.readjustment.readjusted` refuses.
+        If there is no check that was not used for it already, or `core.calibrate.readjustment.readjusted` refuses.
     """
+    found = fresh_check(found, calibration.fan)
     if not found.check:
         raise InputError(
             Message("readjust.no_check", "a re-adjustment needs the pictures of a check"),

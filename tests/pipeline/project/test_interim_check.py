@@ -4,13 +4,19 @@ from dataclasses import replace
 
 import pytest
 
-from core.errors import Cancelled
-from core.files.project.calibration_store import keep_camera, keep_fan
+from core.errors import Cancelled, InputError
+from core.files.project.calibration_store import history, keep_camera, keep_fan
 from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
 from core.files.recording.options import Options
 from core.files.results.check_file import read_check
-from core.pipeline.project.interim_check import check_rig, show_check
+from core.pipeline.project.interim_check import (
+    accept_readjustment,
+    check_history,
+    check_rig,
+    propose_project_readjustment,
+    show_check,
+)
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import read_calibration
 from tests.pipeline.steps.test_check_step import RIG, prepared
@@ -19,6 +25,11 @@ from tests.pipeline.steps.test_check_step import RIG, prepared
 @pytest.fixture(scope="module")
 def unchanged(tmp_path_factory):
     return prepared(tmp_path_factory, "checked-unchanged", RIG)
+
+
+@pytest.fixture(scope="module")
+def turned(tmp_path_factory):
+    return prepared(tmp_path_factory, "checked-turned", replace(RIG, turned_urad=400.0))
 
 
 def opened(made, folder):
@@ -52,3 +63,20 @@ def test_a_check_that_is_cancelled_keeps_the_one_before(unchanged, tmp_path):
     with pytest.raises(Cancelled):
         check_rig(tmp_path, project, cancel)
     assert show_check(tmp_path) == check
+
+
+@pytest.mark.accuracy
+def test_a_readjustment_is_kept_beside_the_calibration_it_began_with(turned, tmp_path):
+    project = opened(turned, tmp_path)
+    proposed = propose_project_readjustment(tmp_path, project)
+    assert [entry.kind for entry in history(tmp_path)].count("fan") == 1, "nothing is kept before it is accepted"
+    id_ = accept_readjustment(tmp_path, project, proposed)
+    adjusted = replace(project, accepted=replace(project.accepted, fan=id_))
+    assert {entry.id for entry in history(tmp_path)} == {project.accepted.camera, project.accepted.fan, id_}
+    with pytest.raises(InputError, match="these very pictures"):
+        check_rig(tmp_path, adjusted)
+    with pytest.raises(InputError, match="another calibration"):
+        accept_readjustment(tmp_path, adjusted, proposed)
+    assert not check_rig(tmp_path, project).passed, "what was accepted before is there as it was"
+    assert [one.verdict for one in check_history(tmp_path, project).checks] == ["failed"]
+    assert check_history(tmp_path, adjusted).checks == ()

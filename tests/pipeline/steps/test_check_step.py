@@ -117,8 +117,12 @@ def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_
     assert row.u_mm < 0.03
     assert not [row for row in gauge.budget if row.source.code.startswith("inspection.cause_change")]
     assert "fan.readjusted" in {note.code for note in work.record().all_notes}, "never silently"
-    with pytest.raises(InputError, match="these very pictures"):
-        check_step(work)
+    as_opened = Workspace.open(open_set(turned / "set"), work.out)
+    for one in (work, as_opened):
+        with pytest.raises(InputError, match="these very pictures"):
+            check_step(one)
+    change = since_calibration(as_opened.found, as_opened.calibration(), Options())
+    assert change.p == 1.0, "they are not counted twice"
     undo_readjustment(work)
     assert work.path("planes").read_bytes() == before
     assert not work.path("gauge").exists(), "it was measured with other planes"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from enum import StrEnum
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from core.files.project.data import Project
 from core.files.project.keys import changed, finished, rests_on
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
+from core.pipeline.steps.readjust_step import ProposedReadjustment
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.sources import folder_of, put_source
@@ -37,6 +39,8 @@ class RigCheck(QObject):
     """
 
     changed = Signal()
+    proposed = Signal(object)
+    """What a re-adjustment would do (`ProposedReadjustment`): accept it or not."""
 
     look: InterimCheck | None
     history: RigHistory | None
@@ -46,10 +50,12 @@ class RigCheck(QObject):
         self._bench, self._model = bench, bench.model
         self._task: Task | None = None
         self._problem = ("", "")
+        self._readjusting: Task | None = None
+        self.refusal = ""
         self._forget()
 
     def _forget(self) -> None:
-        self.look, self.history, self._looked = None, None, ""
+        self.look, self.history, self._looked, self.refusal = None, None, "", ""
 
     @property
     def folder(self) -> Path | None:
@@ -92,6 +98,17 @@ class RigCheck(QObject):
         return ""
 
     @property
+    def cannot_readjust(self) -> str:
+        """Why camera and laser cannot be re-adjusted by the check now, or ""."""
+        if self._readjusting is not None:
+            return tr("What a re-adjustment would change is being worked out.")
+        if self.valid is None:
+            return tr("Check camera and laser first.")
+        if self.valid.passed:
+            return tr("Camera and laser are where they were calibrated: there is nothing to re-adjust.")
+        return ""
+
+    @property
     def past(self) -> PastCheck | None:
         """The result as the history has it."""
         look, history = self.look, self.history
@@ -130,6 +147,58 @@ class RigCheck(QObject):
         self._task = task
         self.changed.emit()
 
+    def propose_readjustment(self) -> None:
+        """Work out what a re-adjustment by the check would change; `proposed` tells."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.cannot_readjust:
+            return
+        self.refusal = ""
+        task: Task = self._bench.run_long(
+            self,
+            jobs.PROPOSE_READJUSTMENT,
+            folder,
+            project,
+            label=tr("Re-adjustment"),
+            on_done=lambda proposal: self._worked_out(task, proposal),
+            on_failed=lambda problem: self._worked_out(task, None, text_of(problem)),
+            on_cancelled=lambda: self._worked_out(task, None),
+        )
+        self._readjusting = task
+        self.changed.emit()
+
+    def accept_readjustment(self, proposal: ProposedReadjustment) -> None:
+        """Measure with camera and laser as re-adjusted, from now on; undoable."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None:
+            return
+
+        def kept(id_: str) -> None:
+            if folder != self._model.folder:
+                return
+            now = self._model.project
+            after = replace(now, accepted=replace(now.accepted, fan=id_), rejected=now.rejected - {id_})
+            self._model.edit(tr("re-adjust camera and laser"), after)
+            done = self._model.results.get("planes")
+            self._model.record("planes", finished("planes", after, self._model.results, done.at if done else None))
+
+        self._bench.run_quick(
+            self,
+            jobs.ACCEPT_READJUSTMENT,
+            folder,
+            project,
+            proposal,
+            label=tr("Keeping the re-adjustment"),
+            on_done=kept,
+        )
+
+    def _worked_out(self, task: Task, proposal: ProposedReadjustment | None, refusal: str = "") -> None:
+        if task is not self._readjusting:
+            return
+        self._readjusting, self.refusal = None, refusal
+        self.changed.emit()
+        if proposal is not None:
+            self.proposed.emit(proposal)
+
     def cancel(self) -> None:
         """Stop checking; the result before stays."""
         if self._task is not None:
@@ -138,7 +207,7 @@ class RigCheck(QObject):
     def opened(self) -> None:
         """Another project: stop, forget, and read its result."""
         self.cancel()
-        self._task, self._problem = None, ("", "")
+        self._task, self._problem, self._readjusting = None, ("", ""), None
         self._forget()
         self.follow()
 
@@ -167,13 +236,15 @@ class RigCheck(QObject):
         self._task = None
         if folder == self._model.folder:
             done = finished("check", project, self._model.results)
-            self.look, self._looked = look, f"{folder}|{done.key}|{done.at}"
+            self.look, self._looked, self.refusal = look, f"{folder}|{done.key}|{done.at}", ""
             self._model.record("check", done)
             self._read_history()
         self.changed.emit()
 
     def _read_history(self) -> None:
-        wanted = self._looked
+        wanted, folder = self._looked, self._model.folder
+        if folder is None:
+            return
 
         def read(history: RigHistory) -> None:
             if self._looked == wanted:
@@ -183,6 +254,7 @@ class RigCheck(QObject):
         self._bench.run_quick(
             self,
             jobs.CHECK_HISTORY,
+            folder,
             self._model.project,
             label=tr("Reading the history of the rig"),
             on_done=read,

@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.pipeline.live.events import Detail, PlanesDetail
+from core.pipeline.steps.readjust_step import ProposedReadjustment
 from workbench.language import number, text_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
@@ -36,7 +37,9 @@ class CheckCard(QFrame):
         self._check, self._live, self._seen = check, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
         self.chart = ControlPlot()
-        self.take, self.choose, self.run = QPushButton(), QPushButton(), QPushButton()
+        self.take, self.choose, self.run, self.readjust = QPushButton(), QPushButton(), QPushButton(), QPushButton()
+        self.readjust.clicked.connect(check.propose_readjustment)
+        check.proposed.connect(self._ask_to_readjust)
         self.choose.setAccessibleName(tr("Folder with the pictures of the check"))
         self.choose.setFixedWidth(36)  # three buttons fit side by side where the panel is narrow
         self.choose.setIcon(icon("mdi6.folder-open-outline"))
@@ -49,8 +52,9 @@ class CheckCard(QFrame):
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(tr("Check of camera and laser"))
         in_column(
-            title, light, self.sentence, self.rows, self.chart, buttons, on=self, margins=(10, 8, 10, 10), spacing=5
-        )
+            title, light, self.sentence, self.rows, self.chart, self.readjust, buttons,
+            on=self, margins=(10, 8, 10, 10), spacing=5,
+        )  # fmt: skip
 
     def _beep(self) -> None:
         QApplication.beep()
@@ -98,6 +102,27 @@ class CheckCard(QFrame):
         cannot = tr("Pictures of the check are being taken.") if taking else check.cannot_check
         enable(self.run, "" if checking else cannot, tip)
 
+        self._refresh_readjust(taking=taking)
+
+    def _refresh_readjust(self, *, taking: bool) -> None:
+        """The button is there where a check says that something has changed."""
+        check = self._check
+        self.readjust.setText(tr("Re-adjust …"))
+        self.readjust.setIcon(icon("mdi6.tune"))
+        self.readjust.setVisible(not taking and check.valid is not None and not check.valid.passed)
+        enable(
+            self.readjust,
+            check.cannot_readjust,
+            tr("Work out by how much laser and camera would have to be moved to fit the check, and decide"),
+        )
+
+    def _ask_to_readjust(self, proposal: ProposedReadjustment) -> None:
+        """Accepted, or left as it is."""
+        text = f"{text_of(proposal.record.note)}\n\n{text_of(proposal.sentence)}"
+        answers = [tr("Accept the re-adjustment"), tr("Reject")]
+        if ask.ask(self, tr("Re-adjust camera and laser?"), text, answers) == 0:
+            self._check.accept_readjustment(proposal)
+
     def show_detail(self, detail: Detail | None) -> None:
         """What is thought of the picture that is seen now."""
         sentence = detail.sentence if isinstance(detail, PlanesDetail) else None
@@ -141,7 +166,7 @@ class CheckCard(QFrame):
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:
             level, said = "bad" if level == "bad" else "warn", [*said, outside]
-        return level, words[level], " ".join(map(text_of, said))
+        return level, words[level], " ".join((*map(text_of, said), *([check.refusal] if check.refusal else [])))
 
     def _show_chart(self, history: RigHistory | None, past: PastCheck | None) -> None:
         """All checks with these calibrations, each scaled to the height of the last one's step."""

@@ -7,12 +7,16 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
+from core.calibrate.results import CameraCalibration, FanCalibration, Readjustment
 from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.results.check_file import write_check
 from core.messages import plain
+from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
+from core.pipeline.steps.readjust_step import ProposedReadjustment
+from core.pipeline.steps.workspace import Calibration
 from core.scan.preview.preflight import Check
 from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
@@ -220,7 +224,7 @@ def test_the_scan_is_told_what_the_check_said(chosen, measuring, qtbot):
 def with_history(page, measuring, qtbot, look, before):
     """The check is made; the rig has so many checks before it."""
     quick = cast(HandLane, page.presenter.bench.quick)
-    quick.answers[jobs.CHECK_HISTORY] = lambda project: chart(look, before)
+    quick.answers[jobs.CHECK_HISTORY] = lambda folder, project: chart(look, before)
     measuring.finish(look)
     qtbot.waitUntil(lambda: page.presenter.check.past is not None)
     return shown(page, qtbot, CheckStage.CHECKED)
@@ -266,3 +270,63 @@ def test_with_the_recording_of_a_set_comes_the_check_of_its_day(page, scan_folde
     p.check.cancel()
     p.model.undo_stack.undo()
     assert p.check.folder is None and p.folder == scan_folder
+
+
+# ---- re-adjustment
+
+
+def proposal() -> ProposedReadjustment:
+    """The picture has drifted by 2 px."""
+    record = Readjustment(
+        "cam-fan", TAKEN, "0123456789ab", {}, 3, np.array([0, 0, 0, 0, 0, 0, 2.0, 1.2, 0]), np.full(9, 0.01),
+        np.ones(4), 1e-9, 0.4, np.zeros((1, 19)), ("readjusted",),
+    )  # fmt: skip
+    plane = LightPlane(np.array([0, 0, 0.002]))
+    fan = FanCalibration(Fan((plane,)), Fan((plane,)), (0.0,), (), (), 0.0, None, None, (), readjusted=record)
+    camera = Camera((64, 48), np.array([[50.0, 0, 32], [0, 50, 24], [0, 0, 1]]), np.zeros(5))
+    known = CameraCalibration(camera, np.zeros((10, 10)), (), 0.1, 0.1, 1.0, 0.5, 0.01)
+    return ProposedReadjustment(Calibration(known, fan), (0.9, 0.03), (0.4, 0.01), 50.0, 0.323, 0.026)
+
+
+def failed_check(page, measuring, qtbot):
+    measuring.held.add(jobs.PROPOSE_READJUSTMENT)
+    measuring.finish(check(1e-9, 1.5))
+    return shown(page, qtbot, CheckStage.CHECKED)
+
+
+def test_a_rig_that_passes_is_offered_no_readjustment(chosen, measuring, qtbot):
+    measuring.finish(check())
+    assert shown(chosen, qtbot, CheckStage.CHECKED).readjust.isHidden()
+
+
+@pytest.mark.parametrize("answer", [0, 1], ids=["accepted", "rejected"])
+def test_a_readjustment_is_explained_and_then_decided_and_undoable(chosen, measuring, qtbot, monkeypatch, answer):
+    card, asked = failed_check(chosen, measuring, qtbot), []
+    model = chosen.presenter.model
+    before = model.project.accepted
+    quick = cast(HandLane, chosen.presenter.bench.quick)
+    quick.answers[jobs.ACCEPT_READJUSTMENT] = lambda *_: "fan-adjusted"
+    monkeypatch.setattr(ask, "ask", lambda parent, title, text, answers: (asked.append(text), answer)[1])
+    assert card.readjust.isVisible() and card.readjust.isEnabled()
+    qtbot.mouseClick(card.readjust, LEFT)
+    chosen.refresh()
+    assert not card.readjust.isEnabled()
+    measuring.finish(proposal())
+    qtbot.waitUntil(lambda: not quick.busy)
+    (text,) = asked
+    assert "picture by 2.33 px" in text and "0.03 px in place of 0.90 px" in text and "+0.323 mm larger" in text
+    if answer:
+        assert model.project.accepted == before
+        return
+    assert model.project.accepted == replace(before, fan="fan-adjusted")
+    shown(chosen, qtbot, CheckStage.OUTDATED)
+    model.undo_stack.undo()
+    assert model.project.accepted == before
+    shown(chosen, qtbot, CheckStage.CHECKED)
+
+
+def test_why_nothing_is_readjusted_is_said_on_the_card(chosen, measuring, qtbot):
+    card = failed_check(chosen, measuring, qtbot)
+    qtbot.mouseClick(card.readjust, LEFT)
+    measuring.fail(InputError("nothing was re-adjusted: the target moved"))
+    qtbot.waitUntil(lambda: "the target moved" in card.sentence.text())
