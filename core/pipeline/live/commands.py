@@ -103,6 +103,11 @@ class Resume:
 
 
 @dataclass(frozen=True, slots=True)
+class Mark:
+    """Mark the newest frame that was recorded, to be found again."""
+
+
+@dataclass(frozen=True, slots=True)
 class Stop:
     """Finish: what has been recorded is complete."""
 
@@ -121,4 +126,4 @@ class Discard:
     name: str
 
 
-Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Stop | Configure | Discard
+Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Mark | Stop | Configure | Discard

@@ -11,9 +11,10 @@ import numpy as np
 
 from core.acquire.source import Frame, Lasers, Picture
 from core.errors import InputError
+from core.files.recording.marks import mark_frame
 from core.messages import Message, label
 from core.pipeline.live.checks import ScanChecks
-from core.pipeline.live.commands import Command, Configure, Pause, Resume, TakeReference
+from core.pipeline.live.commands import Command, Configure, Mark, Pause, Resume, TakeReference
 from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
 from core.pipeline.live.preview import PreviewedFrame, PreviewFailed, ReferenceMismatch, ScanPreviewer
@@ -76,7 +77,7 @@ class LiveScan:
         self._self_switching = False
         self._looking = self._forced = False
         self._before: Picture | None = None
-        self._number = 0
+        self._number, self._newest = 0, ""
         self._preview: FramePreview | None = None
         self._coverage: CoverageMap | None = None
         self._moved = 0
@@ -161,7 +162,7 @@ class LiveScan:
         )
 
     def tell(self, command: Command) -> None:
-        """TakeReference, Pause and Resume; and that the source has been told other settings."""
+        """TakeReference, Pause, Resume and Mark; and that the source has been told other settings."""
         match command:
             case Configure():
                 self._checks.configured()
@@ -180,6 +181,8 @@ class LiveScan:
                 self._stage = "scanning"
             case Pause() if self._stage == "scanning":
                 self._stage = "paused"
+            case Mark() if self._newest:
+                self._mark(self._newest)
 
     def finish(self) -> None:
         """Have all frames on the disk, say how many still wait, and count what is there."""
@@ -214,8 +217,16 @@ class LiveScan:
             )  # fmt: skip
             return
         self._context.worker.start(self._previewer.look, self._number, name, frame)
-        self._number += 1
+        self._number, self._newest = self._number + 1, name
         self._context.recorded += 1
+
+    def _mark(self, name: str) -> None:
+        try:
+            mark_frame(self._context.request.folder, f"{name}{self._context.request.ending}")
+        except InputError as error:  # no reason to end a recording
+            self._context.notice(error.message)
+            return
+        self._context.notice(Message("live.marked", "{name} is marked.", name=name))
 
     def _ask_for_reference(self) -> None:
         fan_alone = Message(

@@ -9,6 +9,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
 from core.files.recording.features_file import write_poses
+from core.files.recording.marks import marked_frames
 from core.files.recording.options import Options
 from core.files.recording.recording_log import read_log
 from core.files.recording.rig import Rig
@@ -16,7 +17,7 @@ from core.image.targets import BlackSquare, Checkerboard
 from core.pipeline.live import checks as live_checks
 from core.pipeline.live import preview as live_preview
 from core.pipeline.live import session as live
-from core.pipeline.live.commands import Configure, Pause, Resume, Stop, Switch, TakeReference
+from core.pipeline.live.commands import Configure, Mark, Pause, Resume, Stop, Switch, TakeReference
 from core.pipeline.live.events import (
     LiveAdvice,
     LiveAnswered,
@@ -253,6 +254,37 @@ def test_a_pause_records_nothing_and_shows_on(monkeypatch, tmp_path, stage):
     assert len(paused) > 5
     assert len({view.recorded for view in paused}) == 1
     assert ended.recorded == paused[-1].recorded
+
+
+def test_a_mark_is_kept_beside_the_frame_that_is_recorded_then(monkeypatch, tmp_path, stage):
+    told = []
+
+    def hand(event):
+        if isinstance(event, LiveView) and event.recorded >= 3 and not told:
+            told.append(event.recorded)
+            return Mark()
+        return Stop() if isinstance(event, LiveNotice) and event.sentence.code == "live.marked" else None
+
+    scan(monkeypatch, tmp_path, stage, swept(stage, 10**6, pace_s=0.005), Window(hand))
+    (marked,) = marked_frames(tmp_path / "scan")
+    assert int(marked.removeprefix("frame").removesuffix(".png")) >= told[0] - 1
+    assert marked in names(tmp_path)
+
+
+def test_a_mark_that_cannot_be_written_ends_no_recording(monkeypatch, tmp_path, stage):
+    pressed = []
+
+    def hand(event):
+        if isinstance(event, LiveView) and event.recorded >= 3 and not pressed:
+            pressed.append(event.recorded)
+            (tmp_path / "scan" / "marks.csv").mkdir()
+            return Mark()
+        return Stop() if isinstance(event, LiveView) and event.recorded >= 6 else None
+
+    window = Window(hand)
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 10**6, pace_s=0.005), window)
+    assert ended.recorded >= 6
+    assert any("marks.csv" in str(notice.sentence) for notice in window.all(LiveNotice))
 
 
 def test_resume_goes_on_counting_names(monkeypatch, tmp_path, stage):

@@ -18,7 +18,18 @@ from core.files.results.check_file import InterimCheck
 from core.image.targets.target_view import TargetView
 from core.messages import plain
 from core.model import Camera, Fan
-from core.pipeline.live.commands import Auto, Capture, Command, Configure, Discard, LiveRequest, Pause, Resume, Stop
+from core.pipeline.live.commands import (
+    Auto,
+    Capture,
+    Command,
+    Configure,
+    Discard,
+    LiveRequest,
+    Mark,
+    Pause,
+    Resume,
+    Stop,
+)
 from core.pipeline.live.events import (
     LiveAdvice,
     LiveAnswered,
@@ -323,6 +334,11 @@ class LivePresenter(QObject):
             self.paused = on
             self._send(Pause() if on else Resume())
             self.changed.emit()
+
+    def mark(self) -> None:
+        """Mark the frame that is recorded now."""
+        if self.live and not self.paused:
+            self._send(Mark())
 
     def capture(self) -> None:
         """Take this picture now."""

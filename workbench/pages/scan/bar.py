@@ -31,7 +31,7 @@ class FrameBar(QWidget):
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.back, self.on = QToolButton(), QToolButton()
+        self.back, self.on, self.next_mark = QToolButton(), QToolButton(), QToolButton()
         self.slider, self.used, self.said = QSlider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), muted()
         self.stages: dict[View, QPushButton] = {}
         self._group = QButtonGroup(self)
@@ -39,6 +39,7 @@ class FrameBar(QWidget):
         self.slider.valueChanged.connect(presenter.scrub.go_to)
         self.back.clicked.connect(lambda: presenter.scrub.step(-1))
         self.on.clicked.connect(lambda: presenter.scrub.step(1))
+        self.next_mark.clicked.connect(lambda: presenter.go_to_next_mark())
         self.used.clicked.connect(lambda on: presenter.set_used([presenter.scrub.current], on))
 
     def refresh(self) -> None:
@@ -56,7 +57,9 @@ class FrameBar(QWidget):
         if scrub.current:
             stages = scrub.stages if scrub.up_to_date else None
             record = p.record_of(scrub.current)
-            self.said.setText(words.frame_sentence(scrub.index, len(names), short(scrub.current), record, stages))
+            said = words.frame_sentence(scrub.index, len(names), short(scrub.current), record, stages)
+            self.said.setText(tr("{frame} Marked.", frame=said) if scrub.current in p.work.marked else said)
+        self.next_mark.setVisible(bool(p.work.marked))
         measured = p.record_of(scrub.current) is not None
         points = self.stages[View.POINTS]
         points.setEnabled(measured)
@@ -88,6 +91,7 @@ class FrameBar(QWidget):
         for tool, symbol, tip in (
             (self.back, "mdi6.chevron-left", tr("The frame before (←)")),
             (self.on, "mdi6.chevron-right", tr("The next frame (→)")),
+            (self.next_mark, "mdi6.flag-outline", tr("The next frame that was marked")),
         ):
             tool.setIcon(icon(symbol))
             tool.setAutoRaise(True)
@@ -100,7 +104,7 @@ class FrameBar(QWidget):
         self.used.setToolTip(tr("Whether this frame counts; take the tick away to leave it out, then measure again"))
         along = QHBoxLayout()
         along.setSpacing(4)
-        for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.used, 0)):
+        for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.next_mark, 0), (self.used, 0)):
             along.addWidget(widget, stretch)
         column = in_column(row, along, on=self, margins=(0, 4, 0, 0), spacing=4)
         self.said.setFixedHeight(2 * self.said.fontMetrics().lineSpacing())

@@ -230,7 +230,7 @@ class ScanPage(StepPage):
             record = records.get(name)
             sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
             text = mm(sigma) if sigma is not None else ""
-            said = words.frame_line(record, seen.get(name))
+            said = words.frame_line(record, seen.get(name), marked=name in p.work.marked)
             picture = p.thumbnails.pictures.get(name)
             rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, picture, short(name)))
         shown = [(row.name, row.text, row.used, row.reason, row.thumbnail is None) for row in rows]

@@ -163,6 +163,13 @@ class ScanPresenter(StepPresenter):
 
     # ---- frames
 
+    def go_to_next_mark(self) -> None:
+        """Look at the next frame that was marked; after the last one, at the first."""
+        names, here = self.work.names, self.scrub.index
+        marked = [place for place, name in enumerate(names) if name in self.work.marked]
+        if marked:
+            self.scrub.go_to(next((place for place in marked if place > here), marked[0]))
+
     def record_of(self, name: str) -> FrameRecord | None:
         """What became of a frame, if the recording has been measured."""
         return self.work.records().get(name)

@@ -53,8 +53,12 @@ def reason_rows(look: ShownScan | None) -> list[ValueRow]:
     ]
 
 
-def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None) -> str:
+def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None, *, marked: bool = False) -> str:
     """The second line of a frame in the list; `seen`: points in the preview, and why there are none."""
+    return " · ".join(filter(None, (tr("marked") if marked else "", _what_became(record, seen))))
+
+
+def _what_became(record: FrameRecord | None, seen: tuple[int, Message | None] | None) -> str:
     if record is not None:
         if not record.used:
             return text_of(record.reason or NO_REASON)

@@ -21,8 +21,9 @@ from workbench.work import jobs
 class ScanWork(QObject):
     """Lists the frames, reads the accepted calibrations and the result.
 
-    `frames` and `reference` are of the project as it is; None while they are being listed. `camera` and `fan` are the
-    accepted ones, once `calibrations_read`. `look` is the scan among the results, whatever it was measured from.
+    `frames` and `reference` are of the project as it is; None while they are being listed. `marked` are the
+    frames that somebody marked, by their names in a set. `camera` and `fan` are the accepted ones, once
+    `calibrations_read`. `look` is the scan among the results, whatever it was measured from.
     """
 
     changed = Signal()
@@ -35,6 +36,7 @@ class ScanWork(QObject):
     def _forget(self) -> None:
         self.reference: Path | None = None
         self.frames: tuple[Path, ...] | None = None
+        self.marked: frozenset[str] = frozenset()
         self.no_frames = ""
         self.camera: Camera | None = None
         self.fan: Fan | None = None
@@ -78,6 +80,7 @@ class ScanWork(QObject):
         if wanted == self._listed and wanted:
             return  # on its way
         self._listed, self.frames, self.reference, self.no_frames = wanted, None, None, ""
+        self.marked = frozenset()
         if folder is None:
             self.frames = ()
             return
@@ -92,6 +95,12 @@ class ScanWork(QObject):
                 self.frames, self.no_frames = (), text_of(problem)
                 self.changed.emit()
 
+        def read(marked: frozenset[str]) -> None:
+            if self._listed == wanted:
+                self.marked = frozenset(f"{PART}{name}" for name in marked)
+                self.changed.emit()
+
+        self._bench.run_quick(self, jobs.MARKED_FRAMES, folder, label=tr("Reading the marks"), on_done=read, offers={})
         self._bench.run_quick(
             self,
             jobs.LIST_FRAMES,

@@ -27,6 +27,8 @@ from workbench.views.layouts import in_column, in_row
 
 GO_ON, PAUSE = QKeySequence(Qt.Key.Key_PageDown), QKeySequence(Qt.Key.Key_PageUp)
 """The two keys of presenters and of most foot switches; they mean something only while a source is live."""
+MARK = (QKeySequence(Qt.Key.Key_B), QKeySequence(Qt.Key.Key_Period))
+"""A presenter's third key, which darkens a slide, sends one of these."""
 
 
 class LivePanel(QWidget):
@@ -40,12 +42,13 @@ class LivePanel(QWidget):
         self.live = live
         self._refreshing = Refresh(self.refresh, self)
         self.form = SourceForm(live)
-        self.start, self.pause, self.take = QPushButton(), QPushButton(), QPushButton()
+        self.start, self.pause, self.take, self.mark = QPushButton(), QPushButton(), QPushButton(), QPushButton()
         self.auto = QCheckBox(tr("Take pictures automatically"))
         self.add = QCheckBox(tr("Add to the pictures that are there"))
         self.sound = QCheckBox(tr("Sound"))
         self.state, self.counts = QLabel(), QLabel()
         self._go_on, self._pause_key = QShortcut(GO_ON, self), QShortcut(PAUSE, self)
+        self._mark_keys = [QShortcut(key, self) for key in MARK]
         self._dress()
         self._lay_out()
         self._connect()
@@ -76,11 +79,14 @@ class LivePanel(QWidget):
         for button, does in (
             (self.pause, tr("Record nothing for a while (Page Up)")),
             (self.take, tr("Take this picture now, whatever is thought of it (Ctrl+Space, Page Down)")),
+            (self.mark, tr("Mark this frame, to find it again among the others (B)")),
         ):
             button.setEnabled(going)
             button.setToolTip(why_not or does)
         for key in (self._go_on, self._pause_key):
             key.setEnabled(going)
+        for key in self._mark_keys:
+            key.setEnabled(going and live.step == "scan")
         self.sound.setChecked(live.sound)
         self.auto.blockSignals(True)
         self.auto.setChecked(live.auto)
@@ -115,11 +121,14 @@ class LivePanel(QWidget):
     def _dress(self) -> None:
         self.take.setText(tr("Take picture"))
         self.take.setIcon(icon("mdi6.camera-iris"))
+        self.mark.setText(tr("Mark"))
+        self.mark.setIcon(icon("mdi6.flag-outline"))
         self.auto.setToolTip(tr("Takes a picture when it is still, sharp, and unlike those taken before"))
         self.add.setToolTip(tr("Keep the pictures in use and add the new ones; else the new ones replace them"))
         self.sound.setToolTip(tr("One sound says that a picture was taken, two that it was refused"))
         self.auto.setVisible(self.live.step != "scan")
         self.take.setVisible(self.live.step != "scan")
+        self.mark.setVisible(self.live.step == "scan")
         self.state.setObjectName("heading")
         self.counts.setObjectName("muted")
         for label in (self.state, self.counts):
@@ -130,7 +139,7 @@ class LivePanel(QWidget):
         buttons.setContentsMargins(0, 0, 0, 0)
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
-        buttons.addWidget(self.take, 1, 0, 1, 2)
+        buttons.addWidget(self.mark if self.live.step == "scan" else self.take, 1, 0, 1, 2)
         kept = in_row((self.add, 1), self.sound, spacing=8)
         in_column(self.form, buttons, self.auto, kept, self.state, self.counts, on=self, spacing=6)
 
@@ -139,6 +148,9 @@ class LivePanel(QWidget):
         self.start.clicked.connect(lambda: live.toggle())
         self.pause.clicked.connect(lambda: live.pause(not live.paused))
         self.take.clicked.connect(lambda: live.capture())
+        self.mark.clicked.connect(lambda: live.mark())
+        for key in self._mark_keys:
+            key.activated.connect(lambda: live.mark())
         self.auto.toggled.connect(live.set_auto)
         self.sound.clicked.connect(lambda on: live.set_sound(on))
         live.sounded.connect(self._beep)

@@ -10,9 +10,11 @@ from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, new_project
 from core.files.project.keys import finished
+from core.files.recording.marks import mark_frame
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
+from workbench.pages.scan import words
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.stage import Stage
 from workbench.step_state import State
@@ -53,6 +55,21 @@ def measured(recorded, measuring, quick, qtbot):
 
 def accept(presenter, camera="", fan=""):
     presenter.model.edit("x", replace(presenter.project, accepted=Accepted(camera, fan)))
+
+
+def test_marked_frames_are_found_again_one_after_the_other(presenter, scan_folder, quick, qtbot):
+    names = sorted(path.name for path in scan_folder.glob("frame*.png"))
+    for name in (names[1], names[-1]):
+        mark_frame(scan_folder, name)
+    presenter.use_folder(scan_folder)
+    qtbot.waitUntil(lambda: bool(presenter.work.frames) and bool(presenter.work.marked) and not quick.busy)
+    presenter.scrub.go_to(0)
+    looked_at = []
+    for _ in range(3):
+        presenter.go_to_next_mark()
+        looked_at.append(presenter.scrub.current)
+    assert looked_at == [f"scan/{names[1]}", f"scan/{names[-1]}", f"scan/{names[1]}"]
+    assert words.frame_line(None, None, marked=True) == "marked"
 
 
 # ---- what is missing

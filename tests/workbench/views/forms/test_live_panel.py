@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication, QLabel
 from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
 from core.files.project.data import new_project
 from core.messages import Message, plain
-from core.pipeline.live.commands import Auto, Capture, Pause, Resume, TakeReference
+from core.pipeline.live.commands import Auto, Capture, Mark, Pause, Resume, TakeReference
 from core.pipeline.live.events import (
     LiveAdvice,
     LiveAsk,
@@ -110,6 +110,25 @@ def test_the_two_keys_of_a_presenter_take_and_pause_while_it_is_live(panel, lane
     lane.current.reported.emit(LiveAsk(Message("t.leave", "Leave it."), "Continue", Resume()))
     qtbot.keyClick(panel, Qt.Key.Key_PageDown)
     assert [type(one) for one in lane.sent] == [Capture, Pause, Resume]
+
+
+def test_a_presenter_s_third_key_marks_the_frame_of_a_scan(live, lane, qtbot):
+    panel = LivePanel(LivePresenter(live.bench, "scan"))
+    qtbot.addWidget(panel)
+    panel.show()
+    panel.activateWindow()
+    qtbot.waitUntil(panel.isActiveWindow)
+    qtbot.keyClick(panel, Qt.Key.Key_B)
+    assert not panel.mark.isEnabled() and panel.mark.isVisible() and not panel.take.isVisible()
+    qtbot.mouseClick(panel.start, LEFT)
+    open_source(lane)
+    qtbot.keyClick(panel, Qt.Key.Key_B)
+    qtbot.keyClick(panel, Qt.Key.Key_Period)
+    qtbot.mouseClick(panel.mark, LEFT)
+    assert [type(one) for one in lane.sent] == [Mark] * 3
+    panel.live.pause(True)
+    qtbot.keyClick(panel, Qt.Key.Key_B)
+    assert type(lane.sent[-1]) is Pause, "nothing is recorded that could be marked"
 
 
 def test_taken_and_refused_are_heard_unless_the_sound_is_off(panel, live, lane, qtbot, monkeypatch):
