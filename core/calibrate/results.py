@@ -231,3 +231,50 @@ class FanCalibration:
         if self.camera is None or self.camera_covariance is None:
             return given
         return replace(given, camera=self.camera, covariance=self.camera_covariance)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ProposedReadjustment:
+    """What a re-adjustment would make of camera and fan, and what that does.
+
+    Parameters
+    ----------
+    camera, fan
+        As they would be.
+    offset_px, offset_mm
+        RMS distances of the stripes from where they are expected, before and after.
+    step_mm, correction_mm, u_mm
+        A step of this height would be measured larger by `correction_mm`, and what camera and fan leave uncertain of it
+        (standard uncertainty).
+    """
+
+    camera: CameraCalibration
+    fan: FanCalibration
+    offset_px: tuple[float, float]
+    offset_mm: tuple[float, float]
+    step_mm: float
+    correction_mm: float
+    u_mm: float
+
+    @property
+    def record(self) -> Readjustment:
+        """What would be done."""
+        assert self.fan.readjusted is not None
+        return self.fan.readjusted
+
+    @property
+    def sentence(self) -> Message:
+        """What it would change."""
+        return Message(
+            "readjust.proposed",
+            "The stripes would be off by {after_px:.2f} px in place of {before_px:.2f} px ({after_mm:.3f} mm in place "
+            "of {before_mm:.3f} mm), and a step of {step_mm:g} mm measured {correction_mm:+.3f} mm larger, ± "
+            "{U_mm:.3f} mm by camera and fan (k = 2).",
+            before_px=self.offset_px[0],
+            after_px=self.offset_px[1],
+            before_mm=self.offset_mm[0],
+            after_mm=self.offset_mm[1],
+            step_mm=self.step_mm,
+            correction_mm=self.correction_mm,
+            U_mm=2 * self.u_mm,
+        )

@@ -12,16 +12,22 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration, Readjustment
+from core.calibrate.results import (
+    CAMERA_PARAMETERS,
+    CameraCalibration,
+    FanCalibration,
+    ProposedReadjustment,
+    Readjustment,
+)
 from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
+from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
-from core.pipeline.steps.readjust_step import ProposedReadjustment
 from core.pipeline.steps.validity import date_of
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
@@ -200,7 +206,7 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
     record = done.record
     return {
         "of": record.of,
-        "id": done.calibration.id,
+        "id": fan_id(done.fan.fan),
         "poses": record.poses,
         "change": record.change.tolist(),
         "sd": record.sd.tolist(),

@@ -118,7 +118,7 @@ def _readjusted(
 ) -> FanCalibration:
     """The fan re-adjusted by the check, as rig.toml wants it; as it was where that is refused, and why is said."""
     try:
-        return readjust_step(work, options, progress, check).calibration.fan
+        return readjust_step(work, options, progress, check).fan
     except InputError as error:
         with work.step(READJUST) as log:
             log.notes.append(error.message)

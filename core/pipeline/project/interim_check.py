@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
 from core.files.project.calibration_store import (
     keep_fan,
@@ -20,7 +21,7 @@ from core.messages import Message
 from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set
 from core.pipeline.steps.check_step import check_step
-from core.pipeline.steps.readjust_step import ProposedReadjustment, propose_readjustment
+from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace
 from core.progress import Progress, silent
@@ -87,7 +88,7 @@ def accept_readjustment(
     before = read_stored(folder, "fan", project.accepted.fan)
     return keep_fan(
         folder,
-        proposed.calibration.fan,
+        proposed.fan,
         camera.camera,
         read_stored_poses(folder, project.accepted.fan),
         {**({} if before is None else before.settings), "readjusted_from": project.accepted.fan},

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -11,7 +10,7 @@ from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.readjustment import CheckPictures, nothing_changed, readjusted
-from core.calibrate.results import Readjustment
+from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.reading import file_hash, read_bytes
@@ -25,52 +24,6 @@ from core.model.arrays import Array
 from core.pipeline.steps.check_step import STEP_MM, check_paths, fresh_check, judged, measure_check
 from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
 from core.progress import Progress, silent
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class ProposedReadjustment:
-    """What a re-adjustment would make of camera and fan, and what that does.
-
-    Parameters
-    ----------
-    calibration
-        Camera and fan as they would be.
-    offset_px, offset_mm
-        RMS distances of the stripes from where they are expected, before and after.
-    step_mm, correction_mm, u_mm
-        A step of this height would be measured larger by `correction_mm`, and what camera and fan leave uncertain of it
-        (standard uncertainty).
-    """
-
-    calibration: Calibration
-    offset_px: tuple[float, float]
-    offset_mm: tuple[float, float]
-    step_mm: float
-    correction_mm: float
-    u_mm: float
-
-    @property
-    def record(self) -> Readjustment:
-        """What would be done."""
-        assert self.calibration.fan.readjusted is not None
-        return self.calibration.fan.readjusted
-
-    @property
-    def sentence(self) -> Message:
-        """What it would change."""
-        return Message(
-            "readjust.proposed",
-            "The stripes would be off by {after_px:.2f} px in place of {before_px:.2f} px ({after_mm:.3f} mm in place "
-            "of {before_mm:.3f} mm), and a step of {step_mm:g} mm measured {correction_mm:+.3f} mm larger, ± "
-            "{U_mm:.3f} mm by camera and fan (k = 2).",
-            before_px=self.offset_px[0],
-            after_px=self.offset_px[1],
-            before_mm=self.offset_mm[0],
-            after_mm=self.offset_mm[1],
-            step_mm=self.step_mm,
-            correction_mm=self.correction_mm,
-            U_mm=2 * self.u_mm,
-        )
 
 
 def propose_readjustment(
@@ -118,7 +71,8 @@ def propose_readjustment(
     step_mm = nominal or STEP_MM
     here = step_errors(again, there, moved.fan.fan, (*left, _as_it_was(calibration)), step_mm)
     return ProposedReadjustment(
-        moved,
+        moved.camera,
+        moved.fan,
         (_rms([pose.offset_px for pose in checked]), _rms([pose.offset_px for pose in again])),
         (_rms([pose.offset_mm for pose in checked]), _rms([pose.offset_mm for pose in again])),
         step_mm,
@@ -146,7 +100,7 @@ def readjust_step(
     with work.step(READJUST) as log:
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))
-        write_fan(log.path("planes"), proposed.calibration.fan, read_camera(work.path("camera")).camera)
+        write_fan(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)
         log.notes.extend((proposed.record.note, proposed.sentence))
     return proposed
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 from PySide6.QtCore import QObject, Signal
 
+from core.calibrate.results import ProposedReadjustment
 from core.files.project.data import Project
 from core.files.project.keys import changed, finished, rests_on
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
-from core.pipeline.steps.readjust_step import ProposedReadjustment
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.sources import folder_of, put_source

@@ -8,10 +8,10 @@ from pathlib import Path
 from PySide6.QtCore import QEvent
 from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 
+from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.pipeline.live.events import Detail, PlanesDetail
-from core.pipeline.steps.readjust_step import ProposedReadjustment
 from workbench.language import number, text_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck

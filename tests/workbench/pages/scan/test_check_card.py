@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
-from core.calibrate.results import CameraCalibration, FanCalibration, Readjustment
+from core.calibrate.results import CameraCalibration, FanCalibration, ProposedReadjustment, Readjustment
 from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.results.check_file import write_check
@@ -15,8 +15,6 @@ from core.messages import plain
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
-from core.pipeline.steps.readjust_step import ProposedReadjustment
-from core.pipeline.steps.workspace import Calibration
 from core.scan.preview.preflight import Check
 from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
@@ -285,7 +283,7 @@ def proposal() -> ProposedReadjustment:
     fan = FanCalibration(Fan((plane,)), Fan((plane,)), (0.0,), (), (), 0.0, None, None, (), readjusted=record)
     camera = Camera((64, 48), np.array([[50.0, 0, 32], [0, 50, 24], [0, 0, 1]]), np.zeros(5))
     known = CameraCalibration(camera, np.zeros((10, 10)), (), 0.1, 0.1, 1.0, 0.5, 0.01)
-    return ProposedReadjustment(Calibration(known, fan), (0.9, 0.03), (0.4, 0.01), 50.0, 0.323, 0.026)
+    return ProposedReadjustment(known, fan, (0.9, 0.03), (0.4, 0.01), 50.0, 0.323, 0.026)
 
 
 def failed_check(page, measuring, qtbot):
