@@ -19,6 +19,7 @@ from core.progress import Progress, StepProgress, silent
 from core.scan.fan_watch import LEAST_FRAMES, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
+from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.method import Method
 from core.scan.network.datum import Datum, datum_of
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
@@ -76,6 +77,9 @@ def reconstruct(
     progress("network", 0, 3)
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
+    too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
+    if not np.any(crossings.with_fan) and too_bright is not None:
+        raise InputError(too_bright, where="scan", todo=ADVICE)
     if not np.any(crossings.with_fan):
         raise InputError(
             Message(
@@ -120,7 +124,10 @@ def reconstruct(
         crossing_weights=solved.weights,
         fan_lines=lines,
         scale=sweeps.scale,
-        notes=_ordered(features.notes, solved) + _unsure(found, cloud, solved, options) + _fan_notes(lines),
+        notes=_ordered(features.notes, solved)
+        + (() if too_bright is None else (too_bright,))
+        + _unsure(found, cloud, solved, options)
+        + _fan_notes(lines),
         datum=solved.datum,
         speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == Method.NETWORK else None,
         crossing_reasons=solved.reasons,

@@ -89,7 +89,7 @@ def _measured(scenario: Scenario, place: Path, folder: Path) -> Figures:
     try:
         calibrated = calibration_in(folder, calibration_of(scenario))
     except InputError as refused:
-        return {"refused": refused.code}
+        return {"refused": refused.code, "told": []}
     simulate_set(scenario, place, calibration_from=calibrated, rig=None)
     out = place.with_suffix(".out")
     shutil.copytree(calibrated.with_suffix(".out"), out)
@@ -98,17 +98,21 @@ def _measured(scenario: Scenario, place: Path, folder: Path) -> Figures:
         scan_step(work)
         gauge_step(work)
     except InputError as refused:
-        return {"refused": refused.code}
+        return {"refused": refused.code, "told": _told(out)}
     gauge = read_gauge(work.path("gauge"), read_cloud(work.path("cloud")).cloud)
-    told = {note.code for notes in read_run(out / "run.json").notes.values() for note in notes}
     return {
         "error": gauge.thickness_mm - scenario.height_mm,
         "U": gauge.U_mm,
         "verdict": str(gauge.verdict),
         "complete": gauge.complete,
-        "told": sorted(told),
+        "told": _told(out),
         "budget": {row.source.code: row.u_mm for row in gauge.budget},
     }
+
+
+def _told(out: Path) -> list[str]:
+    """Codes of the notes of all steps whose results are in the folder `out`."""
+    return sorted({note.code for notes in read_run(out / "run.json").notes.values() for note in notes})
 
 
 def calibration_in(folder: Path, scenario: Scenario) -> Path:
@@ -173,7 +177,7 @@ def row_of(mine: Sequence[HostileCase], results: Mapping[str, Figures]) -> str:
     verdicts = ", ".join(
         sorted({one["verdict"] for one in measured} | {"refused" for one in found if "refused" in one})
     )
-    codes = {code for one in measured for code in named(one)} | {one["refused"] for one in found if "refused" in one}
+    codes = {code for one in found for code in named(one)} | {one["refused"] for one in found if "refused" in one}
     wrong = sum(map(silent, found))
     beyond = sum("error" in one and abs(one["error"]) > one["U"] for one in found)
     result = f"**silent** {wrong} of {len(found)}" if wrong else "told" if beyond or not measured else "held"

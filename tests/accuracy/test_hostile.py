@@ -23,7 +23,7 @@ def test_silent_is_what_is_wrong_beyond_u_and_called_conforming_or_has_no_reason
     assert silent(doubted)
     assert silent({**doubted, "told": ["scan.stability_assumed"]}), "said of every scan"
     assert not silent({**doubted, "told": ["scan.moved"]})
-    assert not silent({"refused": "gauge.no_parallel_faces"})
+    assert not silent({"refused": "gauge.no_parallel_faces", "told": []})
 
 
 def test_a_line_tells_the_worst_of_its_scans():
