@@ -165,7 +165,8 @@ def locate_together(
             Message(
                 "scan.collapsed",
                 "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
-                "hand-held laser more between frames, and cross the fan on object and table.",
+                "hand-held laser more between frames, and cross the fan on object and table. Shiny sides that mirror "
+                "the laser onto the table do this, too: spray them matt.",
             ),
         )
     return LocatedSweeps(
