@@ -24,6 +24,7 @@ from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Command, Message, plain
 from core.model import Camera
+from core.pipeline.steps.target_sizes import with_compared_sizes
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.second_process import SecondProcess, shared_map
@@ -58,6 +59,8 @@ def planes_step(
         poses = measure_poses(work.found, camera, progress, options.plane_stripe, beside)
         calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
         check_agreement(calibration, options.accept_few_poses)
+        calibration, sizes = with_compared_sizes(calibration, work.found, camera)
+        log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
         write_fan(log.path("planes"), calibration, camera)

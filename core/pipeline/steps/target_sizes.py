@@ -1,0 +1,88 @@
+"""Pictures in SET/targets that show camera and plane target at once: do the sizes stated for both agree?"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import cv2
+import numpy as np
+
+from core.calibrate.results import FanCalibration
+from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
+from core.files.pictures import read_picture
+from core.files.reading import file_hash
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.set_listing import pictures_in
+from core.image.targets import TargetNotFound, detect
+from core.image.targets.picture import Picture
+from core.image.targets.target_view import TargetView
+from core.messages import Message
+from core.model import Camera
+from core.pipeline.steps.workspace import check_size
+
+TARGETS = "targets"
+"""The folder of these pictures, taken with the lasers off, the two targets fixed to each other."""
+
+
+def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
+    """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
+
+    Raises
+    ------
+    InputError
+        If a picture is damaged, or of another size than the camera's.
+    """
+    rig = found.rig
+    paths = pictures_in(found.rig_file.parent / TARGETS)
+    if not paths or rig.camera_target == rig.plane_target:
+        return None, ()
+    shown: list[tuple[TargetView, TargetView]] = []
+    notes: list[Message] = []
+    for path in paths:
+        picture = read_picture(path, rig.channel_of("camera"))
+        found.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
+        check_size(path, picture.shape, camera)
+        name = f"{TARGETS}/{path.stem}"
+        try:
+            first = detect(rig.camera_target, picture, name, camera)
+            shown.append((first, detect(rig.plane_target, _without(first, picture), name, camera)))
+        except TargetNotFound as error:
+            notes.append(
+                Message("target.not_both", "{picture} does not show both targets: {reason}.", picture=name,
+                        reason=error.what)
+            )  # fmt: skip
+    return (target_ratio(shown, camera) if shown else None), tuple(notes)
+
+
+def _without(seen: TargetView, picture: Picture) -> Picture:
+    """The picture with a target covered by the grey of its light parts: its squares may look like one dark square."""
+    plane = seen.points[:, :2]
+    steps = np.diff(np.unique(plane[:, 0].round(3)))
+    reach = float(steps.min()) if len(steps) else 0.0
+    (x0, y0), (x1, y1) = plane.min(axis=0) - reach, plane.max(axis=0) + reach
+    homography = cv2.findHomography(plane, seen.uv)[0]
+    corners = np.array([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]])
+    outline = np.round(cv2.perspectiveTransform(corners, homography)).astype(np.int32)
+    inside = cv2.fillPoly(np.zeros(picture.shape, np.uint8), [outline[0]], 1) > 0
+    covered = picture.copy()
+    covered[inside] = np.quantile(picture[inside], 0.9)
+    return covered
+
+
+def with_compared_sizes(
+    fan: FanCalibration, found: RecordingSet, camera: Camera
+) -> tuple[FanCalibration, tuple[Message, ...]]:
+    """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
+
+    Raises
+    ------
+    InputError
+        As `compare_targets`.
+    """
+    ratio, notes = compare_targets(found, camera)
+    if ratio is None:
+        return fan, notes
+    stated = (found.rig.camera_board.size_sd**2 + found.rig.plane_board.size_sd**2) ** 0.5
+    if ratio.p(stated) < P_TOLD and ratio.fit_p >= NOT_FIXED:
+        fan = replace(fan, scale_sd=min(0.1, max(fan.scale_sd, abs(ratio.ratio - 1))))
+    return fan, (*notes, ratio.note(stated))
