@@ -150,11 +150,11 @@ class Readjustment:
 
     @property
     def note(self) -> Message:
-        """What was done, in a sentence."""
+        """What is moved, in a sentence: of what is proposed as of what was accepted."""
         turn, shift, drift, focal = np.split(np.asarray(self.change), [3, 6, 8])
         return Message(
             "fan.readjusted",
-            "Camera and fan were re-adjusted by {poses} poses of a check of {date}: fan turned by {turn_urad:.0f} µrad "
+            "Re-adjustment of camera and fan by {poses} poses of a check of {date}: fan turned by {turn_urad:.0f} µrad "
             "and moved by {shift_um:.0f} µm, picture by {drift_px:.2f} px, focal length by {focal_ppm:+.0f}·10⁻⁶ "
             "(p before {p_before:.1g}, after {p_after:.2g}).",
             poses=self.poses,
