@@ -41,8 +41,8 @@ def checked(days, p=0.4):
     keep_check(ID, replace(PastCheck.of(check(p)), taken_at=NOON - timedelta(days=days), pictures_id=f"{days}"))
 
 
-def doubt(work):
-    told = doubt_of_the_day(work, SimpleNamespace(id=ID))
+def doubt(work, readjusted=None):
+    told = doubt_of_the_day(work, SimpleNamespace(id=ID, fan=SimpleNamespace(readjusted=readjusted)))
     return "" if told is None else told.code
 
 
@@ -60,6 +60,15 @@ def test_a_calibration_is_as_old_as_the_older_of_its_pictures_and_its_run(tmp_pa
     assert doubt(recorded(tmp_path, Validity(calibration_days=30), 1.0, old)) == "validity.calibration_lapsed"
     new = {"camera": NOON, "planes": NOON}
     assert doubt(recorded(tmp_path, Validity(calibration_days=30), 40.0, new)) == "validity.calibration_lapsed"
+
+
+def test_a_readjustment_is_as_good_as_a_check_of_its_day_and_lapses_as_one(tmp_path):
+    def readjusted(days):
+        return SimpleNamespace(taken_at=NOON - timedelta(days=days), pictures_id="check", p_after=0.4)
+
+    work = recorded(tmp_path, Validity(check_days=1))
+    assert doubt(work, readjusted(0.5)) == ""
+    assert doubt(work, readjusted(3)) == "validity.check_lapsed"
 
 
 def test_a_rig_that_was_never_checked_or_not_lately_proves_nothing(tmp_path):
