@@ -26,9 +26,10 @@ _CUTS_FOR_SPECKLE = 3000  # cuts; more tell nothing new of the speckle
 _LARGEST_DISAGREEMENT_PX = 0.03
 """Between Steger's points and the likelihood's, on the whole: beyond, the section is no Gaussian (a halo of 8 % shows
 at once) and all points stay Steger's. Held by tests/image/stripes/likelihood/test_refinement.py (no Gaussian)."""
-_CHANCE = 1e-3
-"""Probability above which that is chance. On pictures of one speckled stripe of 350 px one in four was taken for skewed
-without it, and its points were twice as far off as they could be."""
+_CHANCE, _MOST_BY_CHANCE_PX = 1e-3, 0.1
+"""Probability above which that is chance, and how far chance goes. On pictures of one speckled stripe of 350 px one in
+four was taken for skewed without it, by some hundredths of a pixel, and its points were twice as far off as they could
+be. On photographs, 0.14 to 0.6 px, one of the two estimates is wrong, however few the points that say so."""
 _UNUSABLE_WEIGHT = 0.02
 """Of saturated points in the smooth curve, 1 for the others: enough to hold it where all are saturated. Set by rendered
 plates, where a curve without them swung up to 4 px astray; tests/image/test_rendered_lines.py holds it."""
@@ -135,11 +136,13 @@ def _disagreement_px(differences: list[tuple[int, float, float]], correlation: f
     0 where chance alone does: on a short speckled stripe the two are a few hundredths of a pixel apart.
     """
     found = [(n, mean**2, variance * correlation / n) for n, mean, variance in differences if n]
-    number = sum(n for n, _, _ in found)
-    in_errors = sum(square / max(error, 1e-12) for _, square, error in found)
-    if not found or chdtrc(len(found), in_errors) > _CHANCE:
+    if not found:
         return 0.0
-    return float(max(0.0, sum(n * (square - error) for n, square, error in found) / number) ** 0.5)
+    number = sum(n for n, _, _ in found)
+    apart = float(max(0.0, sum(n * (square - error) for n, square, error in found) / number) ** 0.5)
+    in_errors = sum(square / max(error, 1e-12) for _, square, error in found)
+    by_chance = apart < _MOST_BY_CHANCE_PX and chdtrc(len(found), in_errors) > _CHANCE
+    return 0.0 if by_chance else apart
 
 
 def _joined(piece: Piece, line: Refined, better: Refined) -> Refined:
