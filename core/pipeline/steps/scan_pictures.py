@@ -25,7 +25,7 @@ from core.scan.features.extraction import (
     extract_lines,
     read_reference,
 )
-from core.scan.features.reference import quantile_reference, sample_indices
+from core.scan.features.reference import notes_on_compression, quantile_reference, sample_indices
 from core.stage_times import StageTimes
 
 FEWEST_FOR_QUANTILE = 3
@@ -85,7 +85,7 @@ def look_at_scan(
     show = watching(reference) if watching else None
     lines = extract_lines(reference, frames, total, looking, progress, show, times)
     averaged = lines.averaged(progress, times)
-    notes = (*channel.notes("scan"), *note)
+    notes = (*channel.notes("scan"), *note, *notes_on_compression(reference.noise))
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
 
