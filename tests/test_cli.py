@@ -9,9 +9,11 @@ import sys
 
 import numpy as np
 import pytest
+import typer
 from pypdf import PdfReader
 
 from core import __version__
+from core.cli.app import app
 from core.files.results.ply_format import parse_ply
 from core.report.wording import with_uncertainty
 from tests.simulated import CUT, SMALL, copy_of, trisect
@@ -257,3 +259,12 @@ def test_a_width_without_a_contrast_is_refused(simulated, tmp_path):
     said = trisect("scan", simulated, "--out", tmp_path, "--stripe-width", 4)
     assert said.code == 2
     assert "--contrast" in said.sentence
+
+
+def test_no_word_of_a_help_is_taken_for_markup():
+    """What stands in brackets would be missing on the screen."""
+    commands = {"": typer.main.get_command(app), **typer.main.get_command(app).commands}
+    helps = [p.help for command in commands.values() for p in command.params if getattr(p, "help", None)]
+    helps += [command.help for command in commands.values() if command.help]
+    assert len(helps) > 100
+    assert not [one for one in helps if re.search(r"(?<!\\)\[[a-z/]", one)]

@@ -88,7 +88,7 @@ def simulate(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help="A TOML file with tables [lens], [sensor], [room], [plates], [warming]: what else real rigs do.",
+            help=r"A TOML file with tables \[lens], \[sensor], \[room], \[plates], \[warming]: what else real rigs do.",
         ),
     ] = None,
     mirror: Annotated[
