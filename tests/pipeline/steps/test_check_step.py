@@ -189,7 +189,7 @@ def test_a_readjustment_is_told_by_the_command_line(turned, tmp_path):
     out = work_in(turned, tmp_path).out
     said = trisect("check", turned / "set", "--out", out, "--adjust")
     assert said.code == 0, said.err
-    assert "fan turned" in said.out and "re-adjusted by 2 poses" in said.out
+    assert "fan turned" in said.out and "Re-adjustment of camera and fan by 2 poses" in said.out
     said = trisect("check", turned / "set", "--out", out, "--undo", "--json")
     assert said.code == 0, said.err
 
