@@ -19,7 +19,7 @@ from core.inspect.features.measured import FeatureResult
 from core.inspect.profile import Profile
 from core.inspect.shown.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
-from core.pipeline.project.verify import note_results
+from core.pipeline.project.verify import noting_results
 from core.pipeline.steps.gauge_step import in_a_project
 from core.pipeline.steps.inspect_step import InspectedScan, inspect, open_scan
 from core.progress import Progress, silent
@@ -59,9 +59,9 @@ def measure_features(
     except InputError as error:
         raise in_a_project(error) from error
     path, shown = results_folder(folder) / NAME, _shown(inspection, scan)
-    write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))
-    write_shown(path, shown)
-    note_results(folder)
+    with noting_results(folder):
+        write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))
+        write_shown(path, shown)
     return shown
 
 

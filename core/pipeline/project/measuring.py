@@ -20,7 +20,7 @@ from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.run_file import write_run
 from core.inspect.results import GaugeResult
 from core.pipeline.compile_ahead import compile_ahead
-from core.pipeline.project.verify import note_results
+from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.camera_step import solved_for_skew
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
@@ -63,14 +63,13 @@ def measure_scan(
     found = project_set(folder, project)
     require_scan(found)
     results = make_inner_folder(folder, RESULTS)
-    with staged(results, _OF_A_SCAN) as beside:
+    with noting_results(folder), staged(results, _OF_A_SCAN) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))
         record_calibrations(work, folder, project)
         measured = scan_step(work, project.options, progress, watch, earlier=_earlier(found, results, project))
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
-    note_results(folder)
     return ScanSummary(
         frames=measured.scan.frames,
         points=len(measured.scan.cloud),
@@ -92,11 +91,10 @@ def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -
         If there is no scan, or it has no two parallel faces there.
     """
     try:
-        gauge = gauge_step(project_workspace(folder, project), progress)
+        with noting_results(folder):
+            return gauge_step(project_workspace(folder, project), progress)
     except InputError as error:
         raise in_a_project(error) from error
-    note_results(folder)
-    return gauge
 
 
 def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | None:

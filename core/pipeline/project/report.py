@@ -10,7 +10,7 @@ from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.report_template import read_report_template
 from core.files.study.study_file import study_path
-from core.pipeline.project.verify import note_results
+from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.report_step import report_content, report_step, with_studies
 from core.pipeline.steps.workspace import Workspace
@@ -29,9 +29,8 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
         If there is no scan among the results.
     """
     work = project_workspace(folder, project)
-    path = report_step(work, progress, lambda content: with_words(content, folder, project))
-    note_results(folder, reported=True)
-    return path
+    with noting_results(folder, reported=True):
+        return report_step(work, progress, lambda content: with_words(content, folder, project))
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:

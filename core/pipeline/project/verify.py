@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError
+from core.files.atomic import write_bytes
 from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, rests_on
@@ -14,13 +16,15 @@ from core.files.project.people import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
-from core.messages import Message
+from core.messages import Message, plural_message
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent, steps
 
 _MAKING = ("measured", "reported")
 """Entries that tell of results."""
+CHANGING = ".results-changing"
+"""Stands in a project's folder from before its results change until their entry is written."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,11 +38,39 @@ class Verified:
     notes: tuple[Message, ...]
 
 
-def note_results(folder: Path, name: str = RESULTS, *, reported: bool = False) -> None:
-    """Tell the project's audit trail what lies among the results in its folder `name` now; raises as `append`."""
-    made = (path for path in sorted((folder / name).iterdir()) if path.is_file() and path.name[0] != ".")
-    files = {f"{name}/{path.name}": file_hash(path) for path in made}
-    append(folder, "reported" if reported else "measured", files=files)
+@contextmanager
+def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
+    """Tell the project's audit trail what lies among its results once the block has made or changed them.
+
+    A block that fails has its entry where it changed something all the same. Should the program end before the entry
+    is written, a mark beside the results says so: `verify` then does not call good results changed.
+
+    Raises
+    ------
+    InputError
+        If the folder is gone, or cannot be written to.
+    """
+    mark = folder / CHANGING
+    write_bytes(mark)
+    try:
+        yield
+    except BaseException:
+        told = _told_of(read_trail(folder).entries)
+        if _hashes(folder) != (dict(told.files) if told else {}):
+            note_results(folder)
+        mark.unlink(missing_ok=True)
+        raise
+    note_results(folder, reported=reported)
+    mark.unlink(missing_ok=True)
+
+
+def note_results(folder: Path, *, reported: bool = False) -> None:
+    """Tell the project's audit trail what lies among its results now; raises as `append`."""
+    append(folder, "reported" if reported else "measured", files=_hashes(folder))
+
+
+def _hashes(folder: Path) -> dict[str, str]:
+    return {name: file_hash(folder / name) for name in _names(folder)}
 
 
 def verify(folder: Path, set_folder: Path | None = None, head: str = "", progress: Progress = silent) -> Verified:
@@ -89,9 +121,19 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
             )
         else:
             problems.append(Message("verify.state", "{file} is not what the program last saved", file=PROJECT))
-    known = {one.split("/")[0]: entry for entry in trail.entries if entry.what in _MAKING for one in entry.files}
-    for name, entry in known.items():
-        problems += _results(folder, name, entry)
+    told = _told_of(trail.entries)
+    differing = _results(folder, told) if told else []
+    if differing and (folder / CHANGING).exists():
+        notes.append(
+            plural_message(
+                "verify.change_cut_off",
+                "the last change of the results was cut off before its entry in the trail; {n} file was not compared",
+                "the last change of the results was cut off before its entry in the trail; {n} files were not compared",
+                n=len(differing),
+            )
+        )
+    else:
+        problems += differing
     inputs: dict[str, str] = {}
     if message := _people(folder, trail):
         problems.append(message)
@@ -102,8 +144,7 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
     for step, done in file.results.items():
         if names := changed(done.rests_on, rests_on(step, file.project, file.results)):
             notes.append(Message("verify.outdated", "{step} is out of date: {names}", step=step, names=names))
-    results = sum(len(entry.files) for entry in known.values())
-    return Verified(trail, results, len(inputs), tuple(problems), tuple(notes))
+    return Verified(trail, len(told.files) if told else 0, len(inputs), tuple(problems), tuple(notes))
 
 
 def _people(folder: Path, trail: Trail) -> Message | None:
@@ -116,7 +157,12 @@ def _people(folder: Path, trail: Trail) -> Message | None:
     return Message("verify.people", "{file} is not what the audit trail tells of", file=PEOPLE)
 
 
-def _results(folder: Path, name: str, entry: Entry) -> list[Message]:
+def _told_of(entries: Sequence[Entry]) -> Entry | None:
+    """The last entry that tells of results."""
+    return next((entry for entry in reversed(entries) if entry.what in _MAKING and entry.files), None)
+
+
+def _results(folder: Path, entry: Entry) -> list[Message]:
     problems = []
     for one, digest in entry.files.items():
         path = folder / one
@@ -124,11 +170,17 @@ def _results(folder: Path, name: str, entry: Entry) -> list[Message]:
             problems.append(Message("verify.missing", "{name} is missing", name=one))
         elif file_hash(path) != digest:
             problems.append(Message("verify.result", "{name} is not what it was (entry {n})", name=one, n=entry.n))
-    for path in sorted((folder / name).iterdir()) if (folder / name).is_dir() else []:
-        if path.name in FILES.values() and f"{name}/{path.name}" not in entry.files:
-            one = f"{name}/{path.name}"
-            problems.append(Message("verify.not_made", "{name} was not made with the results beside it", name=one))
+    strange = (one for one in _names(folder) if Path(one).name in FILES.values() and one not in entry.files)
+    problems += [
+        Message("verify.not_made", "{name} was not made with the results beside it", name=one) for one in strange
+    ]
     return problems
+
+
+def _names(folder: Path) -> list[str]:
+    results = folder / RESULTS
+    found = sorted(results.iterdir()) if results.is_dir() else []
+    return [f"{RESULTS}/{path.name}" for path in found if path.is_file() and path.name[0] != "."]
 
 
 def _inputs(inputs: Iterable[tuple[str, str]], found: RecordingSet, progress: Progress) -> list[Message]:

@@ -14,7 +14,7 @@ from core.files.project.audit import AUDIT, read_trail
 from core.files.project.data import ProjectFile, Sources, new_project
 from core.files.project.folder import create_project, read_project, write_project
 from core.files.recording.recording_set import RIG
-from core.pipeline.project.verify import note_results, verify
+from core.pipeline.project.verify import CHANGING, note_results, noting_results, verify
 from core.pipeline.project.workspace import project_set
 from tests.simulated import trisect
 
@@ -87,6 +87,39 @@ def test_a_save_that_was_cut_off_is_a_note(project: Path) -> None:
     (project / "project.json").write_bytes(before)
     found = verify(project)
     assert (found.problems, [note.code for note in found.notes]) == ((), ["verify.save_cut_off"])
+
+
+def test_a_program_that_ends_between_its_results_and_their_entry_has_not_changed_good_ones(
+    project: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("core.pipeline.project.verify.append", _killed)
+    with pytest.raises(KeyboardInterrupt), noting_results(project):
+        (project / "results" / "cloud.ply").write_bytes(b"a better cloud")
+    monkeypatch.undo()
+    found = verify(project)
+    assert (found.problems, [note.code for note in found.notes]) == ((), ["verify.change_cut_off"])
+    assert "1 file was not compared" in trisect("verify", project).out
+    with noting_results(project):
+        pass
+    assert (verify(project).problems, verify(project).notes) == ((), ())
+    (project / "results" / "cloud.ply").write_bytes(b"a cloud made by hand")
+    assert [problem.code for problem in verify(project).problems] == ["verify.result"]
+
+
+def _killed(*_: object, **__: object) -> None:
+    raise KeyboardInterrupt
+
+
+def test_what_failed_has_its_entry_only_where_it_changed_something(project: Path) -> None:
+    before = len(read_trail(project).entries)
+    with pytest.raises(ValueError, match="no faces"), noting_results(project):
+        raise ValueError("no faces")
+    assert len(read_trail(project).entries) == before
+    with pytest.raises(ValueError, match="no faces"), noting_results(project):
+        (project / "results" / "cloud.ply").unlink()
+        raise ValueError("no faces")
+    assert len(read_trail(project).entries) == before + 1
+    assert (verify(project).problems, (project / CHANGING).exists()) == ((), False)
 
 
 def test_the_trail_is_shown_and_exported_and_takes_remarks(project: Path, tmp_path: Path) -> None:
