@@ -87,6 +87,8 @@ class Judgement:
         chance explains it.
     alone
         How many times as large as stated is what errs in each residual alone; NaN where shared errors are not known.
+    freedom
+        Degrees of freedom that `alone` is known by.
     """
 
     rms: float
@@ -97,6 +99,7 @@ class Judgement:
     p: float
     systematic: float
     alone: float = np.nan
+    freedom: int = 0
 
     @property
     def times(self) -> float:
@@ -204,6 +207,7 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
         p=p,
         systematic=float(np.sqrt(variance)) if p < SIGNIFICANT else 0.0,
         alone=alone,
+        freedom=max(freedom, 0),
     )
 
 

@@ -26,7 +26,8 @@ def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def _result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
-    row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule)
+    notes = tuple(note for name in dict.fromkeys(spec.of) for note in scene.found[name].notes)
+    row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule, notes=notes)
     return FeatureResult(spec, characteristics=(row,))
 
 

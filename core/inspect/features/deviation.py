@@ -9,6 +9,7 @@ from core.errors import InputError
 from core.inspect.characteristic import Characteristic
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
+from core.inspect.fit.judged_form import notes_on_deviation
 from core.inspect.fit.plane_search import search_tolerance
 from core.inspect.fit.surface_fit import u_of_quantiles
 from core.inspect.plan.alignment import best_fit
@@ -148,7 +149,14 @@ def _characteristics(
     )
     mean = Message("feature.rule_mean_deviation", "mean deviation from the nominal surface")
     return (
-        scene.characteristic(spec, "profile", 2 * largest, rows["profile"], rule=profile),
+        scene.characteristic(
+            spec,
+            "profile",
+            2 * largest,
+            rows["profile"],
+            rule=profile,
+            notes=notes_on_deviation(cloud, deviation, normals, scene.errors),
+        ),
         scene.characteristic(spec, "mean", float(np.mean(deviation)), rows["mean"], rule=mean),
     )
 

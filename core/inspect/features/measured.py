@@ -55,6 +55,8 @@ class FeatureResult:
         The fitted surface in the camera frame, if there is one.
     gauge, profile, deviations
         Of a thickness, a section, a deviation map.
+    notes
+        What is told of it where it has no row of its own: with what is derived from it.
     problem
         Why it could not be measured; then there are no characteristics. None if it was.
     """
@@ -70,6 +72,7 @@ class FeatureResult:
     gauge: GaugeResult | None = None
     profile: Profile | None = None
     deviations: DeviationMap | None = None
+    notes: tuple[Message, ...] = ()
     problem: Message | None = None
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -9,7 +11,7 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in, points_in
 from core.inspect.fit.elements import Element
-from core.inspect.fit.judged_form import FACE, notes_on_form
+from core.inspect.fit.judged_form import FACE, PIECE, notes_on_form
 from core.inspect.fit.plane_fit import fit_plane
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.fit.surface_fit import SurfaceFit, fit_surface
@@ -39,12 +41,17 @@ def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 
 
 def measure_point(spec: FeatureSpec, scene: Scene) -> FeatureResult:
-    """The place amid the points of a small region, on the plane through them."""
+    """The place amid the points of a small region, on the plane through them.
+
+    Of that piece of surface the residuals are judged as those of a face; the place itself rests on three numbers of it,
+    and of one measured point nothing is left over that could be judged.
+    """
     region = spec.regions[0]
     whole = isinstance(region, InSphere | InBox)
     indices = points_in(region, spec.filters, scene) if whole else face_in(region, spec.filters, scene)
     fit = _fitted(spec, scene, indices)
-    return _result(spec, fit, (), Element.of_plane(fit, "point"))
+    notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, (PIECE,))
+    return replace(_result(spec, fit, (), Element.of_plane(fit, "point")), notes=notes)
 
 
 def _fitted(spec: FeatureSpec, scene: Scene, indices: NDArray[np.int64]) -> SurfaceFit[ParallelPlanes]:

@@ -11,8 +11,9 @@ from core.errors import InputError
 from core.inspect.characteristic import Characteristic
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
+from core.inspect.fit.judged_form import ARC, STRETCHES, notes_on_form
 from core.inspect.fit.round import with_uneven_light
-from core.inspect.fit.shapes import Cylinder, ParallelPlanes
+from core.inspect.fit.shapes import Cylinder, ParallelPlanes, Shape
 from core.inspect.fit.surface_fit import fit_surface
 from core.inspect.plan.feature_spec import Cut, FeatureSpec, Pixel, Section
 from core.inspect.profile import Profile, averaged
@@ -124,17 +125,19 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
     """One measurement in the profile."""
     chosen = [profile.between(ends) for ends in _stretches(cut)]
     part = np.repeat(np.arange(len(chosen)), [len(one) for one in chosen])
-    indices = profile.indices[np.concatenate(chosen)]
+    indices, position = profile.indices[np.concatenate(chosen)], profile.position[np.concatenate(chosen)]
     if any(len(one) < 3 for one in chosen):
         raise InputError(
             Message("feature.stretch_too_short", "a stretch of {name} holds too few points", name=cut.name),
             todo=Message("feature.advice_longer_stretch", "make it longer"),
         )
     tukey = spec.filters.outliers
+    shape: Shape
+    names: tuple[Message, ...]
     if cut.kind == "radius":
         round_ = fit_surface(scene.cloud, indices, _circle(profile, chosen[0]), scene.errors, tukey=tukey)
         rows = with_uneven_light(round_, scene.cloud, scene.errors).budget(np.array([0.0, 0.0, 1.0]))
-        value = round_.shape.radius
+        shape, value, names = round_.shape, round_.shape.radius, (ARC,)
         rule = Message("feature.rule_radius", "radius of the circle of least squares in the section")
     else:
         points = scene.cloud.points
@@ -142,8 +145,9 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
         start = ParallelPlanes(profile.up, centres, profile.along[:, None])
         lines = fit_surface(scene.cloud, indices, start, scene.errors, part=part, tukey=tukey)
         value, gradient, rule = _between(lines.shape, profile, cut)
-        rows = lines.budget(gradient)
-    return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule)
+        shape, rows, names = lines.shape, lines.budget(gradient), STRETCHES
+    notes = notes_on_form(scene.cloud, indices, shape, scene.errors, names, part, position)
+    return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
 
 
 def _between(lines: ParallelPlanes, profile: Profile, cut: Cut) -> tuple[float, Array, Message]:

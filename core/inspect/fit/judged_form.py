@@ -1,4 +1,4 @@
-"""What the residuals of a fitted face, ball or pin say of it: its form, and whether its points scatter as stated.
+"""What residuals say of a face, ball, pin, section or nominal surface: its form, and whether points scatter as stated.
 
 The points of a scan share the errors of their light planes and of the calibrations, so a pattern over a surface is held
 against what these explain (`core.model.residuals.judge_with_shared`). What is left is the part itself, or light that
@@ -7,25 +7,32 @@ does not do what it should: a face that is bent, a dent, a flank. That is no fau
 
 Points that the fit has left out as wrong are judged with the rest, as far as a single one can: a dent is full of them.
 
+Patterns are looked for over patches of a face as the camera sees it, or, in a section, along each of its stretches. Of
+a part laid on its nominal surface its motion as a whole and its mean deviation are no pattern: the one is the
+alignment's, whichever it was, and the other is told by itself.
+
 Whether points scatter as stated is asked twice. Their whole σ is hardly tested where most of it is a light plane, of
 which a scan holds but few; their own noise alone, what is left of σ without the plane, is not just that where the plane
-was found with the help of this very point. Only where both are too small is it told.
+was found with the help of this very point. Only where both are too small, and that is no chance, is it told.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.special import chdtrc
 
 from core.calibrate.camera.coverage import REGIONS
+from core.inspect.fit.plane_search import search_tolerance
 from core.inspect.fit.shapes import Parts, Shape
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import PATCHES, PointErrors, patches
 from core.messages import Message
 from core.model.arrays import Array
-from core.model.residuals import Judgement, Residuals, SharedErrors, judge_with_shared
+from core.model.residuals import Judgement, Residuals, SharedErrors, along_line, judge_with_shared
 from core.model.robust import huber_weights, mad_sd
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.normals import pixel_angle
@@ -44,8 +51,16 @@ _BEYOND = 3.0
 """Standard deviations from which on a point counts for less."""
 _BOWL = 0.6
 """Share of a pattern's variance that a parabola explains if the face is bowed."""
-_LEAST_PATCHES = 9
-"""Of a face that is judged; with fewer, six numbers of a parabola explain everything."""
+_LEAST_PATCHES = {2: 9, 1: 6}
+"""Of a face, and of a stretch of a section; with fewer, the six or three numbers of a parabola explain everything."""
+_CARRIED = 0.5
+"""Share of the strongest face's pattern below which another's may be what it has carried over, by what they share."""
+_ALONG = 12
+"""Parts of a stretch of a section."""
+_FARTHEST = 2.0
+"""Times the distance within which a search takes points for those of a face: beyond, they are not judged."""
+_SAME = 1e-6
+"""Share of the largest motion of a part below which another one leaves its surface where it is."""
 
 FACE = Message("form.the_face", "the face")
 UPPER_FACE, LOWER_FACE = (
@@ -53,6 +68,12 @@ UPPER_FACE, LOWER_FACE = (
     Message("form.the_lower_face", "the lower face"),
 )
 SPHERE, CYLINDER = Message("form.the_sphere", "the sphere"), Message("form.the_cylinder", "the cylinder")
+STRETCHES = (
+    Message("form.the_first_stretch", "the first stretch"),
+    Message("form.the_second_stretch", "the second stretch"),
+)
+ARC, PIECE = Message("form.the_arc", "the arc"), Message("form.the_piece", "the surface about the point")
+_PART = Message("form.the_part", "the part")
 _UP, _DOWN = Message("form.too_high", "too high"), Message("form.too_low", "too low")
 _ABOVE, _BELOW = Message("form.above", "above"), Message("form.below", "below")
 
@@ -62,31 +83,109 @@ def level(number: int) -> Message:
     return Message("form.the_level", "level {n}", n=number)
 
 
-def judge_form(cloud: Cloud, shape: Shape, part: Parts, errors: PointErrors) -> Judgement:
-    """Judge all points of a cloud, on the faces `part` (N,) of a fitted shape; cells are the patches of each face.
+@dataclass(frozen=True, eq=False, slots=True)
+class Left:
+    """What is left of N points beside a surface.
 
-    Of stretches of stripes; groups are the sweeps.
+    Parameters
+    ----------
+    misfit
+        (N,) in mm, outwards positive.
+    outward
+        (N, 3) unit normals of the surface.
+    design
+        (N, P) how far it moves outwards at each with what was fitted.
     """
-    points = cloud.points
-    outward = np.asarray(shape.outward(points, part), dtype=np.float64)
-    misfit = shape.misfit(points, part)
-    expected = cloud.sigma * np.maximum(np.abs((outward * points).sum(axis=1)) / points[:, 2], GRAZING)
-    relative = misfit / expected
+
+    misfit: Array
+    outward: Array
+    design: Array
+
+    @classmethod
+    def of(cls, shape: Shape, points: Array, part: Parts) -> Left:
+        """Beside a fitted shape, on its faces `part` (N,)."""
+        outward = np.asarray(shape.outward(points, part), dtype=np.float64)
+        return cls(shape.misfit(points, part), outward, shape.design(points, part))
+
+    @classmethod
+    def of_nominal(cls, points: Array, deviation: Array, normals: Array) -> Left:
+        """Beside a nominal surface that may move as a whole, and swell; of motions that leave it where it is, none."""
+        moved = np.hstack([normals, np.cross(points - points.mean(axis=0), normals), np.ones((len(points), 1))])
+        moved /= np.maximum(np.linalg.norm(moved, axis=0), 1e-12)
+        axes, size, _ = np.linalg.svd(moved, full_matrices=False)
+        return cls(deviation - np.median(deviation), normals, axes[:, size > _SAME * size[0]] * np.sqrt(len(points)))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Places:
+    """Where on its face each of N points lies, told apart by C places a face.
+
+    Parameters
+    ----------
+    cell
+        (N,) number of the place, those of a face after those of the one before.
+    sides
+        How many places a face has along each side of it: along two sides, or one.
+    mm
+        (faces, 2) position in a section where each stretch begins and ends; of none else.
+    """
+
+    cell: NDArray[np.intp]
+    sides: tuple[int, ...]
+    mm: Array
+
+    @classmethod
+    def in_picture(cls, uv: Array, part: Parts) -> Places:
+        """Patches of faces as the camera sees them."""
+        return cls(patches(uv, part).astype(np.intp), (PATCHES, PATCHES), np.zeros((0, 2)))
+
+    @classmethod
+    def in_section(cls, position: Array, part: Parts) -> Places:
+        """Parts of the stretches of a section, of points at these positions (N,) in mm."""
+        cell, ends = np.zeros(len(position), dtype=np.intp), []
+        for number in range(int(part.max(initial=0)) + 1):
+            here = part == number
+            cell[here] = _ALONG * number + along_line(position[here], _ALONG)
+            ends.append([position[here].min(), position[here].max()])
+        return cls(cell, (_ALONG,), np.array(ends))
+
+    @property
+    def number(self) -> int:
+        """How many places a face has."""
+        return int(np.prod(self.sides))
+
+    def of_face(self, number: int) -> slice:
+        """The places of one face among all."""
+        return slice(self.number * number, self.number * (number + 1))
+
+    def flat(self, place: NDArray[np.intp]) -> Array:
+        """(n, sides) where places of a face are, −1 … 1 from edge to edge of it, across before down."""
+        steps = np.unravel_index(place, self.sides)[::-1]
+        return np.column_stack([2 * (step + 0.5) / side - 1 for step, side in zip(steps, self.sides, strict=True)])
+
+
+def judge_form(cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Judgement | None:
+    """Judge what is `left` of all points of a cloud, on the faces `part` (N,) of a surface; cells are its `places`.
+
+    Of stretches of stripes; groups are the sweeps. None where there are no more of them than what was fitted.
+    """
+    expected = cloud.sigma * np.maximum(np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING)
+    relative = left.misfit / expected
     weights = huber_weights(relative / max(mad_sd(relative), 1e-9), _BEYOND)
-    patch = patches(cloud.uv, part)
-    sources = Sources.of(cloud, outward, weights, part, patch, errors)
+    sources = Sources.of(cloud, left.outward, weights, part, places.cell.astype(np.int64), errors)
+    if len(sources.own) <= left.design.shape[1]:
+        return None
     group = np.zeros(len(sources.own), dtype=np.intp)
     group[sources.stretch] = cloud.sweep - cloud.sweep.min()
     residuals = Residuals(
-        sources.mean(misfit),
+        sources.mean(left.misfit),
         np.sqrt(sources.mean(expected**2)),
         group,
         np.asarray(sources.form.argmax(axis=1), dtype=np.intp),
-        PATCHES**2 * (int(part.max(initial=0)) + 1),
+        places.number * (int(part.max(initial=0)) + 1),
     )
     shared = np.hstack([sources.speckle, sources.sweeps, sources.common])
-    acting = SharedErrors(sources.own, shared, sources.mean(shape.design(points, part)))
-    return judge_with_shared(residuals, acting)
+    return judge_with_shared(residuals, SharedErrors(sources.own, shared, sources.mean(left.design)))
 
 
 def notes_on_form(
@@ -96,6 +195,7 @@ def notes_on_form(
     errors: PointErrors,
     names: Sequence[Message],
     part: Parts | None = None,
+    position: Array | None = None,
 ) -> tuple[Message, ...]:
     """What is wrong with a surface, and in which direction: at most one note a face.
 
@@ -109,29 +209,78 @@ def notes_on_form(
         Of its faces.
     part
         (N,) which face each of the indices is on; None: all on one.
+    position
+        (N,) in mm along a section, whose stretches the faces are then.
     """
-    cloud = cloud.select(indices)
-    part = np.zeros(len(cloud), dtype=np.int64) if part is None else part
-    found = judge_form(cloud, shape, part, errors)
-    notes: list[Message] = []
-    for number, name in enumerate(names):
-        mine = slice(PATCHES**2 * number, PATCHES**2 * (number + 1))
-        here = part == number
-        if found.p < SURELY and np.count_nonzero(found.count[mine]) >= _LEAST_PATCHES:
-            notes += _of_pattern(found.profile[mine], found.count[mine], _pixel_mm(cloud.select(here)), name)
-    if notes:
-        return tuple(notes)
-    if min(found.times, found.alone) > TIMES:
-        return (
-            Message(
-                "form.scatter",
-                "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts "
-                "on them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise.",
-                name=list(names),
-                times=found.times,
-            ),
-        )
-    return ()
+    part = np.zeros(len(indices), dtype=np.int64) if part is None else part
+    # Where a face is looked for, farther points are of something else; a region or a section holds them as well.
+    on = np.abs(shape.misfit(cloud.points[indices], part)) <= search_tolerance(cloud) * _FARTHEST
+    if not on.any():
+        return ()
+    cloud, part = cloud.select(indices[on]), part[on]
+    position = None if position is None else position[on]
+    places = Places.in_picture(cloud.uv, part) if position is None else Places.in_section(position, part)
+    found = judge_form(cloud, Left.of(shape, cloud.points, part), part, places, errors)
+    if found is None:
+        return ()
+    patterns = [
+        _pattern(found, places, number, cloud.select(np.flatnonzero(part == number))) for number in range(len(names))
+    ]
+    least = _CARRIED * max((float(np.ptp(one.height)) for one in patterns if one is not None), default=0.0)
+    notes = [
+        _of_pattern(pattern, places, number, names[number])
+        for number, pattern in enumerate(patterns)
+        if pattern is not None and np.ptp(pattern.height) >= least
+    ]
+    return tuple(notes) or _of_scatter(found, names)
+
+
+def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
+    """Where points off a nominal surface by `deviation` (N,) stand out of their uncertainty, however it is laid on.
+
+    `normals` (N, 3) are the nominal surface's. At most one note.
+    """
+    one = np.zeros(len(cloud), dtype=np.int64)
+    places = Places.in_picture(cloud.uv, one)
+    found = judge_form(cloud, Left.of_nominal(cloud.points, deviation, normals), one, places, errors)
+    if found is None:
+        return ()
+    pattern = _pattern(found, places, 0, cloud)
+    if pattern is None:
+        return _of_scatter(found, (_PART,))
+    most = int(np.argmax(np.abs(pattern.height)))
+    return (
+        Message(
+            "form.off_nominal",
+            "However the part is laid on its nominal surface: at the {place}, as the camera sees it, it is {mm:.2g} mm "
+            "{where}, more than the uncertainty of its points explains.",
+            place=_region(pattern.at[most]),
+            mm=abs(float(pattern.height[most])),
+            where=_UP if pattern.height[most] > 0 else _DOWN,
+        ),
+    )
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Pattern:
+    """`height` (n,) in mm of n places of one face from their mean, `count` (n,) of their stretches, `at` (n, sides)."""
+
+    height: Array
+    count: NDArray[np.intp]
+    at: Array
+
+
+def _pattern(found: Judgement, places: Places, number: int, face: Cloud) -> _Pattern | None:
+    """The pattern over one face, if it is surely there and stands out in pixels."""
+    count = found.count[places.of_face(number)]
+    seen = np.flatnonzero(count)
+    if found.p >= SURELY or len(seen) < _LEAST_PATCHES[len(places.sides)]:
+        return None
+    profile = found.profile[places.of_face(number)][seen]
+    height = np.asarray(profile - np.average(profile, weights=count[seen]), dtype=np.float64)
+    if np.ptp(height) <= STANDS_OUT_PX * _pixel_mm(face):
+        return None
+    return _Pattern(height, count[seen], places.flat(seen))
 
 
 def _pixel_mm(cloud: Cloud) -> float:
@@ -139,46 +288,73 @@ def _pixel_mm(cloud: Cloud) -> float:
     return pixel_angle(cloud.points, cloud.uv) * float(np.median(cloud.points[:, 2]))
 
 
-def _of_pattern(profile: Array, count: NDArray[np.intp], pixel_mm: float, name: Message) -> tuple[Message, ...]:
-    """A note on one face's pattern (PATCHES²,) in mm, if it stands out."""
-    seen = np.flatnonzero(count)
-    height = profile[seen] - np.average(profile[seen], weights=count[seen])
-    if np.ptp(height) <= STANDS_OUT_PX * pixel_mm:
+def _of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
+    """A note on points that scatter more than stated, if they surely do."""
+    by_chance = float(chdtrc(found.freedom, found.freedom * found.alone**2)) if found.freedom > 0 else 1.0
+    if min(found.times, found.alone) <= TIMES or by_chance >= SURELY:
         return ()
-    row, column = np.divmod(seen, PATCHES)
-    x, y = (2 * (column + 0.5) / PATCHES - 1, 2 * (row + 0.5) / PATCHES - 1)
-    form, root = _parabola(x, y), np.sqrt(count[seen])
-    solved = np.linalg.lstsq(form * root[:, None], height * root, rcond=None)[0]
-    bowl = form @ solved
-    explained = 1 - float(count[seen] @ (height - bowl) ** 2) / float(count[seen] @ height**2)
-    middle = float(solved[0] - np.average(bowl, weights=count[seen]))
-    if explained > _BOWL and abs(middle) > np.ptp(bowl) / 4:
-        where, to_edges = _ABOVE if middle > 0 else _BELOW, PATCHES / (PATCHES - 1)
-        return (
-            Message(
-                "form.bowed",
-                "The form of {name} is not true: it is bowed, its middle is {mm:.2g} mm {where} its rim. U contains "
-                "what that does to the value.",
-                name=name,
-                mm=float(np.ptp(_parabola(to_edges * x, to_edges * y) @ solved)),
-                where=where,
-            ),
-        )
-    most = int(np.argmax(np.abs(height)))
-    third = [int(at > -1 / 3) + int(at > 1 / 3) for at in (y[most], x[most])]
     return (
         Message(
-            "form.uneven",
-            "The form of {name} is not true: at the {place}, as the camera sees it, it is {mm:.2g} mm {where}. U "
-            "contains what that does to the value.",
-            name=name,
-            place=REGIONS[3 * third[0] + third[1]],
-            mm=abs(float(height[most])),
-            where=_UP if height[most] > 0 else _DOWN,
+            "form.scatter",
+            "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts "
+            "on them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise.",
+            name=list(names),
+            times=found.times,
         ),
     )
 
 
-def _parabola(x: Array, y: Array) -> Array:
-    """(n, 6) what the coefficients of a parabola are multiplied by at places of a face, −1 … 1 from edge to edge."""
+def _of_pattern(pattern: _Pattern, places: Places, number: int, name: Message) -> Message:
+    """A note on the pattern of one face."""
+    height, count = pattern.height, pattern.count
+    form, root = _parabola(pattern.at), np.sqrt(count)
+    solved = np.linalg.lstsq(form * root[:, None], height * root, rcond=None)[0]
+    bowl = form @ solved
+    explained = 1 - float(count @ (height - bowl) ** 2) / float(count @ height**2)
+    middle = float(solved[0] - np.average(bowl, weights=count))
+    if explained > _BOWL and abs(middle) > np.ptp(bowl) / 4:
+        where, to_edges = _ABOVE if middle > 0 else _BELOW, places.sides[0] / (places.sides[0] - 1)
+        return Message(
+            "form.bowed",
+            "The form of {name} is not true: it is bowed, its middle is {mm:.2g} mm {where} its rim. U contains "
+            "what that does to the value.",
+            name=name,
+            mm=float(np.ptp(_parabola(to_edges * pattern.at) @ solved)),
+            where=where,
+        )
+    most = int(np.argmax(np.abs(height)))
+    size, where = abs(float(height[most])), _UP if height[most] > 0 else _DOWN
+    if len(places.sides) == 1:
+        first, last = places.mm[number]
+        return Message(
+            "form.uneven_along",
+            "The form of {name} is not true: {at_mm:.1f} mm along the section it is {mm:.2g} mm {where}. U contains "
+            "what that does to the value.",
+            name=name,
+            at_mm=float(first + (pattern.at[most, 0] + 1) / 2 * (last - first)),
+            mm=size,
+            where=where,
+        )
+    return Message(
+        "form.uneven",
+        "The form of {name} is not true: at the {place}, as the camera sees it, it is {mm:.2g} mm {where}. U "
+        "contains what that does to the value.",
+        name=name,
+        place=_region(pattern.at[most]),
+        mm=size,
+        where=where,
+    )
+
+
+def _region(at: Array) -> Message:
+    """Name of the part of a face that a place (2,) across and down is in."""
+    third = [int(one > -1 / 3) + int(one > 1 / 3) for one in at]
+    return REGIONS[3 * third[1] + third[0]]
+
+
+def _parabola(at: Array) -> Array:
+    """(n, 3 or 6) what the coefficients of a parabola are multiplied by at places (n, 1 or 2) of a face."""
+    if at.shape[1] == 1:
+        return np.hstack([np.ones((len(at), 1)), at, at * at])
+    x, y = at.T
     return np.column_stack([np.ones(len(x)), x, y, x * x, x * y, y * y])

@@ -5,18 +5,20 @@ from typing import Any
 
 import numpy as np
 import pytest
+import trimesh
 
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.fit.judged_form import FACE, notes_on_form
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.gauge import measure_gauge
-from core.inspect.plan.feature_spec import FeatureSpec, Polygon
+from core.inspect.plan.feature_spec import Cut, Deviation, FeatureSpec, InSphere, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.scan.surface.cloud import Cloud
+from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import CENTRE, FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels
-from tests.inspect.shape_scan import BALL, ShapeScan
+from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
 
 BLOCK = BlockScan(height=40.0, sweeps=30)
 BLOCK_ERRORS = PointErrors(BLOCK.covariance)
@@ -28,6 +30,26 @@ AROUND_BALL = Polygon(
 )
 BLOCK_PLAN = InspectionPlan((FeatureSpec("top", "plane", (TOP,)), FeatureSpec("step", "steps")))
 BALL_PLAN = InspectionPlan((FeatureSpec("ball", "sphere", (AROUND_BALL,)),))
+TOP_MIDDLE = (TABLE_MM - BLOCK.height) * NORMAL
+(U1, V1), (U2, V2) = pixels(TOP_MIDDLE + np.array([[-HALF], [HALF]]) * axes()[0]).tolist()
+RISE = Section(((U1, V1), (U2, V2)), half_width_mm=4.0, cuts=(Cut("rise", "height", (5.0, 35.0), (46.0, 98.0)),))
+CUT_PLAN = InspectionPlan((FeatureSpec("cut", "section", section=RISE),))
+(U3, V3), (U4, V4) = (BALL_UV + np.array([[-90.0, 0.0], [90.0, 0.0]])).tolist()
+ROUND = Section(((U3, V3), (U4, V4)), half_width_mm=1.0, cuts=(Cut("round", "radius", (5.0, 32.0)),))
+ARC_PLAN = InspectionPlan((FeatureSpec("arc", "section", (AROUND_BALL,), section=ROUND),))
+SPOTS = (
+    FeatureSpec("spot", "point", (InSphere((*TOP_MIDDLE.tolist(),), 28.0),)),
+    FeatureSpec("aside", "point", (InSphere((*(TABLE_MM * NORMAL + 60.0 * axes()[0]).tolist(),), 12.0),)),
+)
+SPOT_PLAN = InspectionPlan((*SPOTS, FeatureSpec("apart", "distance", of=("spot", "aside"))))
+
+
+def map_of_ball(too_large_mm: float = 0.0) -> tuple[InspectionPlan, dict[str, Triangles]]:
+    """A comparison with a ball that is smaller than the one scanned by so much in radius, and that ball."""
+    compared = Deviation("ball.stl", "as measured", 0.1, 1.0)
+    mesh = trimesh.creation.icosphere(subdivisions=5, radius=BALL_RADIUS - too_large_mm)
+    nominals = {"ball.stl": Triangles(np.asarray(mesh.triangles) + BALL)}
+    return InspectionPlan((FeatureSpec("map", "deviation", (AROUND_BALL,), deviation=compared),)), nominals
 
 
 def lifted(cloud: Cloud, height: np.ndarray) -> Cloud:
@@ -77,6 +99,61 @@ def test_a_dent_in_a_ball_is_told_with_its_place_and_depth(depth_mm: float, word
     assert "upper left" in str(note)
     assert word in str(note)
     assert 0.03 < note.values["mm"] < 0.2
+
+
+def dented(seed: int, depth_mm: float) -> Cloud:
+    """The ball with a dent at its upper left, as the camera sees it."""
+    apart = np.linalg.norm(SHAPES.points - (BALL + 20.0 * np.array([-0.5, -0.5, -np.sqrt(0.5)])), axis=1)
+    cloud = SHAPES.measure(np.random.default_rng(seed))
+    return lifted(cloud, np.where(SHAPES.on == 0, -depth_mm * np.exp(-0.5 * (apart / 4.0) ** 2), 0.0))
+
+
+@pytest.mark.parametrize(("depth_mm", "word"), [(0.3, "too low"), (-0.3, "too high")])
+def test_a_dent_stands_out_of_a_deviation_map(depth_mm: float, word: str) -> None:
+    plan, nominals = map_of_ball(0.05)
+    (note,) = notes(evaluate(plan, dented(3, depth_mm), errors=SHAPES.errors, nominals=nominals), "map")
+    assert note.code == "form.off_nominal"
+    assert "upper left" in str(note)
+    assert word in str(note)
+    assert 0.03 < note.values["mm"] < 0.3
+
+
+@pytest.mark.parametrize(("middle_mm", "where"), [(0.15, "above"), (-0.15, "below")])
+def test_a_bowed_stretch_of_a_section_is_told(middle_mm: float, where: str) -> None:
+    (note,) = notes(evaluate(CUT_PLAN, lifted(block(1), bow(middle_mm)), errors=BLOCK_ERRORS), "cut")
+    assert note.code == "form.bowed"
+    assert "the second stretch" in str(note)
+    assert f"{where} its rim" in str(note)
+    assert 0.05 < note.values["mm"] < 0.2
+
+
+def test_a_ridge_in_a_section_is_told_with_its_place_along_it() -> None:
+    along = (BLOCK.points - TOP_MIDDLE) @ axes()[0]
+    ridge = np.where(BLOCK.upper, 0.3 * np.exp(-0.5 * ((along - 15.0) / 3.0) ** 2), 0.0)
+    (note,) = notes(evaluate(CUT_PLAN, lifted(block(2), ridge), errors=BLOCK_ERRORS), "cut")
+    assert note.code == "form.uneven_along"
+    middle = 72.0
+    assert abs(abs(note.values["at_mm"] - middle) - 15.0) < 5.0
+    assert "too high" in str(note)
+
+
+def test_what_is_wrong_about_a_point_is_told_with_what_is_derived_from_it() -> None:
+    (note,) = notes(evaluate(SPOT_PLAN, lifted(block(1), bow(0.2)), errors=BLOCK_ERRORS), "apart")
+    assert note.code in ("form.bowed", "form.uneven")
+    assert "the surface about the point" in str(note)
+
+
+@pytest.mark.parametrize("seed", range(10))
+def test_ideal_sections_points_and_maps_are_not_accused(seed: int) -> None:
+    cloud, shapes = block(seed, outliers=0.02), SHAPES.measure(np.random.default_rng(seed))
+    plan, nominals = map_of_ball(0.05)
+    found = [
+        (evaluate(CUT_PLAN, cloud, errors=BLOCK_ERRORS), "cut"),
+        (evaluate(SPOT_PLAN, cloud, errors=BLOCK_ERRORS), "apart"),
+        (evaluate(ARC_PLAN, shapes, errors=SHAPES.errors), "arc"),
+        (evaluate(plan, shapes, errors=SHAPES.errors, nominals=nominals), "map"),
+    ]
+    assert [notes(inspection, name) for inspection, name in found] == [[], [], [], []]
 
 
 @pytest.mark.parametrize("seed", range(4))
