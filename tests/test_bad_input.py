@@ -140,10 +140,12 @@ def test_missing_rig(folder, tmp_path):
 
 def test_wrong_inner_corners(folder, tmp_path):
     edit_rig(folder, "inner_corners = [", "inner_corners = [8, 5] # [")
+    for view in sorted((folder / "camera").iterdir())[2:]:
+        view.unlink()
     said = trisect("camera", folder, "--out", tmp_path / "new")
     assert said.code == 2
     assert "camera" in said.sentence
-    assert f"none of {SMALL.camera_views} pictures" in said.sentence
+    assert "none of 2 pictures" in said.sentence
     assert "8 × 5" in said.sentence
     assert "rig.toml" in said.sentence
     assert not (tmp_path / "new" / "camera.json").exists()

@@ -72,6 +72,7 @@ def step_off(camera_now, fan_now, found, truth, px):
     return float(off), float(np.linalg.norm(by))
 
 
+@pytest.mark.accuracy
 @pytest.mark.parametrize("name", CHANGED)
 def test_what_changed_is_found_and_what_stays_uncertain_is_true(camera, name):
     turn, px = CHANGED[name]

@@ -140,6 +140,7 @@ class SharedSpeckle:
         return PointErrors(covariance, None, STRETCH_PX, 60.0, speckle)
 
 
+@pytest.mark.accuracy
 def test_sweeps_that_hang_on_the_fans_speckle_do_not_make_the_thickness_surer_than_it_is(scan):
     shared, rng = SharedSpeckle(scan), np.random.default_rng(5)
     clouds = [shared.measure(rng) for _ in range(40)]

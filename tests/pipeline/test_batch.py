@@ -199,7 +199,7 @@ def test_processes_measure_the_very_same_as_a_run_and_pgm_frames_as_png_frames(t
         measures_what_a_run_measures(executor, tiny, tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_a_dask_cluster_of_separate_processes_measures_the_very_same_as_a_run(tiny, tmp_path):
     distributed = pytest.importorskip("distributed", reason="pip install 'trisect[cluster]'")
     with distributed.LocalCluster(

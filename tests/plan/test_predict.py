@@ -34,6 +34,7 @@ def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(base):
     assert 0.01 < base.u_mm < 0.15
 
 
+@pytest.mark.accuracy
 def test_no_plan_promises_more_than_the_pictures_hold(base):
     """Nor much less: between lie smoothing that stops at edges, and a network that knows no shapes."""
     floor = next(one for one in bounds_of(SMALL, (HEIGHT,)) if str(one.quantity) == "thickness of 50 mm").with_speckle

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_nothing_goes_wrong_while_somebody_plays_with_the_window(finished_project_folder: Path) -> None:
     command = [sys.executable, "-X", "faulthandler", "-m", "tests.workbench.monkey", "--seconds", "30", "--seed", "1"]
     command += ["--project", str(finished_project_folder)]

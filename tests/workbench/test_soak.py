@@ -6,7 +6,7 @@ import sys
 
 import pytest
 
-pytestmark = pytest.mark.slow
+pytestmark = pytest.mark.accuracy
 
 
 def test_every_frame_of_a_camera_is_recorded_or_counted_and_the_window_never_freezes():

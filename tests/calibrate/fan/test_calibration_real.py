@@ -25,7 +25,10 @@ PUBLISHED_CAMERA = Camera(
     np.array([-0.02961, -0.000335, 0.007891, -0.000394, 0.04591]),
 )
 
-pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason="the real pictures of linelight are not here")
+pytestmark = [
+    pytest.mark.accuracy,
+    pytest.mark.skipif(not FOLDER.is_dir(), reason="the real pictures of linelight are not here"),
+]
 
 
 def one_channel(path: Path, channel: int) -> np.ndarray:

@@ -68,6 +68,7 @@ def test_a_grid_of_another_size_or_a_part_of_it_is_named():
         detect(GRID, np.ascontiguousarray(picture[:, :330]))
 
 
+@pytest.mark.accuracy
 @pytest.mark.skipif(not LINELIGHT.is_dir(), reason="the real pictures of linelight are not on this machine")
 def test_linelight_is_found_in_all_poses_with_the_laser_on_and_off():
     grid = CircleGrid(7, 7, 37.5)

@@ -196,6 +196,7 @@ def test_crossings_near_the_ends_of_stripes_know_less_and_say_so(block):
     assert np.sqrt(np.mean(np.concatenate(near) ** 2)) == pytest.approx(1.0, abs=0.2)
 
 
+@pytest.mark.accuracy
 def test_saturated_points_have_no_say(block):
     """Where stripes meet they saturate, and saturated points lie wrong: here by a whole pixel."""
     scan = block.scan
