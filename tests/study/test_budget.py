@@ -114,6 +114,12 @@ def test_freedom_of_correlated_inputs_is_that_of_the_least_known_and_of_independ
     assert found.dof == pytest.approx(16 / (9 / 4 + 1 / 5))
 
 
+@pytest.mark.parametrize("size", [1e-150, 1e-3, 1e150])
+def test_freedom_does_not_depend_on_the_size_of_the_contributions(size):
+    rows = [Contribution(cause_named("camera"), size * u, dof=dof) for u, dof in ((1.0, 4.0), (2.0, math.inf))]
+    assert add_up(rows).dof == pytest.approx(25 * 4)
+
+
 def test_known_contributions_give_k_of_two_and_guessed_ones_more():
     known, few = Contribution(cause_named("camera"), 0.003), Contribution(cause_named("form"), 0.004, dof=4)
     assert add_up([known]).k == pytest.approx(2)

@@ -217,6 +217,7 @@ GRR, CHECK = "part,operator,value\n1,A,5\n", "quantity,position,measured_mm\n"
         (("repeats",), "value\n50.1\nabc\n", 'line 3, column value is "abc", not a finite number'),
         (("repeats",), "value\n50.1\n\n# said\nnan\n", 'line 5, column value is "nan", not a finite number'),
         (("repeats",), "scan,value\n1\n", "line 2 has 1 cells, but the head has 2"),
+        (("repeats",), 'value\n"50\n51"\n', "does not end in the line it begins in; close its quotes"),
         (("repeats",), "valu\n50\n", "the column value is missing (did you mean valu?)"),
         (("repeats",), "value,value_mm\n1,1\n", "the columns value and value_mm say the same; keep one of them"),
         (("repeats",), "value,value\n1,1\n", 'the column "value" is there twice'),

@@ -218,7 +218,6 @@ _TODO = Message(
 
 class _Row(BudgetRow):
     point_mm: Finite | None = Field(None, validation_alias="u_input")
-    dof: Finite | None = None
     contribution: Finite
 
     def row(self) -> Contribution:

@@ -133,7 +133,8 @@ def table_of(text: str, path: Path) -> Table:
     Raises
     ------
     InputError
-        If it has no rows, a column twice, or a row with more or fewer cells than the head.
+        If it has no rows, a column twice, a cell that goes over several lines, or a row with more or fewer cells than
+        the head.
     """
     lines = [
         (number, line)
@@ -149,6 +150,12 @@ def table_of(text: str, path: Path) -> Table:
     if twice is not None:
         raise InputError(Message("study.column_twice", 'the column "{twice}" is there twice', twice=twice), where=path)
     numbers = tuple(number for number, _ in lines[1:])
+    if len(rows) != len(numbers):
+        raise InputError(
+            Message("study.cell_over_lines", "a cell in quotes does not end in the line it begins in"),
+            where=path,
+            todo=Message("advice.close_quotes", "close its quotes, or leave them out"),
+        )
     for number, row in zip(numbers, rows, strict=True):
         if len(row) != len(names):
             raise InputError(

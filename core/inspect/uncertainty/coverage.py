@@ -33,6 +33,7 @@ def effective_dof(contributions: Iterable[Contribution]) -> float:
     """
     rows = tuple(contributions)
     u = np.array([row.u_mm for row in rows], dtype=np.float64)
+    u = np.ldexp(u, -np.frexp(np.max(u, initial=0.0))[1])  # their size does not matter; powers of two change no digit
     doubt = float(np.sum(u**4 / [row.dof for row in rows]))
     return float(np.sum(u**2)) ** 2 / doubt if doubt > 0 else math.inf
 
