@@ -6,7 +6,7 @@ can be compared, copied with `dataclasses.replace` and undone.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from core.errors import InputError
 from core.inspect.plan.conditions import Master, Temperature
@@ -95,6 +95,22 @@ class InspectionPlan:
             done += ready
             left = [feature for feature in left if feature not in ready]
         return tuple(done)
+
+    def asks_the_same(self, name: str, other: InspectionPlan) -> bool:
+        """Whether `other` asks the same of the feature `name`, of all that it rests on, and of the part as a whole."""
+        whole = [replace(plan, features=()) for plan in (self, other)]
+        return whole[0] == whole[1] and self._asked(name) == other._asked(name) != {}
+
+    def _asked(self, name: str) -> dict[str, FeatureSpec]:
+        """A feature and all that it or the part's coordinates rest on, by their names, as far as they are there."""
+        known, asked = {one.name: one for one in self.features}, dict[str, FeatureSpec]()
+        left = [name, *(self.frame.names if self.frame is not None else ())] if name in known else []
+        while left:
+            one = left.pop()
+            if one in known and one not in asked:
+                asked[one] = known[one]
+                left += known[one].needs
+        return asked
 
     def _needs(self, spec: FeatureSpec) -> tuple[str, ...]:
         frame = self.frame.names if self.frame is not None and spec.in_part_coordinates else ()

@@ -323,6 +323,45 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     assert page.features.list.verticalScrollBar().maximum() == 0, "all rows are seen"
 
 
+def test_old_values_stay_marked_while_only_what_an_edit_concerns_is_measured_again(page, features, presenter, qtbot):
+    plane = {"kind": "plane", "regions": (Auto(1),), "limits": (("flatness", Limits(50.0, -0.1, 0.1)),)}
+    plan = InspectionPlan(
+        (
+            FeatureSpec("top", **plane),
+            FeatureSpec("table", **plane),
+            FeatureSpec("height", "distance", of=("top", "table")),
+        )
+    )
+    features.put_plan(plan, "three")
+    measured(features, qtbot)
+    before = features.result("table")
+    features.choose("top")
+    presenter.feature.set_value("margin_mm", 0.5)
+    page.refreshing.at_once()
+    assert features.measuring
+    top, table, height = (page.features.list.topLevelItem(row) for row in range(3))
+    for one in (top, height):
+        assert one.text(1) == "50.012 ± 0.024 mm" and "Out of date" in one.toolTip(1)
+        assert "Conformity is proven" not in one.toolTip(1)
+    assert features.result("top") is None and features.result("height") is None
+    assert features.result("table") is before
+    assert "Conformity is proven" in table.toolTip(1) and "Out of date" not in table.toolTip(1)
+    qtbot.waitUntil(lambda: features.shown is not None and not features.measuring)
+    page.refreshing.at_once()
+    assert "Conformity is proven" in page.features.list.topLevelItem(0).toolTip(1)
+    assert features.outdated("top") is None
+    undo(features)
+    assert features.outdated("top") is not None, "what was measured last is of the plan that was undone"
+
+
+def test_values_of_another_scan_are_not_kept(features, presenter, qtbot):
+    features.put_plan(InspectionPlan((FeatureSpec("top", "plane", regions=(Auto(1),)),)), "one")
+    measured(features, qtbot)
+    model = presenter.bench.model
+    model.record("scan", replace(model.results["scan"], key="another"))
+    assert features.result("top") is None and features.outdated("top") is None
+
+
 def test_the_list_stays_in_sight_and_results_do_not_move_the_form_of_the_one_chosen(page, features, presenter, qtbot):
     presenter.feature.add("plane")
     page.resize(1000, 640)

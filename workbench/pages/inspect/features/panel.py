@@ -116,7 +116,8 @@ class FeaturesPanel(QWidget):
     def _show_list(self) -> None:
         """All items anew where anything in them has changed; the one chosen stays chosen."""
         features = self._features
-        shown = (features.plan, features.shown, features.measuring)
+        results = [(features.result(name), features.outdated(name)) for name in features.plan.names]
+        shown = (features.plan, results, features.measuring)
         if shown != self._shown:
             self._shown = shown
             self.list.blockSignals(True)
@@ -140,13 +141,15 @@ class FeaturesPanel(QWidget):
         self.list.setFixedHeight(header + frame + ROWS * self.list.sizeHintForRow(0))
 
     def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
-        result = self._features.result(name)
+        outdated = self._features.outdated(name)
+        result = outdated or self._features.result(name)
         rows = () if result is None else result.rows
         text = words.value(rows[0]) if len(rows) == 1 else ""
         item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if text else name, text])
         item.setData(0, Qt.ItemDataRole.UserRole, name)
         item.setIcon(0, icon(kind.icon))
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        below = [self._row(words.short_name(row, name), row, name) for row in rows] if len(rows) > 1 else []
         tips = [tr(kind.title)]
         if result is None:
             item.setText(1, tr("measuring …") if self._features.measuring else tr("not measured"))
@@ -159,8 +162,11 @@ class FeaturesPanel(QWidget):
             self._mark(item, words.verdict(result))
             if not rows:
                 item.setText(1, tr("measured"))
-            if len(rows) > 1:
-                item.addChildren([self._row(words.short_name(row, name), row, name) for row in rows])
+            item.addChildren(below)
+        if outdated is not None:
+            tips = [tips[0], tr("Out of date: the feature, or one that it rests on, was changed.")]
+            for one in (item, *below):
+                self._mark_outdated(one, tips[1])
         for column in (0, 1):
             item.setToolTip(column, "\n".join(tip for tip in tips if tip))
         return item
@@ -178,6 +184,13 @@ class FeaturesPanel(QWidget):
         if verdict:
             symbol, colour = VERDICT_ICONS[verdict]
             item.setIcon(1, icon(symbol, colour=colour))
+
+    def _mark_outdated(self, item: QTreeWidgetItem, tip: str) -> None:
+        """A value stays readable until there is a new one, but it has no verdict any more."""
+        item.setIcon(1, icon("mdi6.clock-outline", colour="muted"))
+        item.setForeground(1, self.palette().placeholderText())
+        for column in (0, 1):
+            item.setToolTip(column, tip)
 
     def _chosen(self, item: QTreeWidgetItem | None) -> None:
         self._features.choose("" if item is None else str(item.data(0, Qt.ItemDataRole.UserRole)))

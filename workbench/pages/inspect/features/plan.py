@@ -37,7 +37,7 @@ class InspectFeatures(QObject):
         self.bench, self.model = bench, bench.model
         self._measuring: Task | None = None
         self._shown: ShownInspection | None = None
-        self._shown_for: object = None
+        self._shown_for: tuple[InspectionPlan, object] | None = None
         self.problem = ""
         self.chosen = ""
 
@@ -178,10 +178,18 @@ class InspectFeatures(QObject):
         return self._shown if self._shown_for == self._wanted() else None
 
     def result(self, name: str) -> ShownFeature | None:
-        """What a feature gave; None if it is not measured, or something has changed since."""
-        if self.shown is None:
+        """What a feature gave; None if it is not measured, or something it depends on has changed since."""
+        found = self._earlier(name)
+        if found is None or self._shown_for is None:
             return None
-        return next((one for one in self.shown.features if one.name == name), None)
+        return found if self._shown_for[0].asks_the_same(name, self.plan) else None
+
+    def outdated(self, name: str) -> ShownFeature | None:
+        """What a feature gave on this scan before it, or what it rests on, was changed; None if that is still true."""
+        found = self._earlier(name)
+        if found is None or name not in self.plan.names or found.kind != self.plan.feature(name).kind:
+            return None
+        return None if self.result(name) is found else found
 
     def choose(self, name: str) -> None:
         """Show the points this feature used; "" for none."""
@@ -217,9 +225,15 @@ class InspectFeatures(QObject):
         if "features" in self.model.results and not self.up_to_date and not self.problem:
             self.measure()
 
-    def _wanted(self) -> object:
+    def _wanted(self) -> tuple[InspectionPlan, object]:
         scan = self.model.results.get("scan")
         return self.plan, None if scan is None else scan.key
+
+    def _earlier(self, name: str) -> ShownFeature | None:
+        """What a feature gave when this scan's features were measured the last time."""
+        if self._shown is None or self._shown_for is None or self._shown_for[1] != self._wanted()[1]:
+            return None
+        return next((one for one in self._shown.features if one.name == name), None)
 
     def _with(self, spec: FeatureSpec, instead_of: str) -> InspectionPlan:
         if not instead_of:
