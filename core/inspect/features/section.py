@@ -146,7 +146,9 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
         lines = fit_surface(scene.cloud, indices, start, scene.errors, part=part, tukey=tukey)
         value, gradient, rule = _between(lines.shape, profile, cut)
         shape, rows, names = lines.shape, lines.budget(gradient), STRETCHES
-    notes = notes_on_form(scene.cloud, indices, shape, scene.errors, names, part, position)
+    off = (scene.cloud.points[indices] - profile.origin) @ profile.normal
+    place = np.column_stack([position, off])
+    notes = notes_on_form(scene.cloud, indices, shape, scene.errors, names, part, place)
     return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
 
 

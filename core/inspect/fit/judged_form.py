@@ -73,7 +73,6 @@ STRETCHES = (
     Message("form.the_second_stretch", "the second stretch"),
 )
 ARC, PIECE = Message("form.the_arc", "the arc"), Message("form.the_piece", "the surface about the point")
-_PART = Message("form.the_part", "the part")
 _UP, _DOWN = Message("form.too_high", "too high"), Message("form.too_low", "too low")
 _ABOVE, _BELOW = Message("form.above", "above"), Message("form.below", "below")
 
@@ -210,7 +209,8 @@ def notes_on_form(
     part
         (N,) which face each of the indices is on; None: all on one.
     position
-        (N,) in mm along a section, whose stretches the faces are then.
+        (N, 2) in mm along a section, whose stretches the faces are then, and off its plane: a surface that slants or
+        curves across the cut's width is no fault.
     """
     part = np.zeros(len(indices), dtype=np.int64) if part is None else part
     # Where a face is looked for, farther points are of something else; a region or a section holds them as well.
@@ -219,8 +219,15 @@ def notes_on_form(
         return ()
     cloud, part = cloud.select(indices[on]), part[on]
     position = None if position is None else position[on]
-    places = Places.in_picture(cloud.uv, part) if position is None else Places.in_section(position, part)
-    found = judge_form(cloud, Left.of(shape, cloud.points, part), part, places, errors)
+    left = Left.of(shape, cloud.points, part)
+    if position is None:
+        places = Places.in_picture(cloud.uv, part)
+    else:
+        places = Places.in_section(position[:, 0], part)
+        off = position[:, 1:] / max(float(np.abs(position[:, 1]).max()), 1e-9)
+        across = [np.where(part[:, None] == k, np.hstack([off, off**2]), 0.0) for k in range(len(names))]
+        left = Left(left.misfit, left.outward, np.hstack([left.design, *across]))
+    found = judge_form(cloud, left, part, places, errors)
     if found is None:
         return ()
     patterns = [
@@ -236,9 +243,10 @@ def notes_on_form(
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
-    """Where points off a nominal surface by `deviation` (N,) stand out of their uncertainty, however it is laid on.
+    """Where points off a nominal surface by `deviation` (N,) stand out of their uncertainty, however laid on.
 
-    `normals` (N, 3) are the nominal surface's. At most one note.
+    `normals` (N, 3) are of the nominal surface. At most one note, none on scatter: a map has no margin, and points at
+    edges, which no fit has left out, scatter more than they can state. What they scatter makes a pattern less sure.
     """
     one = np.zeros(len(cloud), dtype=np.int64)
     places = Places.in_picture(cloud.uv, one)
@@ -247,7 +255,7 @@ def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: P
         return ()
     pattern = _pattern(found, places, 0, cloud)
     if pattern is None:
-        return _of_scatter(found, (_PART,))
+        return ()
     most = int(np.argmax(np.abs(pattern.height)))
     return (
         Message(
