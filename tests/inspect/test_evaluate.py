@@ -22,7 +22,7 @@ from core.inspect.plan.feature_spec import (
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.surface.triangles import Triangles
-from tests.inspect.block_scan import BlockScan
+from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
 
 BLOCK = BlockScan(sweeps=24)
 ERRORS = PointErrors(BLOCK.covariance)
@@ -67,6 +67,23 @@ def test_a_section_gives_the_height_between_two_stretches(cloud):
     profile = inspection.result("cut").profile
     middle = np.median(profile.mean_height[(profile.mean_position > 50) & (profile.mean_position < 70)])
     assert middle == pytest.approx(40.0, abs=0.2)
+
+
+@pytest.mark.parametrize("lean", [0.0, 10.0])
+def test_a_height_in_a_plane_that_leans_on_the_faces_says_by_how_much_it_is_longer(cloud, lean):
+    angle, across = np.radians(lean), axes()[1]
+    normal = np.cos(angle) * across + np.sin(angle) * NORMAL
+    cuts = (Cut("rise", "height", (2.0, 30.0), (55.0, 85.0)),)
+    cut = Section(None, tuple((TABLE_MM - 20) * NORMAL), tuple(normal), half_width_mm=0.5, cuts=cuts)
+    rise = rows(evaluate(InspectionPlan((FeatureSpec("cut", "section", section=cut),)), cloud, errors=ERRORS))[
+        "cut rise"
+    ]
+    assert rise.value == pytest.approx(40.0 / np.cos(angle), abs=4 * rise.u)
+    leaning = [note for note in rise.notes if note.code == "feature.section_leans"]
+    assert len(leaning) == (lean > 0)
+    if leaning:
+        assert leaning[0].values["lean"] == pytest.approx(10.0, abs=0.2)
+        assert rise.value - leaning[0].values["extra_mm"] == pytest.approx(40.0, abs=4 * rise.u)
 
 
 def test_only_what_an_edit_changed_is_measured_again(cloud):

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -149,7 +149,31 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
     off = (scene.cloud.points[indices] - profile.origin) @ profile.normal
     place = np.column_stack([position, off])
     notes = notes_on_form(scene.cloud, indices, shape, scene.errors, names, part, place)
-    return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
+    found = scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
+    return replace(found, notes=(*found.notes, *_on_slant(found, profile, scene))) if cut.kind == "height" else found
+
+
+def _on_slant(height: Characteristic, profile: Profile, scene: Scene) -> tuple[Message, ...]:
+    """What is to be known of a height in a plane that does not stand square on the faces: it is longer than square.
+
+    A line in the picture makes such a plane wherever it does not run through the foot of the camera's own axis.
+    """
+    faces = scene.planes(0.0)
+    if not faces:
+        return ()
+    lean = float(np.arcsin(min(abs(profile.normal @ faces[0].normal), 1.0)))
+    extra_mm = abs(height.value) * (1 - float(np.cos(lean)))
+    if extra_mm <= height.u:
+        return ()
+    return (
+        Message(
+            "feature.section_leans",
+            "the section's plane leans by {lean}° on the largest face: measured square to it, the height is "
+            "{extra_mm} mm less",
+            lean=round(float(np.degrees(lean)), 1),
+            extra_mm=round(extra_mm, 3),
+        ),
+    )
 
 
 def _between(lines: ParallelPlanes, profile: Profile, cut: Cut) -> tuple[float, Array, Message]:
