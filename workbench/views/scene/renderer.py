@@ -32,6 +32,12 @@ from workbench.views.scene.passes import Part, Pass, Version, gather, version
 _log = logging.getLogger("vtk")
 _observed: list[vtkOutputWindow] = []
 
+SHADE = 0.7
+"""A plain mesh edge-on is darker by this part: its form is all there is to see."""
+
+VALUES_SHADE = 0.15
+"""A mesh coloured by values edge-on is darker by this part: its colours are to be read off the colour bar."""
+
 
 class Renderer:
     """Draws scenes into a render window, of a widget or off screen."""
@@ -155,7 +161,8 @@ class Renderer:
             data.GetPointData().SetNormals(_vtk(gathered.normals))
         actor = _actor(data)
         if gathered.triangles is not None:
-            _light(actor)
+            assert scene.mesh is not None
+            _light(actor, SHADE if scene.mesh.values is None else VALUES_SHADE)
         self._renderer.AddActor(actor)
         self._parts[part] = made, actor
 
@@ -237,13 +244,13 @@ def _nearer(camera: SceneCamera) -> vtkMatrix4x4:
     return matrix
 
 
-def _light(actor: vtkActor) -> None:
-    """Shade by the normals."""
+def _light(actor: vtkActor, shade: float) -> None:
+    """Shade by the normals: what is seen edge-on is darker by the part `shade`."""
     looks = actor.GetProperty()
     looks.LightingOn()
     looks.SetInterpolationToGouraud()
-    looks.SetAmbient(0.3)
-    looks.SetDiffuse(0.8)
+    looks.SetAmbient(1 - shade)
+    looks.SetDiffuse(shade)
 
 
 def _vtk(array: Any) -> vtkDataArray:
@@ -267,7 +274,7 @@ def _cell_of_all(count: int) -> vtkCellArray:
 def _headlight() -> Any:
     light = vtkLight()
     light.SetLightTypeToCameraLight()
-    light.SetPosition(-0.35, 0.45, 1.0)
+    light.SetPosition(0.0, 0.0, 1.0)
     light.SetFocalPoint(0, 0, 0)
     return light
 

@@ -248,6 +248,22 @@ def test_cloud_and_mesh_can_be_hidden(view, qtbot):
     assert count(view.picture(), RED) == 0
 
 
+@pytest.mark.parametrize("side", [1, -1])
+def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(view, qtbot, side):
+    tilted = np.array([[x, y, 500 + side * 1.7 * x] for x, y in ((-40, -40), (40, -40), (40, 40), (-40, 40))])
+    triangles, colouring = [[0, 1, 2], [0, 2, 3]], Colouring("height", "mm", limits=(0.0, 1.0))
+
+    def middle() -> np.ndarray:
+        view.view("top")
+        x, y = view.screen_positions(tilted.mean(axis=0, keepdims=True))[0].astype(int)
+        return view.picture()[y - 4 : y + 5, x - 4 : x + 5].reshape(-1, 3).mean(axis=0)
+
+    view.set_mesh(tilted, triangles, values=np.full(4, 0.95), colouring=colouring)
+    assert_allclose(middle(), colouring.of(np.array([0.95]))[0], atol=0.1 * 255)
+    view.set_mesh(tilted, triangles, colour="#ffffff")
+    assert middle().max() < 0.75 * 255
+
+
 def test_labels_and_measures_are_written_over_the_scene(view, qtbot):
     view.set_cloud(SPARSE, colours="#808080")
     complete(view, qtbot)
