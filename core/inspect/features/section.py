@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -161,8 +162,8 @@ def _on_slant(height: Characteristic, profile: Profile, scene: Scene) -> tuple[M
     faces = scene.planes(0.0)
     if not faces:
         return ()
-    lean = float(np.arcsin(min(abs(profile.normal @ faces[0].normal), 1.0)))
-    extra_mm = abs(height.value) * (1 - float(np.cos(lean)))
+    lean = math.asin(min(abs(float(profile.normal @ faces[0].normal)), 1.0))
+    extra_mm = abs(height.value) * (1 - math.cos(lean))
     if extra_mm <= height.u:
         return ()
     return (
@@ -170,7 +171,7 @@ def _on_slant(height: Characteristic, profile: Profile, scene: Scene) -> tuple[M
             "feature.section_leans",
             "the section's plane leans by {lean}° on the largest face: measured square to it, the height is "
             "{extra_mm} mm less",
-            lean=round(float(np.degrees(lean)), 1),
+            lean=round(math.degrees(lean), 1),
             extra_mm=round(extra_mm, 3),
         ),
     )
