@@ -14,19 +14,18 @@ OUT    ?= out
 # Modules are handed out in the order tests/conftest.py puts them into: long ones first.
 AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 SIDE_BY_SIDE := -n 2 $(AS_MODULES)
-test off-screen on-screen quick proofs: export OPENBLAS_NUM_THREADS = 1
-test off-screen on-screen quick proofs: export OMP_NUM_THREADS = 1
+test quick proofs: export OPENBLAS_NUM_THREADS = 1
+test quick proofs: export OMP_NUM_THREADS = 1
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
-# is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera, so they
-# run beside the others.
+# is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera.
 BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
-ON_SCREEN   := -n 1 $(AS_MODULES)
+ON_SCREEN   := -n 3 $(AS_MODULES)
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test off-screen on-screen quick proofs accuracy bench soak fuzz check docs translations notice screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -40,17 +39,11 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
 	@$(MAKE) --no-print-directory -j2 --output-sync=target check compile  # neither keeps two cores busy
 	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
-	@if command -v Xvfb >/dev/null; then $(MAKE) --no-print-directory -j2 --output-sync=target off-screen on-screen; \
+	@if command -v Xvfb >/dev/null; then set -x; \
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
+	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); \
 	else echo "Xvfb is not installed: windows are tested without a screen only"; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
-
-off-screen: export QT_QPA_PLATFORM = offscreen
-off-screen:
-	+$(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%)  # "+": seen while it runs, before what is on the screen
-
-on-screen: export TRISECT_VIRTUAL_SCREEN = 1
-on-screen:
-	$(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY)
 
 quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
