@@ -172,9 +172,10 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
     count = np.bincount(cells, minlength=residuals.cells)
     seen = np.flatnonzero(count)
     weight = errors.own**-2.0
-    columns = np.hstack([errors.design, errors.shared])
+    design = _independent(errors.design, errors.own)
+    columns = np.hstack([design, errors.shared])
     information = (columns * weight[:, None]).T @ columns
-    free = errors.design.shape[1]
+    free = design.shape[1]
     information[np.diag_indices(len(information))] += np.repeat([0.0, 1.0], [free, len(information) - free])
     factor = cho_factor(information)
     left = weight * (values - columns @ cho_solve(factor, columns.T @ (weight * values)))
@@ -209,6 +210,18 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
         alone=alone,
         freedom=max(freedom, 0),
     )
+
+
+def _independent(design: Array, own: Array) -> Array:
+    """(N, at most P) directions that span the effect (N, P) of fitted parameters, of unit size in terms of `own` (N,).
+
+    Few residuals, or all of one line, may leave parameters undetermined.
+    """
+    relative = design / own[:, None]
+    directions, sizes, _ = np.linalg.svd(
+        relative / np.maximum(np.linalg.norm(relative, axis=0), 1e-300), full_matrices=False
+    )
+    return np.asarray(directions[:, sizes > _ALONE * sizes.max(initial=1e-300)] * own[:, None])
 
 
 def judge_with_covariance(residuals: Residuals, covariance: Array) -> Judgement:

@@ -111,3 +111,17 @@ def test_a_pattern_beyond_shared_errors_is_found_with_its_size_whatever_the_stat
         assert found.systematic == pytest.approx(0.3 * np.sqrt(4 / 45), rel=0.3)
         assert found.profile[3] > 0 > found.profile[15]
         assert found.alone == pytest.approx(1 / stated, rel=0.1)
+
+
+def test_parameters_that_few_residuals_do_not_determine_change_no_judgement():
+    rng = np.random.default_rng(4)
+    values, own, cell = rng.normal(0, 0.1, 14), np.geomspace(0.003, 0.04, 14), np.arange(14, dtype=np.intp) % 6
+    at, shared = rng.normal(size=14), rng.normal(0, 1e-3, (14, 20))
+    design = np.column_stack([np.ones(14), at])
+    residuals = Residuals(values, own, np.arange(14), cell, 6)
+    needed = judge_with_shared(residuals, SharedErrors(own, shared, design))
+    doubled = np.column_stack([design, 3.1 * at - 0.7, np.zeros(14)])
+    more = judge_with_shared(residuals, SharedErrors(own, shared, doubled))
+    assert more.freedom == needed.freedom
+    assert more.p == pytest.approx(needed.p, rel=1e-6)
+    np.testing.assert_allclose(more.profile, needed.profile, rtol=1e-6)
