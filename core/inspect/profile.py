@@ -13,11 +13,11 @@ from core.model.arrays import Array
 Stretch: TypeAlias = tuple[float, float]
 
 JUMP = 6.0
-"""Neighbouring means that differ by this many times the median difference lie on either side of a step."""
+"""Neighbours whose heights differ by this many times the median difference lie on either side of a step."""
 SMALLEST_JUMP_MM = 0.1
 """No step is smaller, however smooth the profile."""
-GAP = 3.0
-"""Positions farther apart than this many usual steps are not neighbours: a shadow lies between."""
+NEIGHBOURS = 3
+"""Means whose median is the height on one side of a place: one that is off makes no step."""
 MARGIN = 0.2
 """Share of a piece that is left out at either end: stripes are biased at edges."""
 FEWEST_MEANS = 4
@@ -87,7 +87,8 @@ def usual_stretches(position: Array, height: Array) -> tuple[Stretch, Stretch]:
     Returns
     -------
     Stretch, Stretch
-        On the two longest pieces between steps and shadows; of a profile in one piece near its two ends.
+        On the longest pieces between steps of the two levels that are longest in all; of a profile of one level near
+        its two ends. Shadows end no piece: its points tell whether the level goes on behind.
 
     Raises
     ------
@@ -98,20 +99,48 @@ def usual_stretches(position: Array, height: Array) -> tuple[Stretch, Stretch]:
     --------
     >>> position = np.arange(0.5, 100.0)
     >>> usual_stretches(position, np.where(position < 40, 0.0, 10.0))
-    ((8.3, 31.7), (52.3, 87.7))
+    ((8.1, 30.9), (53.1, 87.9))
     """
     if len(position) < 2:
         raise ValueError("a profile of fewer than two means has no stretches")
-    apart, jump = np.diff(position), np.abs(np.diff(height))
-    edge = (jump > max(JUMP * float(np.median(jump)), SMALLEST_JUMP_MM)) | (apart > GAP * float(np.median(apart)))
-    pieces = [one for one in np.split(np.arange(len(position)), np.flatnonzero(edge) + 1) if len(one) >= FEWEST_MEANS]
-    longest = sorted(pieces, key=lambda one: -float(np.ptp(position[one])))[:2]
+    pieces, jump = _pieces(height - float(np.median(np.diff(height) / np.diff(position))) * position)
+    level = height - _slope(position, height, pieces) * position
+    levels = _levels([float(np.median(level[one])) for one in pieces], jump)
+    longest = sorted(levels, key=lambda one: -sum(float(np.ptp(position[pieces[number]])) for number in one))[:2]
     if len(longest) < 2:
         first, last = float(position[0]), float(position[-1])
         width = last - first
         return _rounded(first + 0.1 * width, first + 0.3 * width), _rounded(last - 0.3 * width, last - 0.1 * width)
-    low, high = sorted(longest, key=lambda one: float(np.median(height[one])))
+    chosen = [
+        max((pieces[number] for number in one), key=lambda piece: float(np.ptp(position[piece]))) for one in longest
+    ]
+    low, high = sorted(chosen, key=lambda one: float(np.median(level[one])))
     return _less_margin(position[low]), _less_margin(position[high])
+
+
+def _pieces(level: Array) -> tuple[list[NDArray[np.intp]], float]:
+    """Neighbouring means (numbers) without a step among them, and the least step, in mm."""
+    if len(level) < 2 * NEIGHBOURS:
+        return [], SMALLEST_JUMP_MM
+    medians = np.median(np.lib.stride_tricks.sliding_window_view(level, NEIGHBOURS), axis=1)
+    rise = np.abs(medians[NEIGHBOURS:] - medians[:-NEIGHBOURS])
+    jump = max(JUMP * float(np.median(rise)), SMALLEST_JUMP_MM)
+    steps = NEIGHBOURS + np.flatnonzero(rise > jump)
+    return [one for one in np.split(np.arange(len(level)), steps) if len(one) >= FEWEST_MEANS], jump
+
+
+def _slope(position: Array, height: Array, pieces: list[NDArray[np.intp]]) -> float:
+    """Of parallel lines, one through each piece, by least squares."""
+    away = [(position[one] - position[one].mean(), height[one]) for one in pieces]
+    squares = sum(float(across @ across) for across, _ in away)
+    return sum(float(across @ up) for across, up in away) / squares if squares > 0 else 0.0
+
+
+def _levels(heights: list[float], jump: float) -> list[list[int]]:
+    """Numbers of the heights, together where no step lies between."""
+    order = np.argsort(heights)
+    ends = np.flatnonzero(np.diff(np.asarray(heights)[order]) > jump) + 1
+    return [one.tolist() for one in np.split(order, ends) if len(one)]
 
 
 def _less_margin(position: Array) -> Stretch:

@@ -37,3 +37,19 @@ def test_of_a_profile_in_one_piece_both_ends_are_taken_whatever_its_length():
 def test_a_profile_of_one_mean_is_none():
     with pytest.raises(ValueError, match="fewer than two"):
         usual_stretches(np.array([1.0]), np.array([0.0]))
+
+
+def test_places_without_points_and_single_means_that_are_off_do_not_end_a_level():
+    lit = (POSITION % 9 < 5) | (POSITION > 55)
+    height = noisy(np.where(POSITION > 40, 20.0, 0.0))
+    height[::23] += 0.4
+    low, high = usual_stretches(POSITION[lit], height[lit])
+    assert 0 < low[0] < 12 and 28 < low[1] < 40
+    assert 40 < high[0] < 52 and 78 < high[1] < 90
+
+
+def test_a_plate_on_either_side_of_a_narrow_block_is_one_level():
+    block = (POSITION > 40) & (POSITION < 48)
+    height = noisy(np.where(block, 20.0, 0.003 * POSITION))
+    _, high = usual_stretches(POSITION, height)
+    assert 40 < high[0] < high[1] < 48
