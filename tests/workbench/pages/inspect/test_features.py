@@ -452,7 +452,7 @@ def test_a_new_measurement_in_a_section_begins_on_the_levels_of_its_profile(pres
     measured(features, qtbot)
     presenter.feature.add_cut()
     (cut,) = features.plan.feature("section 1").section.cuts
-    assert (cut.kind, cut.first, cut.second) == ("height", (8.3, 31.7), (52.3, 87.7))
+    assert (cut.kind, cut.first, cut.second) == ("height", (8.1, 30.9), (53.1, 87.9))
 
 
 def test_deviations_are_drawn_by_class_and_their_shares_are_told(presenter, page, features, measuring, qtbot, tmp_path):
