@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -134,6 +133,7 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
         )
     tukey = spec.filters.outliers
     shape: Shape
+    across = profile.normal
     names: tuple[Message, ...]
     if cut.kind == "radius":
         round_ = fit_surface(scene.cloud, indices, _circle(profile, chosen[0]), scene.errors, tukey=tukey)
@@ -143,38 +143,18 @@ def _cut(spec: FeatureSpec, cut: Cut, profile: Profile, scene: Scene) -> Charact
     else:
         points = scene.cloud.points
         centres = np.array([points[profile.indices[one]].mean(axis=0) for one in chosen])
-        start = ParallelPlanes(profile.up, centres, profile.along[:, None])
+        # A height is square to the faces, on which the section's plane leans; a distance of middles lies in that plane.
+        ways = np.column_stack([profile.along, profile.normal] if cut.kind == "height" else [profile.along])
+        start = ParallelPlanes(profile.up, centres, ways)
         lines = fit_surface(scene.cloud, indices, start, scene.errors, part=part, tukey=tukey)
         value, gradient, rule = _between(lines.shape, profile, cut)
         shape, rows, names = lines.shape, lines.budget(gradient), STRETCHES
-    off = (scene.cloud.points[indices] - profile.origin) @ profile.normal
+        if cut.kind == "height":
+            across = shape.axes[:, 1]
+    off = (scene.cloud.points[indices] - profile.origin) @ across
     place = np.column_stack([position, off])
     notes = notes_on_form(scene.cloud, indices, shape, scene.errors, names, part, place)
-    found = scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
-    return replace(found, notes=(*found.notes, *_on_slant(found, profile, scene))) if cut.kind == "height" else found
-
-
-def _on_slant(height: Characteristic, profile: Profile, scene: Scene) -> tuple[Message, ...]:
-    """What is to be known of a height in a plane that does not stand square on the faces: it is longer than square.
-
-    A line in the picture makes such a plane wherever it does not run through the foot of the camera's own axis.
-    """
-    faces = scene.planes(0.0)
-    if not faces:
-        return ()
-    lean = math.asin(min(abs(float(profile.normal @ faces[0].normal)), 1.0))
-    extra_mm = abs(height.value) * (1 - math.cos(lean))
-    if extra_mm <= height.u:
-        return ()
-    return (
-        Message(
-            "feature.section_leans",
-            "the section's plane leans by {lean}° on the largest face: measured square to it, the height is "
-            "{extra_mm} mm less",
-            lean=round(math.degrees(lean), 1),
-            extra_mm=round(extra_mm, 3),
-        ),
-    )
+    return scene.characteristic(spec, cut.kind, value, rows, result=cut.name, rule=rule, notes=notes)
 
 
 def _between(lines: ParallelPlanes, profile: Profile, cut: Cut) -> tuple[float, Array, Message]:
@@ -182,7 +162,8 @@ def _between(lines: ParallelPlanes, profile: Profile, cut: Cut) -> tuple[float, 
     height, gradient = lines.height(1, 0)
     if cut.kind == "height":
         rule = Message(
-            "feature.rule_height", "distance of two parallel lines fitted jointly to two stretches of the section"
+            "feature.rule_height",
+            "distance of two parallel faces fitted jointly to two stretches of the section, square to them",
         )
         return height, gradient, rule
     aside = float((lines.centres[1] - lines.centres[0]) @ np.cross(profile.normal, lines.outward_normal))
