@@ -10,6 +10,7 @@ from workbench.app import build_window
 from workbench.bench import Bench
 from workbench.language import choose
 from workbench.steps import STEPS
+from workbench.theme import apply_theme
 from workbench.views.lists.step_rail import StepRail
 
 SMALLEST = 1000, 680
@@ -22,11 +23,16 @@ def laid_out(widget: QWidget) -> None:
     layout.activate()
 
 
+@pytest.mark.parametrize("styled", [False, True])
 @pytest.mark.parametrize("name", ["en", "de", "zh_CN"])
-def test_every_page_has_room_in_the_smallest_window(bench: Bench, qapp: QApplication, qtbot, name: str) -> None:
+def test_every_page_has_room_in_the_smallest_window(
+    bench: Bench, qapp: QApplication, qtbot, name: str, styled: bool
+) -> None:
     sheet = qapp.styleSheet()
     choose(language(name), qapp)
     try:
+        if styled:  # as where the language is changed; else widgets are measured before the style is on
+            apply_theme(qapp, "light")
         window = build_window(qapp, bench, "light")
         qtbot.addWidget(window)
         window.resize(*SMALLEST)

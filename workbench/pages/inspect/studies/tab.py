@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import (
+    QFrame,
     QHBoxLayout,
     QHeaderView,
     QLabel,
     QPushButton,
+    QScrollArea,
     QStackedWidget,
     QTreeWidget,
     QTreeWidgetItem,
@@ -44,7 +46,11 @@ class StudiesTab(QWidget):
         self.stack = QStackedWidget()
         self.stack.addWidget(self._kept())
         self.stack.addWidget(UpAndDown(self.editor))
-        in_column(self.stack, on=self, margins=(6, 6, 6, 4))
+        scroll = QScrollArea()  # studies are rare: their tables and forms must not make the smallest window larger
+        scroll.setWidget(self.stack)
+        scroll.setWidgetResizable(True)
+        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        in_column(scroll, on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
