@@ -20,8 +20,8 @@ ONE_THREAD: Mapping[str, str] = {name: "1" for name in ("OPENBLAS_NUM_THREADS", 
 WRITING = frozenset(
     {
         *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_FAN, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
-        *(jobs.MEASURE_PROFILES, jobs.CHECK_RIG, jobs.MEASURE_GAUGE, jobs.MEASURE_FEATURES, jobs.MAKE_REPORT),
-        *(jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY, jobs.KEEP_TYPE1, jobs.ADD_RECORDING),
+        *(jobs.MEASURE_PROFILES, jobs.CHECK_RIG, jobs.MEASURE_GAUGE, jobs.MEASURE_FEATURES, jobs.MEASURE_ALL),
+        *(jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY, jobs.KEEP_TYPE1, jobs.ADD_RECORDING),
     }
 )
 """Jobs that put something into the folder of the open project: none is done where somebody else has it."""

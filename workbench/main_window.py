@@ -123,9 +123,9 @@ class MainWindow(QMainWindow):
         if 0 <= place < len(names) and (by < 0 or not self.presenters[self._current].blocker()):
             self.go_to(names[place])
 
-    def presenter_action(self, name: str) -> None:
-        """Call what a shortcut means on the current page ("run", "accept", "live", "capture"), if it has it."""
-        action = getattr(self.presenters.get(self._current), f"do_{name}", None)
+    def presenter_action(self, name: str, page: str = "") -> None:
+        """Call what a shortcut means ("run", "accept", "live", "capture") on a page, the current one by default."""
+        action = getattr(self.presenters.get(page or self._current), f"do_{name}", None)
         if action is not None:
             action()
 
@@ -234,6 +234,7 @@ class MainWindow(QMainWindow):
             "close": projects.close_project,
             "quit": self.leave,
             **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},
+            "whole": partial(self.presenter_action, "whole", "project"),
             "cancel": self.cancel_task,
             "back": partial(self.go, -1),
             "next": partial(self.go, 1),

@@ -30,6 +30,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("next", "Alt+Right", label("Next")),
     ("step", "Ctrl+1 … Ctrl+6", label("Go to a step")),
     ("run", "Ctrl+R", label("Do this step: calibrate, measure, make the report")),
+    ("whole", "Ctrl+Shift+R", label("Measure everything: from the pictures to the report")),
     ("accept", "Ctrl+Return", label("Accept a calibration")),
     ("live", "Ctrl+L", label("Start or stop the live source")),
     ("capture", "Ctrl+Space", label("Take a picture from the live source")),
@@ -60,6 +61,7 @@ NEED_A_PROJECT = (
     "back",
     "next",
     "run",
+    "whole",
     "accept",
     "live",
     "capture",
@@ -135,6 +137,7 @@ class Menus(QObject):
 
         step = bar.addMenu(tr("&Step"))
         self._add(step, "run", tr("&Do this step"))
+        self._add(step, "whole", tr("Measure &everything"))
         self._add(step, "accept", tr("&Accept"))
         self._add(step, "live", tr("&Live source on or off"))
         self._add(step, "capture", tr("Take a &picture"))

@@ -61,6 +61,29 @@ def changed(before: Keys, now: Keys) -> tuple[str, ...]:
     return tuple(name for name in names if before.get(name) != now.get(name))
 
 
+def up_to_date(step: str, project: Project, results: Mapping[str, Done]) -> bool:
+    """Whether `step` has a result, and nothing that it rests on has changed since."""
+    done = results.get(step)
+    return done is not None and not changed(done.rests_on, rests_on(step, project, results))
+
+
+def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]:
+    """The steps that are to be done before the report is there and up to date, in the order of work.
+
+    A calibration that was accepted without pictures of the project stands; a thickness that could not be measured on
+    the scan is not tried again.
+    """
+    sources, accepted = project.sources, project.accepted
+    wanted = {
+        "camera": bool(sources.camera or not accepted.camera),
+        "planes": bool(sources.planes or not accepted.fan),
+        "check": bool(sources.check),
+        "inspect": "inspect" in results,
+        "features": bool(project.inspection.features),
+    }
+    return tuple(step for step in STEPS if wanted.get(step, True) and not up_to_date(step, project, results))
+
+
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
     """The record of `step` just finished with `project` as it is; `at` is now if not given."""
     keys = rests_on(step, project, results)

@@ -8,21 +8,11 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, remove_leftovers
-from core.files.project.data import Accepted, Done, Project, ProjectFile
+from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import create_project, project_from_set
-from core.files.project.keys import finished
 from core.messages import Message, label
 from core.pipeline.compile_ahead import compile_ahead
-from core.pipeline.project.calibration import (
-    accept_camera,
-    accept_fan,
-    find_poses,
-    find_views,
-    solve_poses,
-    solve_views,
-)
-from core.pipeline.project.measuring import measure_scan
-from core.pipeline.project.report import make_report
+from core.pipeline.project.whole import measure_all
 from core.progress import Progress, silent
 from core.simulate.sample import sample_folder, sample_set
 
@@ -64,33 +54,19 @@ def clear_unfinished(folder: Path) -> None:
 
 
 def finished_project(folder: Path, project: Project, progress: Progress = silent) -> ProjectFile:
-    """Do every step of a project, accepting each calibration: what a technician does who presses Next six times.
+    """Do every step of a project, accepting each calibration.
 
     Raises
     ------
     InputError
-        If the pictures do not suffice for a step.
+        If that stops before the report: the pictures do not suffice, or somebody has to decide something.
     """
-    results: dict[str, Done] = {}
-
-    def done(step: str) -> None:
-        results[step] = finished(step, project, results)
-
-    camera = solve_views(folder, project, find_views(folder, project, progress), progress)
-    project = replace(project, accepted=Accepted(camera=accept_camera(folder, project, camera)))
-    done("camera")
-    poses = find_poses(folder, project, progress)
-    fan = solve_poses(folder, project, poses, progress)
-    kept = accept_fan(folder, project, fan, poses)
-    project = replace(project, accepted=replace(project.accepted, fan=kept))
-    done("planes")
-    summary = measure_scan(folder, project, progress)
-    done("scan")
-    if summary.gauge is not None:
-        done("inspect")
-    make_report(folder, project, progress)
-    done("report")
-    return ProjectFile(project, results)
+    whole = measure_all(folder, ProjectFile(project), progress)
+    if whole.stop is not None and whole.stop.page == "inspect":  # a part without a thickness has a report, too
+        whole = measure_all(folder, whole.file, progress)
+    if whole.stop is not None:
+        raise InputError(Message("sample.not_finished", "not every step could be done ({why})", why=whole.stop.why))
+    return whole.file
 
 
 def _described(project: Project) -> Project:

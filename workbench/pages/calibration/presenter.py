@@ -53,6 +53,7 @@ class CalibrationPresenter(StepPresenter):
         self.live.taken.connect(self._live_taken)
         self.live.ended.connect(self._live_ended)
         self.acceptance.changed.connect(self.changed)
+        bench.measuring.task_ended.connect(self._job_ended)
 
     def _connect(self) -> None:
         """To be called by a subclass once its `work`, `look` and `history` are there."""
@@ -259,6 +260,10 @@ class CalibrationPresenter(StepPresenter):
         if getattr(before.sources, self.step) != getattr(after.sources, self.step):
             self.look.forget()
         self.work.follow()
+
+    def _job_ended(self, _: object) -> None:
+        """A long job is over: it may have searched these pictures, too."""
+        self.work.recall()
 
     def _work_changed(self) -> None:
         self.look.follow()

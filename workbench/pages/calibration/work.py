@@ -186,10 +186,15 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         if self.search_task is not None:
             self.search_task.cancel()
         self._forget()
-        folder = self._model.folder
-        if folder is not None:
+        if self._model.is_open:
             self.follow()
-            self._recall(folder, self._model.project)
+            self.recall()
+
+    def recall(self) -> None:
+        """Take up what was found in the pictures and made of it before, unless it is known or on its way."""
+        folder, project = self._model.folder, self._model.project
+        if folder is not None and self.found is None and not self.searching:
+            self._recall(folder, project)
 
     def follow(self) -> None:
         """The project is another: show what is known for it, and solve again if it is known what its pictures show."""

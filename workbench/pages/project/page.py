@@ -13,7 +13,7 @@ from workbench.theme import icon
 from workbench.views.common import breakable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, heading, in_column, muted
+from workbench.views.layouts import STRETCH, heading, holding, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
 
 
@@ -49,7 +49,9 @@ class ProjectPage(StepPage):
             form.edited.connect(presenter.set_field)
         self.centre.addWidget(self._columns())
         self.rows, self.next_words = ValueRows(), muted()
-        self.add_panel(tr("How far the work is"), self.rows)
+        self.whole = QPushButton(icon("mdi6.play-circle-outline"), tr("Measure everything"))
+        self.whole.clicked.connect(presenter.do_whole)
+        self.add_panel(tr("How far the work is"), holding(in_column(self.rows, self.whole)))
         self.add_to_side(self.next_words)
         self.place = muted()
         self.folder = QPushButton(icon("mdi6.folder-open-outline"), tr("Open the project folder"))
@@ -61,6 +63,11 @@ class ProjectPage(StepPage):
             form.set_values({key: value for key, value in values.items() if key in form.values()})
         self.rows.set_rows(self.presenter.progress_rows())
         self.next_words.setText(self.presenter.next_words())
+        cannot = self.presenter.whole.cannot_start
+        self.whole.setEnabled(not cannot)
+        self.whole.setToolTip(
+            cannot or tr("Do every step that is not up to date, to the report; stops where you have to decide")
+        )
         self.place.setText(breakable(self.presenter.place()))
 
     def _columns(self) -> QWidget:

@@ -6,8 +6,10 @@ from dataclasses import fields, replace
 from typing import Any, Literal
 
 from core.files.project.data import ProjectInfo
+from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
+from workbench.pages.project.whole import MeasuringAll
 from workbench.step_state import ORDER, State
 
 ProgressLevel = Literal["", "good", "warn", "bad"]
@@ -17,6 +19,21 @@ class ProjectPresenter(StepPresenter):
     """Name, part, people, temperatures, notes."""
 
     step = "project"
+
+    def __init__(self, bench: Bench) -> None:
+        super().__init__(bench)
+        self.whole = MeasuringAll(bench, self)
+        self.whole.changed.connect(self.changed)
+        self.whole.ended.connect(self.go_to)
+
+    def opened(self) -> None:
+        self.whole.opened()
+
+    def do_whole(self) -> None:
+        """Do every step that is not up to date, to the report; why that cannot be done now is said."""
+        if why := self.whole.cannot_start:
+            self.bench.notices.info(why)
+        self.whole.start()
 
     def values(self) -> dict[str, Any]:
         """The fields as they are."""

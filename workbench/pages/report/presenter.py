@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from core.files.project.data import Project
-from core.files.project.keys import changed, finished, rests_on
+from core.files.project.keys import finished, up_to_date
 from core.files.results.export_list import EXPORTS
 from core.report.template import SECTIONS
 from workbench.bench import Bench
@@ -137,8 +137,7 @@ class ReportPresenter(StepPresenter):
                     step=title,
                     sentence=states[step].sentence,
                 )
-        features = self.model.results.get("features")
-        if features is not None and changed(features.rests_on, rests_on("features", self.project, self.model.results)):
+        if "features" in self.model.results and not up_to_date("features", self.project, self.model.results):
             return tr(
                 "Inspect: the features or the scan have changed since the features were measured. The report prints "
                 "what was measured then."

@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 from PySide6.QtCore import QObject, Signal
 
 from core.errors import InputError
-from core.files.project.keys import changed as changes
-from core.files.project.keys import finished, rests_on
+from core.files.project.keys import finished, up_to_date
 from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
@@ -132,9 +131,7 @@ class InspectFeatures(QObject):
     @property
     def up_to_date(self) -> bool:
         """Whether what was measured is of this plan and this scan."""
-        results = self.model.results
-        done = results.get("features")
-        return done is not None and not changes(done.rests_on, rests_on("features", self.model.project, results))
+        return up_to_date("features", self.model.project, self.model.results)
 
     def measure(self) -> None:
         """Measure the whole plan on the scan among the results."""

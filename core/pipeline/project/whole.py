@@ -1,0 +1,170 @@
+"""The whole job of a project in one go: whatever is not up to date is done, until somebody has to decide something.
+
+It gives what pressing every button in turn gives, byte for byte. Calibrations are accepted by themselves, unless a
+note says that they are bad.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.project.data import Project, ProjectFile
+from core.files.project.keys import finished, left_to_do
+from core.messages import Message
+from core.pipeline.project.calibration import (
+    accept_camera,
+    accept_fan,
+    find_poses,
+    find_views,
+    solve_poses,
+    solve_views,
+)
+from core.pipeline.project.inspection import measure_features
+from core.pipeline.project.interim_check import check_rig
+from core.pipeline.project.measuring import measure_gauge, measure_scan
+from core.pipeline.project.report import make_report
+from core.progress import Progress, silent
+
+Watch = Callable[[ProjectFile], None]
+
+BAD = frozenset({"camera.bad_fit"})
+"""Codes of notes with which a calibration is not accepted by itself."""
+
+
+@dataclass(frozen=True, slots=True)
+class Stop:
+    """Where the whole job stopped: the page at which somebody has to decide or to mend something, and why."""
+
+    page: str
+    why: Message
+
+
+@dataclass(frozen=True, slots=True)
+class WholeJob:
+    """What came of it: the project with what is accepted now and all results, and where it stopped, if it did."""
+
+    file: ProjectFile
+    stop: Stop | None
+
+
+def measure_all(folder: Path, file: ProjectFile, progress: Progress = silent, watch: Watch | None = None) -> WholeJob:
+    """Do every step of a project that is not up to date, from its pictures to its report.
+
+    It stops where somebody has to decide: at a calibration that is bad, was rejected, or rests on a minority of its
+    poses; after a check that is not passed; where a thickness or a feature that is asked for could not be measured;
+    and at a step that cannot be done. What was done until then is kept. Called again with the result, it goes on.
+
+    Parameters
+    ----------
+    folder, file
+        The project, and what is done of it already.
+    progress
+        Called with what is being done; may raise Cancelled.
+    watch
+        Given the project after each step that was done.
+    """
+    work = _Work(folder, file, progress, watch or (lambda _: None))
+    for step, page, do in (
+        ("camera", "camera", work.camera),
+        ("planes", "planes", work.planes),
+        ("check", "scan", work.check),
+        ("scan", "scan", work.scan),
+        ("inspect", "inspect", work.thickness),
+        ("features", "inspect", work.features),
+        ("report", "report", work.report),
+    ):
+        if step not in left_to_do(work.file.project, work.file.results):
+            continue
+        try:
+            stop = do()
+        except InputError as error:
+            stop = Stop(page, error.message)
+        if stop is not None:
+            return WholeJob(work.file, stop)
+    return WholeJob(work.file, None)
+
+
+class _Work:
+    """The project while its steps are done; each says whether to stop after it."""
+
+    def __init__(self, folder: Path, file: ProjectFile, progress: Progress, watch: Watch) -> None:
+        self.file = file
+        self._folder, self._progress, self._watch = folder, progress, watch
+
+    @property
+    def _project(self) -> Project:
+        return self.file.project
+
+    def camera(self) -> Stop | None:
+        project = self._project
+        camera = solve_views(self._folder, project, find_views(self._folder, project, self._progress), self._progress)
+        for note in camera.notes:
+            if note.code in BAD:
+                return Stop("camera", note)
+        return self._accept("camera", camera=accept_camera(self._folder, project, camera))
+
+    def planes(self) -> Stop | None:
+        project = self._project
+        poses = find_poses(self._folder, project, self._progress)
+        fan = solve_poses(self._folder, project, poses, self._progress)
+        return self._accept("planes", fan=accept_fan(self._folder, project, fan, poses))
+
+    def check(self) -> Stop | None:
+        check = check_rig(self._folder, self._project, self._progress)
+        self._done("check")
+        return None if check.passed else Stop("scan", check.sentence)
+
+    def scan(self) -> Stop | None:
+        summary = measure_scan(self._folder, self._project, self._progress)
+        self._done("scan", *(("inspect",) if summary.gauge is not None else ()), gone=("inspect",))
+        if summary.no_gauge is None or self._project.rig.gauge is None:
+            return None
+        return Stop("inspect", summary.no_gauge)
+
+    def thickness(self) -> Stop | None:
+        measure_gauge(self._folder, self._project, self._progress)
+        self._done("inspect")
+        return None
+
+    def features(self) -> Stop | None:
+        shown = measure_features(self._folder, self._project, self._progress)
+        self._done("features")
+        for one in shown.features:
+            if one.problem is not None:
+                why = Message(
+                    "whole.feature_not_measured",
+                    "{name} could not be measured: {why}",
+                    name=one.name,
+                    why=one.problem,
+                )
+                return Stop("inspect", why)
+        return None
+
+    def report(self) -> Stop | None:
+        make_report(self._folder, self._project, self._progress)
+        self._done("report")
+        return None
+
+    def _accept(self, step: str, **accepted: str) -> Stop | None:
+        if self._project.rejected & set(accepted.values()):
+            why = Message(
+                "whole.calibration_was_rejected",
+                "These pictures give a calibration that was rejected before: accept it after all, leave out pictures, "
+                "or take others.",
+            )
+            return Stop(step, why)
+        project = replace(self._project, accepted=replace(self._project.accepted, **accepted))
+        self.file = replace(self.file, project=project)
+        self._done(step)
+        return None
+
+    def _done(self, *steps: str, gone: tuple[str, ...] = ()) -> None:
+        """These steps have been done; the results of those that are `gone` are no longer there, if not done anew."""
+        results = {name: done for name, done in self.file.results.items() if name not in gone}
+        for step in steps:
+            results[step] = finished(step, self._project, results)
+        self.file = replace(self.file, results=results)
+        self._watch(self.file)

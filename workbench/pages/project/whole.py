@@ -1,0 +1,109 @@
+"""The whole job in one go: started by one button, what it did put into the project, and where it stopped shown."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project.data import ProjectFile
+from core.files.project.keys import STEPS, left_to_do
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.work import jobs
+from workbench.work.tasks import Task
+
+EDIT = "whole job"
+"""What it accepts is one edit, undone as a whole."""
+
+
+class MeasuringAll(QObject):
+    """Does every step that is not up to date, from the pictures to the report, and stops where somebody has to decide.
+
+    Each step is in the project as soon as it is done: what was done before a cancel stays.
+    """
+
+    changed = Signal()
+    ended = Signal(str)
+    """It is over, and this step is to be looked at: where somebody has to decide, or the report."""
+
+    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model = bench, bench.model
+        self._task: Task | None = None
+
+    @property
+    def running(self) -> bool:
+        """Whether it is being done, or waits for its turn."""
+        return self._task is not None
+
+    @property
+    def cannot_start(self) -> str:
+        """Why nothing can be done now, or ""."""
+        project = self._model.project
+        if self.running:
+            return tr("Everything is being measured.")
+        if self._bench.live.busy or self._model.is_recording:
+            return tr("Stop the live source first.")
+        left = left_to_do(project, self._model.results)
+        if not left:
+            return tr("Everything is up to date.")
+        if "scan" in left and not project.sources.scan:
+            return tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan.")
+        return ""
+
+    def start(self) -> None:
+        """Do it."""
+        folder = self._model.folder
+        if folder is None or self.cannot_start:
+            return
+        task: Task = self._bench.run_long(
+            self,
+            jobs.MEASURE_ALL,
+            folder,
+            self._model.file,
+            label=tr("Measure everything"),
+            on_done=lambda whole: self._over(task, folder, whole),
+            on_failed=lambda _: self._over(task, folder, None),
+            on_cancelled=lambda: self._over(task, folder, None),
+            offers={"progress": "progress", "watch": "watch"},
+        )
+        self._task = task
+        task.reported.connect(lambda file: self._step_done(task, folder, file))
+        self.changed.emit()
+
+    def opened(self) -> None:
+        """Another project: stop."""
+        if self._task is not None:
+            self._task.cancel()
+            self._task = None
+
+    def _step_done(self, task: Task, folder: Path, file: ProjectFile) -> None:
+        """Put what was done into the project; end it where that may not be changed by whoever is there."""
+        if task is not self._task or folder != self._model.folder:
+            return
+        now, accepted = self._model.project, file.project.accepted
+        after = replace(now, accepted=accepted, rejected=now.rejected - {accepted.camera, accepted.fan})
+        self._model.edit(tr("measure everything"), after, EDIT)
+        if self._model.project.accepted != accepted:
+            task.cancel()
+            return
+        known = self._model.results
+        new = {step: file.results.get(step) for step in STEPS if file.results.get(step) != known.get(step)}
+        if new:
+            self._model.record_all(new)
+
+    def _over(self, task: Task, folder: Path, whole: Any) -> None:
+        if task is not self._task:
+            return
+        self._task = None
+        self.changed.emit()
+        if whole is None or folder != self._model.folder:
+            return
+        if whole.stop is None:
+            self.ended.emit("report")
+            return
+        self._bench.notices.warning(text_of(whole.stop.why))
+        self.ended.emit(whole.stop.page)
