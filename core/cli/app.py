@@ -88,8 +88,11 @@ def main(arguments: Sequence[str] | None = None) -> None:
         # Whoever read our output has left; Python would complain once more when it closes standard output.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
     except Exception as error:  # noqa: BLE001  the one door for whatever nobody foresaw
-        _refuse(_fault(words, error), as_json="--json" in words)
-        sys.exit(ExitCode.FAULT)
+        from core.files.reading import refused_path
+
+        refused = refused_path(error)
+        _refuse(refused or _fault(words, error), as_json="--json" in words)
+        sys.exit(ExitCode.FAULT if refused is None else ExitCode.BAD_INPUT)
 
 
 def _run(words: list[str]) -> None:

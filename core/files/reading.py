@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import csv
+import errno
 import hashlib
 import json
+import os
 import tomllib
 from collections.abc import Iterable
 from pathlib import Path
@@ -13,6 +15,9 @@ from typing import Any
 from core.errors import InputError
 from core.files.limits import DATA_BYTES, TEXT_BYTES, TOML_BYTES, check_file, check_json, check_toml
 from core.messages import Message
+
+_REFUSED = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM)
+"""What the system says of a path that cannot be used: too long a name, links in a circle, no right to it."""
 
 MISSING = Message("file.missing", "the file is missing")
 
@@ -24,6 +29,11 @@ def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
         return path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
         raise cannot_read(path, error) from error
+
+
+def resolved(path: Path) -> Path:
+    """The whole path, links followed as far as they lead; unlike for Path.resolve, a circle of them is no error."""
+    return Path(os.path.realpath(path))
 
 
 def file_hash(path: Path) -> str:
@@ -100,6 +110,13 @@ def csv_rows(lines: Iterable[str], path: Path, separator: str = ",") -> list[lis
     except csv.Error as error:
         what = Message("file.no_csv", "this is no table ({reason})", reason=str(error))
         raise InputError(what, where=path) from error
+
+
+def refused_path(error: Exception) -> InputError | None:
+    """The sentence for an error of the system that a path is to blame for, wherever it shows; None for any other."""
+    if not isinstance(error, OSError) or error.errno not in _REFUSED or not isinstance(error.filename, str):
+        return None
+    return cannot_read(Path(error.filename), error)
 
 
 def cannot_read(path: Path, error: OSError | ValueError) -> InputError:

@@ -11,6 +11,7 @@ from pathlib import Path
 
 from core.errors import Cancelled, InputError
 from core.files.atomic import cannot_write, make_folder
+from core.files.reading import refused_path, resolved
 from core.files.recording.options import Options
 from core.messages import Message, label
 from core.pipeline.run import RunResult, run
@@ -86,8 +87,8 @@ def run_batch(
     InputError
         If there is no set, two have one name, or `out` cannot be written.
     """
-    places = _places(sets, make_folder(out).resolve())
-    stop = out.resolve() / STOP
+    places = _places(sets, resolved(make_folder(out)))
+    stop = resolved(out) / STOP
     _remove(stop)
     chosen = options or Options()
     futures = [executor.submit(measure_set, folder, place, chosen, stop) for folder, place in places]
@@ -109,7 +110,9 @@ def measure_set(folder: Path, out: Path, options: Options, stop: Path) -> SetRes
     except Cancelled:
         raise
     except Exception as error:  # noqa: BLE001  (a fault in one set must not cost the others)
-        return SetResult(folder, out, seconds=time.perf_counter() - began, error=_fault(error))
+        refused = refused_path(error)
+        told = _fault(error) if refused is None else refused.message
+        return SetResult(folder, out, seconds=time.perf_counter() - began, error=told)
     return _measured(folder, out, measured, time.perf_counter() - began)
 
 
@@ -136,7 +139,7 @@ def _places(sets: Sequence[Path], out: Path) -> list[tuple[Path, Path]]:
             where="batch",
             todo=Message("advice.name_folder_or_more", "name one folder or more"),
         )
-    whole = [folder.resolve() for folder in sets]
+    whole = [resolved(folder) for folder in sets]
     names = [folder.name for folder in whole]
     for number, name in enumerate(names):
         if name in names[:number]:

@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write
 from core.files.project.folder import AUTOSAVE
 from core.files.project.lock import LOCK
+from core.files.reading import resolved
 from core.messages import Message
 from core.progress import Progress, silent, steps
 
@@ -34,7 +35,7 @@ def copy_project(folder: Path, to: Path, progress: Progress = silent) -> Path:
             where=to,
             todo=Message("advice.choose_another_name", "choose another name"),
         )
-    if to.resolve().is_relative_to(folder.resolve()):
+    if resolved(to).is_relative_to(resolved(folder)):
         raise InputError(
             Message("project.copy_within_itself", "lies within the project that is to be copied"),
             where=to,

@@ -32,6 +32,7 @@ from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
 from core.files.project.json_form import project_text, read_project_text
 from core.files.project.keys import relocated
+from core.files.reading import resolved
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import read_rig
 from core.messages import Message
@@ -148,7 +149,7 @@ def put_opener(folder: Path) -> None:
     """Put NAME.trisect into a project's folder, if none is there; a folder that cannot be written to does without."""
     with suppress(InputError, OSError):
         if next(folder.glob(f"*{OPENER}"), None) is None:
-            write_text(folder / f"{folder.resolve().name}{OPENER}", _OPENER_SAYS, sync=False)
+            write_text(folder / f"{resolved(folder).name}{OPENER}", _OPENER_SAYS, sync=False)
 
 
 def backups(folder: Path) -> tuple[Path, ...]:
@@ -228,8 +229,8 @@ def can_be_saved(folder: Path) -> bool:
 
 def stored_source(project_folder: Path, pictures: Path) -> str:
     """How a project names a folder of pictures: relative inside the project's folder, in full elsewhere."""
-    full = pictures.resolve()
-    own = project_folder.resolve()
+    full = resolved(pictures)
+    own = resolved(project_folder)
     return full.relative_to(own).as_posix() if full.is_relative_to(own) else full.as_posix()
 
 
@@ -252,7 +253,7 @@ def results_folder(project_folder: Path) -> Path:
 
 def sources_of_set(folder: Path) -> Sources:
     """The folders of pictures in a recording set, in full; nothing for a part that is not there."""
-    folders = {part: folder.resolve() / part for part in (*PARTS, CHECK)}
+    folders = {part: resolved(folder) / part for part in (*PARTS, CHECK)}
     return Sources(**{part: path.as_posix() if path.is_dir() else "" for part, path in folders.items()})
 
 
@@ -266,7 +267,7 @@ def project_from_set(folder: Path, name: str) -> Project:
     """
     rig = read_rig(folder / "rig.toml")
     stated = replace(rig, unstated=frozenset())  # the window shows the paper's where rig.toml says nothing
-    return Project(ProjectInfo(name=name, part=folder.resolve().name), stated, sources_of_set(folder))
+    return Project(ProjectInfo(name=name, part=resolved(folder).name), stated, sources_of_set(folder))
 
 
 def _file_of(path: Path) -> Path:

@@ -36,7 +36,7 @@ from core.files.project.json_form import project_text
 from core.files.project.keys import relocated
 from core.files.project.lock import LOCK
 from core.files.project.report_template import logo_beside
-from core.files.reading import cannot_read, json_of
+from core.files.reading import cannot_read, json_of, resolved
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import Table
 from core.files.results.nominal_surface import nominal_names
@@ -99,7 +99,7 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
     files = {
         path.relative_to(folder).as_posix(): path
         for path in sorted(folder.rglob("*"))
-        if path.is_file() and path.resolve() != to.resolve() and not _left_behind(path.relative_to(folder))
+        if path.is_file() and resolved(path) != resolved(to) and not _left_behind(path.relative_to(folder))
     }
     packed, outside = _with_all_within(folder, file)
     files |= outside
@@ -186,7 +186,7 @@ def _with_all_within(folder: Path, file: ProjectFile) -> tuple[ProjectFile, Mapp
     for part in (*PARTS, CHECK):
         stored = getattr(file.project.sources, part)
         pictures = source_folder(folder, stored)
-        if pictures is None or not pictures.is_dir() or pictures.resolve().is_relative_to(folder.resolve()):
+        if pictures is None or not pictures.is_dir() or resolved(pictures).is_relative_to(resolved(folder)):
             continue
         place = f"{GATHERED}/{part}"
         while (folder / place).exists():
@@ -203,9 +203,9 @@ def _enclosed(folder: Path, file: ProjectFile) -> tuple[dict[str, str], dict[str
     moved: dict[str, str] = {}
     files: dict[str, Path] = {}
     for stored in sorted({*nominal_names(file.project.inspection), file.project.report.template} - {""}):
-        path = (folder / stored).resolve()
-        if path.is_relative_to(folder.resolve()):
-            moved[stored] = path.relative_to(folder.resolve()).as_posix()
+        path = resolved(folder / stored)
+        if path.is_relative_to(resolved(folder)):
+            moved[stored] = path.relative_to(resolved(folder)).as_posix()
         elif path.is_file():
             place = f"{ENCLOSED}/{len(files) + 1}"
             moved[stored] = f"{place}/{path.name}"

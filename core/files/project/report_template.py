@@ -29,7 +29,7 @@ from core.errors import InputError
 from core.files.complaints import checked
 from core.files.limits import check_pixels
 from core.files.picture_size import declared_sizes
-from core.files.reading import read_bytes, read_toml
+from core.files.reading import read_bytes, read_toml, resolved
 from core.files.recording.rig import Table
 from core.messages import Message
 from core.report.template import LANGUAGES, PAPERS, SECTIONS, Paper, ReportTemplate
@@ -86,8 +86,8 @@ def read_report_template(path: Path) -> ReportTemplate:
 
 def logo_beside(path: Path) -> Path | None:
     """The logo of the template in `path`; None if it has none, or one that lies elsewhere than beside or below it."""
-    logo = (path.parent / checked(_Template, read_toml(path), path).logo).resolve()
-    return logo if logo.is_file() and logo.is_relative_to(path.parent.resolve()) else None
+    logo = resolved(path.parent / checked(_Template, read_toml(path), path).logo)
+    return logo if logo.is_file() and logo.is_relative_to(resolved(path.parent)) else None
 
 
 def section_set(names: list[str], *, where: str) -> frozenset[str]:

@@ -16,7 +16,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, remove_leftovers, write_bytes
 from core.files.json_text import write_json
 from core.files.linking import Way, link
-from core.files.reading import MISSING, read_bytes, read_json
+from core.files.reading import MISSING, read_bytes, read_json, resolved
 from core.files.recording.import_plan import ImportPlan
 from core.files.recording.recording_set import PARTS, RIG
 from core.files.recording.rig import read_rig
@@ -171,11 +171,11 @@ def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...
     return {
         "imported_at": datetime.now(UTC).astimezone().isoformat(timespec="seconds"),
         "version": __version__,
-        "from": {name: str(where.folder.resolve() / where.pattern) for name, where in asked.items() if where},
+        "from": {name: str(resolved(where.folder) / where.pattern) for name, where in asked.items() if where},
         "order": request.order.value,
         "rules": {part: as_json(rule) for part, rule in plan.rules.items()},
         "pictures": [
-            {"name": name, "from": str(path.resolve()), "as": ways[name]}
+            {"name": name, "from": str(resolved(path)), "as": ways[name]}
             | ({"taken_at": at.isoformat()} if (at := taken.get(name)) else {})
             for one in plan.pictures
             for name, path in one.files()

@@ -23,7 +23,7 @@ from core.errors import InputError
 from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
-from core.files.reading import cannot_read
+from core.files.reading import cannot_read, resolved
 from core.files.recording.set_listing import check_sizes, pictures_in
 from core.messages import Message, plural_message
 
@@ -175,7 +175,7 @@ def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
         reference = next((path for path in files if path.stem.lower() == _REFERENCE), None)
     elif not reference.is_file():
         raise InputError(Message("import.no_reference", "there is no such picture"), where=reference)
-    frames = [path for path in files if reference is None or path.resolve() != reference.resolve()]
+    frames = [path for path in files if reference is None or resolved(path) != resolved(reference)]
     if not frames:
         raise InputError(Message("import.no_frames", "there are no frames beside the reference"), where=where)
     ordered, rule, more = _in_order(frames, order)

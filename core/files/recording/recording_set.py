@@ -25,7 +25,7 @@ from core.acquire.folder import read_ahead
 from core.acquire.grey import Channel, is_difference
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours, decode_picture, read_picture
-from core.files.reading import file_hash, read_bytes
+from core.files.reading import file_hash, read_bytes, resolved
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
@@ -100,8 +100,8 @@ class RecordingSet:
 
     def contains(self, folder: Path) -> bool:
         """Whether `folder` holds a part of the set, so that nothing else should be written there."""
-        own = {path.resolve() for place in self.folders.values() for path in (place, place.parent)}
-        return folder.resolve() in own
+        own = {resolved(path) for place in self.folders.values() for path in (place, place.parent)}
+        return resolved(folder) in own
 
     def read(self, path: Path) -> Picture:
         """Read one picture of the set as the rig wants it, and take its hash.
@@ -243,7 +243,7 @@ def open_set(folder: Path) -> RecordingSet:
     places = {part: folder / part for part in PARTS}
     if (folder / CHECK).is_dir():
         places[CHECK] = folder / CHECK
-    found = _listed(folder.resolve().name, rig, places, file_hash(folder / RIG))
+    found = _listed(resolved(folder).name, rig, places, file_hash(folder / RIG))
     check_sizes([path for part in (*PARTS, CHECK) for path in _paths(found, part)])
     return found
 
@@ -271,7 +271,7 @@ def gather_set(
     folders = {part: folder for part, folder in given.items() if folder is not None}
     taken: dict[Path, str] = {}
     for part, folder in folders.items():
-        other = taken.setdefault(folder.resolve(), part)
+        other = taken.setdefault(resolved(folder), part)
         if other != part:
             raise InputError(
                 Message("set.folder_twice", "is the folder of both {other} and {part}", other=other, part=part),
@@ -279,7 +279,7 @@ def gather_set(
                 todo=Message("advice.keep_in_two_folders", "keep their pictures in two folders"),
             )
     places = [folders[part] for part in reversed(PARTS) if part in folders]
-    found = _listed(name or (places[0].resolve().parent.name if places else ""), rig, folders, _rig_hash(rig, places))
+    found = _listed(name or (resolved(places[0]).parent.name if places else ""), rig, folders, _rig_hash(rig, places))
     for part in (*PARTS, CHECK):  # between the parts, each step compares with the camera's calibration
         check_sizes(_paths(found, part))
     return found

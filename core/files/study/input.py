@@ -18,6 +18,7 @@ from typing import cast
 import numpy as np
 
 from core.errors import InputError
+from core.files.reading import resolved
 from core.files.study.results import Measured, measured_in
 from core.files.study.table import Table, read_table
 from core.inspect.characteristic import Limits
@@ -256,7 +257,7 @@ def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> 
 
 def _labels(paths: Sequence[Path]) -> tuple[str, ...]:
     """The folders' own names, with those of the folders above them as far as needed to tell them apart."""
-    whole = [path.resolve().parts for path in paths]
+    whole = [resolved(path).parts for path in paths]
     for depth in range(1, max(map(len, whole))):
         names = tuple("/".join(parts[-depth:]) for parts in whole)
         if len(set(names)) == len(names):

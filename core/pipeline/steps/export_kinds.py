@@ -17,7 +17,7 @@ from core.files.exchange.result_csv import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.ros_camera_info import write_camera_info
 from core.files.exchange.xlsx import write_xlsx
-from core.files.reading import read_bytes
+from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
 from core.files.results.export_list import EXPORTS, ExportKind
@@ -74,7 +74,7 @@ def _copy(name: str) -> Write:
                 where=source,
                 todo=Message("advice.do_step_first", "do the step that makes it first"),
             )
-        if source.resolve() != path.resolve():
+        if resolved(source) != resolved(path):
             write_bytes(path, read_bytes(source))
 
     return copy
