@@ -7,18 +7,52 @@ import json
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from core.errors import InputError
+from core.files.arrays_file import Member, read_arrays
 from core.files.atomic import write_bytes, write_text
-from core.messages import Message
+from core.files.complaints import checked_json, fitting
+from core.files.reading import read_json
+from core.files.tables import Finite, ResultFile, Row3
+from core.messages import Message, plain
 from core.model import Camera, Fan, LightPlane, Pose
 
 TRUTH_FILE = "truth.json"
 DEPTH_FILE = "depth.npz"
+
+
+_Row6 = Annotated[list[Finite], Field(min_length=6, max_length=6)]
+_MAPS = {"depth": Member("f", ("rows", "columns")), "table": Member("b", ("rows", "columns"))}
+
+
+class _Camera(ResultFile):
+    """The camera as rendered."""
+
+    image_size: tuple[int, int]
+    matrix: Annotated[list[Row3], Field(min_length=3, max_length=3)]
+    distortion: list[Finite]
+
+
+class _Fan(ResultFile):
+    """The fan as rendered."""
+
+    pi: Annotated[list[Row3], Field(min_length=1)]
+
+
+class _Content(ResultFile):
+    """truth.json, but for the scenario."""
+
+    camera: _Camera
+    fan: _Fan
+    sweeps: dict[str, Row3]
+    camera_poses: dict[str, _Row6]
+    plane_poses: dict[str, _Row6]
+    object: dict[str, Any]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -88,22 +122,21 @@ def load_truth(folder: Path) -> Truth:
         If there is none.
     """
     inside = folder if (folder / TRUTH_FILE).exists() else truth_folder(folder)
-    try:
-        content = json.loads((inside / TRUTH_FILE).read_text(encoding="utf-8"))
-        with np.load(inside / DEPTH_FILE) as maps:
-            depth, table = maps["depth"], maps["table"]
-    except FileNotFoundError as error:
-        raise InputError(
-            Message("simulate.no_truth", "there is no truth beside this set: it was not simulated here"), where=folder
-        ) from error
-    camera = content["camera"]
-    return Truth(
-        Camera(tuple(camera["image_size"]), camera["matrix"], camera["distortion"]),
-        Fan(tuple(LightPlane(pi) for pi in content["fan"]["pi"])),
-        {name: LightPlane(pi) for name, pi in content["sweeps"].items()},
-        {name: Pose.from_vector(vector) for name, vector in content["camera_poses"].items()},
-        {name: Pose.from_vector(vector) for name, vector in content["plane_poses"].items()},
-        content["object"],
-        depth,
-        table,
-    )
+    path = inside / TRUTH_FILE
+    if not path.exists() or not (inside / DEPTH_FILE).exists():
+        what = Message("simulate.no_truth", "there is no truth beside this set: it was not simulated here")
+        raise InputError(what, where=folder)
+    content = checked_json(_Content, read_json(path), path)
+    maps = read_arrays(inside / DEPTH_FILE, _MAPS, todo=plain(""))
+    camera = content.camera
+    with fitting(path):
+        return Truth(
+            Camera(camera.image_size, np.array(camera.matrix), np.array(camera.distortion)),
+            Fan(tuple(LightPlane(np.array(pi)) for pi in content.fan.pi)),
+            {name: LightPlane(np.array(pi)) for name, pi in content.sweeps.items()},
+            {name: Pose.from_vector(vector) for name, vector in content.camera_poses.items()},
+            {name: Pose.from_vector(vector) for name, vector in content.plane_poses.items()},
+            content.object,
+            maps["depth"],
+            maps["table"],
+        )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import secrets
 import shutil
 from collections.abc import Callable
@@ -28,10 +29,14 @@ from core.files.project.packing import pack_project, unpack_project
 from core.files.project.people import Rules, person, read_rules, write_rules
 from core.files.project.report_template import read_report_template
 from core.files.recording.features_file import read_poses, read_views, write_views
+from core.files.recording.import_pictures import earlier_imports
 from core.files.recording.import_plan import _taken_at
+from core.files.recording.marks import marked_frames
 from core.files.recording.recording_log import read_log
 from core.files.recording.rig import read_rig
 from core.files.recording.set_listing import check_sizes
+from core.files.recording.unfinished import note_recording, unfinished_recording
+from core.files.results.artefact_register import read_register
 from core.files.results.camera_file import read_camera
 from core.files.results.check_file import read_check
 from core.files.results.fan_file import fan_id, read_fan
@@ -40,12 +45,19 @@ from core.files.results.inspection_file import read_inspection
 from core.files.results.mesh_export import write_stl
 from core.files.results.nominal_surface import read_nominal
 from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.profile_file import read_profiles_file
+from core.files.results.rig_history import DATA, read_history
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
+from core.files.results.shown_file import read_shown, write_shown
 from core.files.study.input import read_crossed, read_readings, read_repeats
 from core.files.study.study_file import read_study, write_study
 from core.files.study.table import read_table
+from core.inspect.conformity import Verdict
+from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.messages import Message
 from core.simulate.scenario import Scenario
+from core.simulate.truth import load_truth, truth_folder
 from tests.files.plan.test_plan_file import EVERYTHING
 from tests.files.study.test_study_file import STUDIES
 from tests.report.report_samples import camera_calibration
@@ -82,6 +94,18 @@ def _packed(path: Path) -> None:
         shutil.rmtree(folder, ignore_errors=True)
 
 
+def _of_the_rig(path: Path, read: Callable[[], Any]) -> Any:
+    """What is read of a file in the user's own folder, which is `path`'s now; such folders are named by the system."""
+    before = os.environ.get(DATA)
+    os.environ[DATA] = str(path.parent.parent)
+    try:
+        return read()
+    finally:
+        os.environ.pop(DATA) if before is None else os.environ.update({DATA: before})
+
+
+PLAN: dict[str, Any] = {"feature": []}
+
 READERS = {
     "rig": Reader("rig.toml", read_rig),
     "plan": Reader("plan.toml", read_plan),
@@ -104,6 +128,15 @@ READERS = {
     "run": Reader("run.json", read_run),
     "check": Reader("check.json", read_check),
     "inspection": Reader("inspection.json", read_inspection),
+    "shown": Reader("shown.npz", lambda path: read_shown(path.with_name("inspection.json"), PLAN)),
+    "profile": Reader("profile.json", read_profiles_file),
+    "history": Reader("own/rigs/rig.json", lambda path: _of_the_rig(path, lambda: read_history("rig"))),
+    "artefacts": Reader("set/artefacts.toml", lambda path: _of_the_rig(path, lambda: read_register(path.parent))),
+    "imports": Reader("set/import.json", lambda path: earlier_imports(path.parent)),
+    "marks": Reader("set/marks.csv", lambda path: marked_frames(path.parent)),
+    "unfinished": Reader("begun/recordings/.unfinished.json", lambda path: unfinished_recording(path.parents[1])),
+    "truth": Reader("set.truth/truth.json", lambda path: load_truth(path.parent)),
+    "true depth": Reader("set.truth/depth.npz", lambda path: load_truth(path.parent)),
     "cloud": Reader("small.ply", read_cloud),
     "mesh": Reader("mesh.ply", read_mesh),
     "nominal": Reader("part.stl", read_nominal),
@@ -135,7 +168,7 @@ CHECK = {
     ]}, {"name": "q", "reason": _NOTE, "lines": []}],
 }  # fmt: skip
 INSPECTION = {
-    "schema_version": 1, "calibration_id": "a", "notes": [_NOTE, "a note"],
+    "schema_version": 1, "plan": PLAN, "calibration_id": "a", "notes": [_NOTE, "a note"],
     "features": [{"name": "top", "kind": "plane"}, {"name": "side", "kind": "plane", "problem": _NOTE}],
     "characteristics": [{
         "name": "top flatness", "feature": "top", "kind": "plane", "value": 0.02, "u": 0.004, "k": 2.0,
@@ -144,6 +177,30 @@ INSPECTION = {
         "budget": [{"source": "camera", "u": 0.001, "point_mm": 1.0, "distribution": "normal", "dof": None}],
     }],
 }  # fmt: skip
+PROFILE = {
+    "thickness_mm": 50.0, "U_mm": 0.1, "u_mm": 0.05, "k": 2.0, "shown": 0, "calibration_id": "a", "pictures": [
+        {"index": 0, "name": "a.png", "thickness_mm": 50.0, "own_mm": 0.1, "points": [5, 6], "reason": None},
+        {"index": 1, "name": "b.png", "thickness_mm": None, "own_mm": None, "points": [0, 0], "reason": _NOTE},
+    ],
+}  # fmt: skip
+PAST_CHECK = {
+    "taken_at": "2026-01-01T00:00:00+00:00", "calibration_id": "a", "pictures_id": "b", "verdict": "passed", "p": 0.5,
+    "step_mm": 50.0, "offset_px": 0.1, "error_mm": 0.01, "unseen_mm": 0.02, "stated_mm": None, "celsius": 20.5,
+}  # fmt: skip
+SHOWN = ShownInspection(
+    (
+        ShownFeature("top", "plane", (), 3, np.zeros((3, 3), np.float32), np.zeros((3, 2), np.float32)),
+        ShownFeature(
+            "cut", "section", (), 0, np.zeros((0, 3), np.float32), np.zeros((0, 2), np.float32), Message("a.b", "why"),
+            ShownProfile(np.zeros(4), np.zeros(4), np.zeros(4), np.zeros(4), np.zeros(4, np.int64)),
+            ShownDeviations(
+                (ShownClass("good", 0, -1.0, 1.0, 1.0, np.zeros((2, 3), np.float32)),),
+                np.arange(3.0), np.arange(2), 0.1,
+            ),
+        ),
+    ),
+    Verdict.NONE, (), "a",
+)  # fmt: skip
 """As the programs of an interim check and of a plan write them."""
 
 
@@ -161,7 +218,10 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     (folder / "scenario.toml").write_text('object = "block"\nscale = 0.25\nframes = 20\nseed = 3\n')
     (folder / "check.json").write_text(json.dumps(CHECK))
     (folder / "inspection.json").write_text(json.dumps(INSPECTION))
+    write_shown(folder / "inspection.json", SHOWN)
+    (folder / "profile.json").write_text(json.dumps(PROFILE))
     _pictures(folder)
+    _of_a_set(folder, recording)
     _tables(folder)
     _cameras(folder)
     (folder / "project").mkdir()
@@ -180,6 +240,22 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     lines = [small if line.startswith(b"element vertex") else line for line in head.split(b"\n")]
     body = data[len(head) + 11 :]
     (folder / "small.ply").write_bytes(b"\n".join(lines) + b"end_header\n" + body[: 50 * (len(body) // _count(head))])
+
+
+def _of_a_set(folder: Path, recording: Path) -> None:
+    """What lies in and beside a recording set, and in the user's own folder."""
+    inside = folder / "set"
+    inside.mkdir()
+    block = 'id = "GB 50"\nvalue_mm = 50.0\nU_mm = 0.001\ndue = 2028-03-01'
+    (inside / "artefacts.toml").write_text(f"[[artefact]]\n{block}\n")
+    (inside / "import.json").write_text(json.dumps({"imports": [{"version": "1", "pictures": []}]}))
+    (inside / "marks.csv").write_text("name\nframe1.png\nframe2.png\n")
+    shutil.copytree(truth_folder(recording), folder / "set.truth")
+    (folder / "own" / "rigs").mkdir(parents=True)
+    (folder / "own" / "rigs" / "rig.json").write_text(json.dumps({"rig": "rig", "checks": [PAST_CHECK]}))
+    (folder / "begun" / "recordings" / "scan").mkdir(parents=True)
+    note_recording(folder / "begun", "scan", folder / "begun" / "recordings" / "scan")
+    shutil.copy(folder / "picture.png", folder / "begun" / "recordings" / "scan")
 
 
 def _count(head: bytes) -> int:

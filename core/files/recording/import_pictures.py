@@ -59,7 +59,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     """
     parts = plan.parts
     require_free(plan, target, rig)
-    log = _log(target)
+    log = earlier_imports(target)
     make_folder(target)
     ways: dict[str, Way] = {}
     total = sum(len(one.files()) for one in plan.pictures)
@@ -117,20 +117,18 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
             )
 
 
-def _log(target: Path) -> list[Any]:
-    """What was imported before."""
+def earlier_imports(target: Path) -> list[Any]:
+    """What import.json says was imported into a set before; InputError if it is none of ours."""
     path = target / IMPORTED
     if not path.exists():
         return []
-    kept = read_json(path)
-    try:
-        return list(kept["imports"])
-    except (KeyError, TypeError) as error:
-        raise InputError(
-            Message("import.log_damaged", "this is no record of imported pictures"),
-            where=path,
-            todo=Message("import.advice_log", "move it away; no picture needs it"),
-        ) from error
+    advice = Message("import.advice_log", "move it away; no picture needs it")
+    kept = read_json(path, todo=advice)
+    imports = kept.get("imports") if isinstance(kept, dict) else None
+    if not isinstance(imports, list):
+        what = Message("import.log_damaged", "this is no record of imported pictures")
+        raise InputError(what, where=path, todo=advice)
+    return imports
 
 
 def _notes(target: Path, ways: Mapping[Way, int]) -> tuple[Message, ...]:

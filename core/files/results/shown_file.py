@@ -5,14 +5,14 @@ The rows themselves stand in inspection.json alone; shown.npz knows by its hash 
 
 from __future__ import annotations
 
-import hashlib
 import json
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
 from numpy.typing import NDArray
+from pydantic import Field
 
 from core.errors import InputError
 from core.files.arrays_file import (
@@ -26,14 +26,37 @@ from core.files.arrays_file import (
     whole,
     write_arrays,
 )
+from core.files.complaints import checked_json, fitting
 from core.files.json_text import to_json
-from core.files.reading import read_bytes, read_json
+from core.files.reading import file_hash, json_of, read_json
 from core.files.results.inspection_file import read_inspection
+from core.files.tables import Finite, ResultFile
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.shown.deviation_map import bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import as_text, from_text, plain
+
+
+class _Feature(ResultFile):
+    """What is kept of a feature beside its arrays; `rows` is how many of inspection.json's are its own."""
+
+    name: str
+    kind: str
+    used: Annotated[int, Field(ge=0)]
+    problem: str
+    rows: Annotated[int, Field(ge=0)]
+    profile: bool
+    tolerance_mm: Annotated[Finite | None, Field(gt=0)]
+
+
+class _About(ResultFile):
+    """What is kept beside the arrays; `of` is the hash of the inspection.json it was written with."""
+
+    features: tuple[_Feature, ...]
+    verdict: Verdict
+    of: str
+
 
 NAME = "shown.npz"
 """Among the results of a scan."""
@@ -70,7 +93,7 @@ def write_shown(inspection: Path, shown: ShownInspection) -> None:
         }
         tolerance = None if one.deviations is None else one.deviations.tolerance_mm
         features.append(about | {"profile": one.profile is not None, "tolerance_mm": tolerance})
-    about = {"features": features, "verdict": shown.verdict, "of": _hash(inspection)}
+    about = {"features": features, "verdict": shown.verdict, "of": file_hash(inspection)}
     write_arrays(inspection.with_name(NAME), {**arrays, "about": pack_texts([to_json(about)])})
 
 
@@ -91,34 +114,33 @@ def read_shown(inspection: Path, plan: Mapping[str, Any]) -> ShownInspection | N
         return None
     try:
         arrays = read_arrays(path, _MEMBERS, todo=plain(""))
-        about = json.loads(str(arrays["about"][0]))
-        if about["of"] != _hash(inspection):
-            return None
-        return _shown(about, arrays, inspection)
-    except (InputError, KeyError, ValueError, IndexError):
+        with fitting(path):
+            about = checked_json(_About, json_of(arrays["about"][0], path), path)
+            return _shown(about, arrays, inspection) if about.of == file_hash(inspection) else None
+    except InputError:
         return None  # damaged: what is drawn is made anew
 
 
-def _shown(about: Mapping[str, Any], arrays: Arrays, inspection: Path) -> ShownInspection:
+def _shown(about: _About, arrays: Arrays, inspection: Path) -> ShownInspection:
     file = read_inspection(inspection)
     rows, features = list(file.characteristics), []
-    for number, one in enumerate(about["features"]):
-        mine: tuple[Characteristic, ...] = tuple(rows[: one["rows"]])
-        del rows[: one["rows"]]
+    for number, one in enumerate(about.features):
+        mine: tuple[Characteristic, ...] = tuple(rows[: one.rows])
+        del rows[: one.rows]
         features.append(
             ShownFeature(
-                name=one["name"],
-                kind=one["kind"],
+                name=one.name,
+                kind=one.kind,
                 rows=mine,
-                used=one["used"],
+                used=one.used,
                 places=arrays[f"places_{number}"],
                 uv=arrays[f"uv_{number}"],
-                problem=from_text(one["problem"]),
-                profile=ShownProfile(*(arrays[f"{name}_{number}"] for name in _PROFILE)) if one["profile"] else None,
-                deviations=None if one["tolerance_mm"] is None else _deviations(number, one["tolerance_mm"], arrays),
+                problem=from_text(one.problem),
+                profile=ShownProfile(*(arrays[f"{name}_{number}"] for name in _PROFILE)) if one.profile else None,
+                deviations=None if one.tolerance_mm is None else _deviations(number, one.tolerance_mm, arrays),
             )
         )
-    return ShownInspection(tuple(features), Verdict(about["verdict"]), file.notes, file.calibration_id)
+    return ShownInspection(tuple(features), about.verdict, file.notes, file.calibration_id)
 
 
 def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[Any]]:
@@ -143,7 +165,3 @@ def _deviations(number: int, tolerance_mm: float, arrays: Arrays) -> ShownDeviat
         for one, share, mine in zip(numbers, shares, places, strict=True)
     )
     return ShownDeviations(classes, arrays[f"edges_{number}"], arrays[f"counts_{number}"], tolerance_mm)
-
-
-def _hash(path: Path) -> str:
-    return hashlib.sha256(read_bytes(path)).hexdigest()
