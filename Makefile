@@ -9,13 +9,11 @@ WINDOW := $(VENV)/.window
 READY  := $(VENV)/.ready
 OUT    ?= out
 
-# Two tests at a time, each on one core: linear algebra on more threads than cores is many times slower.
+# Two tests at a time, each on one core.
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
 # Modules are handed out in the order tests/conftest.py puts them into: long ones first.
 AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 SIDE_BY_SIDE := -n 2 $(AS_MODULES)
-test quick proofs: export OPENBLAS_NUM_THREADS = 1
-test quick proofs: export OMP_NUM_THREADS = 1
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
 # is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera.
@@ -51,24 +49,18 @@ quick: check              ## the same without what is slow
 proofs: $(READY)          ## what many rendered and simulated measurements must keep: the short form of `make accuracy`
 	$(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy
 
-accuracy: export OPENBLAS_NUM_THREADS = 1
-accuracy: export OMP_NUM_THREADS = 1
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual
 	$(BIN)/python -m tests.accuracy hostile
 
-soak: export OPENBLAS_NUM_THREADS = 1
 soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page; every state of a folder of results; 100 kills each of all that writes
 	$(BIN)/python -m tests.soak --window --seconds 600
 	$(BIN)/python -m tests.output_states
 	$(BIN)/python -m tests.soak_kills --kills 100
 
-fuzz: export OPENBLAS_NUM_THREADS = 1
 fuzz: $(READY)            ## 100,000 files of strangers, each time others: no trace, no crash, no wait; an hour or so
 	$(BIN)/python -m tests.hostile
 
-bench: export OPENBLAS_NUM_THREADS = 1
-bench: export OMP_NUM_THREADS = 1
 bench: $(READY)           ## how fast it is, as ratios to OpenCV and scikit-image within one run: a few minutes
 	$(BIN)/pytest -q tests/benchmarks/bench_*.py --benchmark-timer=time.process_time --benchmark-columns=min,median,rounds
 

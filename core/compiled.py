@@ -18,7 +18,6 @@ import contextlib
 import hashlib
 import os
 import pickle
-import platform
 import re
 import shutil
 import sys
@@ -31,6 +30,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 
 import platformdirs
 from llvmlite import binding
+
+from core.processor import PROCESSOR
 
 if TYPE_CHECKING:
     from numba.core.dispatcher import Dispatcher
@@ -45,24 +46,10 @@ _IMPORT = b"from core.compiled import"
 _IMPORTED = re.compile(rb"^from (core[\w.]*) import", re.MULTILINE)
 _SWEPT_AFTER_S = 14 * 24 * 3600.0
 """Saved code of other versions is removed once nobody has used it for so long, in s."""
-_V3 = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
-"""What x86-64-v3 adds to its forerunner (psABI of AMD64, table 3.1), as LLVM names it."""
 
-
-def _processor() -> str:
-    """The family of processors code is made for, as LLVM names it."""
-    if platform.machine().lower() not in ("x86_64", "amd64"):
-        return "generic"
-    has = binding.get_host_cpu_features()
-    return "x86-64-v3" if all(has.get(feature) for feature in _V3) else "x86-64"
-
-
-os.environ["NUMBA_CPU_NAME"] = PROCESSOR = _processor()
-os.environ["NUMBA_CPU_FEATURES"] = ""
-os.environ["NUMBA_DISABLE_INTEL_SVML"] = "1"  # another library of exp and log would give other digits
 os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] = "1"  # it colours what it only tries: a twentieth of the time
 
-import numba  # noqa: E402 - reads the lines above
+import numba  # noqa: E402 - reads the line above, and those of `core.processor`
 from numba.core import types  # noqa: E402
 from numba.core.compiler import CompileResult  # noqa: E402
 from numba.core.serialize import dumps  # noqa: E402

@@ -1,0 +1,1 @@
+from core import processor as processor  # before any library of numbers, as in every program of ours

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import core
-from core import compiled
+from core import compiled, processor
 from tests.simulated import copy_of
 
 CALLER = """
@@ -68,6 +68,7 @@ def package(tmp_path):
     folder = tmp_path / "package" / "core"
     folder.mkdir(parents=True)
     shutil.copy(compiled.__file__, folder)
+    shutil.copy(processor.__file__, folder)
     (folder / "__init__.py").touch()
     (folder / "caller.py").write_text(CALLER)
     (folder / "callee.py").write_text(CALLEE.format(factor=2.0))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -13,9 +13,6 @@ from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.work import jobs
 from workbench.work.tasks import Lane, Task
-
-ONE_THREAD: Mapping[str, str] = {name: "1" for name in ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")}
-"""Linear algebra on one core: for many small problems beside other work, more threads are slower."""
 
 WRITING = frozenset(
     {
@@ -84,5 +81,5 @@ def make_bench(settings: AppSettings | None = None) -> Bench:
         settings or AppSettings(),
         Lane("measuring", warm=measuring, ahead=jobs.COMPILE_AHEAD),
         Lane("quick", warm=measuring),
-        Lane("live", warm=(jobs.RUN_LIVE,), environment=ONE_THREAD),
+        Lane("live", warm=(jobs.RUN_LIVE,)),
     )

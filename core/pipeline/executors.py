@@ -20,8 +20,6 @@ INSTALL = Message(
 )
 CONNECT_S = 10.0
 
-_BLAS = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS")
-
 
 @contextmanager
 def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
@@ -50,10 +48,8 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
         with ThreadPoolExecutor(count) as threads:
             yield threads
     elif text == PROCESSES:
-        with (
-            _one_core_each(),
-            ProcessPoolExecutor(count, multiprocessing.get_context("spawn"), initializer=_leave_interrupts) as pool,
-        ):
+        spawn = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(count, spawn, initializer=_leave_interrupts) as pool:
             yield pool
     elif text.startswith(DASK):
         if workers is not None:
@@ -93,19 +89,6 @@ def _cluster(address: str) -> Iterator[Executor]:
         ) from problem
     with client, client.get_executor(pure=False) as executor:
         yield executor
-
-
-@contextmanager
-def _one_core_each() -> Iterator[None]:
-    """Processes that begin meanwhile do their linear algebra on one core each: there are others on the other cores."""
-    before = {name: os.environ.get(name) for name in _BLAS}
-    os.environ.update({name: "1" for name, value in before.items() if value is None})
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                os.environ.pop(name, None)
 
 
 def _leave_interrupts() -> None:

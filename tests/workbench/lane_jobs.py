@@ -72,7 +72,7 @@ def echo(channel: Any) -> list[Any]:
 def surroundings(progress: Progress) -> tuple[str, bool]:
     import sys
 
-    return os.environ.get("OMP_NUM_THREADS", ""), "PySide6.QtWidgets" in sys.modules
+    return os.environ.get("OPENBLAS_NUM_THREADS", ""), "PySide6.QtWidgets" in sys.modules
 
 
 def pieces() -> Any:

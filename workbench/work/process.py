@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Mapping
 from typing import Any
 
 from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Qt, QTimer, Signal
@@ -32,9 +31,7 @@ class WorkerProcess(QObject):
     received = Signal(int, int, object)
     gone = Signal(str)
 
-    def __init__(
-        self, name: str, warm: tuple[Job, ...], ahead: Job | None, environment: Mapping[str, str], parent: QObject
-    ) -> None:
+    def __init__(self, name: str, warm: tuple[Job, ...], ahead: Job | None, parent: QObject) -> None:
         super().__init__(parent)
         self._folder = wire.memory_folder()
         self._head: tuple[int, int, int] | None = None
@@ -45,7 +42,7 @@ class WorkerProcess(QObject):
         self._more.timeout.connect(self._read)
         self._process = QProcess(self)
         self._process.setProcessChannelMode(QProcess.ProcessChannelMode.ForwardedErrorChannel)
-        self._process.setProcessEnvironment(_environment(environment))
+        self._process.setProcessEnvironment(_environment())
         # Queued: within its own signal Qt would tell of nothing new, and a question in between would stop the lane.
         self._process.readyReadStandardOutput.connect(self._read, Qt.ConnectionType.QueuedConnection)
         self._process.finished.connect(self._finished, Qt.ConnectionType.QueuedConnection)
@@ -111,10 +108,8 @@ class WorkerProcess(QObject):
         self.deleteLater()
 
 
-def _environment(more: Mapping[str, str]) -> QProcessEnvironment:
-    """The environment of this process, where Python finds what it finds here, and `more`."""
+def _environment() -> QProcessEnvironment:
+    """The environment of this process, where Python finds what it finds here."""
     all_ = QProcessEnvironment.systemEnvironment()
     all_.insert("PYTHONPATH", os.pathsep.join(path for path in sys.path if path))
-    for name, value in more.items():
-        all_.insert(name, value)
     return all_

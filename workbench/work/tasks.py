@@ -9,7 +9,7 @@ nothing is left half written.
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from typing import Any, cast
 
 from PySide6.QtCore import QObject, QTimer, Signal
@@ -89,12 +89,11 @@ class Lane(QObject):
         self,
         name: str,
         warm: tuple[Job, ...] = (),
-        environment: Mapping[str, str] | None = None,
         parent: QObject | None = None,
         ahead: Job | None = None,
     ) -> None:
         super().__init__(parent)
-        self.name, self._warm, self._environment, self._ahead = name, warm, dict(environment or {}), ahead
+        self.name, self._warm, self._ahead = name, warm, ahead
         self._waiting: deque[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = deque()
         self._current: Task | None = None
         self._process: WorkerProcess | None = None
@@ -124,7 +123,7 @@ class Lane(QObject):
         if self._process is not None and self._process.is_over:
             self._end_process()  # its end is told in the next turn: too late for a job that is to begin now
         if self._process is None:
-            self._process = process = WorkerProcess(self.name, self._warm, self._ahead, self._environment, self)
+            self._process = process = WorkerProcess(self.name, self._warm, self._ahead, self)
             process.received.connect(self._received)
             process.gone.connect(self._gone)
 

@@ -20,6 +20,7 @@ from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.tables import Finite, KeptMessage, OptionalMessage, OrInfinite, OrNan, ResultFile, Time, kept
 from core.messages import Command, Message, plain
+from core.processor import IMPORTED_BEFORE
 from core.scan.features.frames import CrossingUse, FrameRecord
 
 T = TypeVar("T")
@@ -144,6 +145,7 @@ def write_run(path: Path, record: RunRecord) -> None:
             "settings": record.settings,
             "notes": {step: [kept(note) for note in notes] for step, notes in record.notes.items()},
             "versions": _versions(),
+            "imported_before": list(IMPORTED_BEFORE),
             "frames": [_frame(frame) for frame in record.frames],
             "inputs": record.inputs,
         },

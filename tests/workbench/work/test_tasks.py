@@ -1,6 +1,5 @@
 from __future__ import annotations
 
-import os
 import sys
 import weakref
 from typing import Any
@@ -11,7 +10,7 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError
-from workbench.bench import ONE_THREAD, Bench
+from workbench.bench import Bench
 from workbench.language import text_of
 from workbench.work.jobs import Job
 from workbench.work.tasks import STOP_WITHIN_MS, Lane, Task
@@ -223,9 +222,8 @@ def test_a_view_is_sent_only_after_the_last_one_was_shown(qtbot: Any, lane: Lane
     assert answers.got == [("done", ["a", "b", "c", "d"])]
 
 
-def test_a_lane_sees_its_environment_and_carries_no_window(qtbot: Any, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv("OMP_NUM_THREADS", "7")
-    answers, lane = Answers(), Lane("alone", environment=ONE_THREAD)
+def test_a_lane_computes_on_one_core_and_carries_no_window(qtbot: Any) -> None:
+    answers, lane = Answers(), Lane("alone")
     try:
         answers.run(lane, "surroundings")
         finish(qtbot, lane)
@@ -233,7 +231,6 @@ def test_a_lane_sees_its_environment_and_carries_no_window(qtbot: Any, monkeypat
         lane.close()
         lane.wait_until_closed()
     assert answers.got == [("done", ("1", False))]
-    assert os.environ["OMP_NUM_THREADS"] == "7"
 
 
 def test_what_is_done_ahead_is_done_piece_by_piece_while_no_job_waits(qtbot: Any) -> None:
