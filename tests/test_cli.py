@@ -197,6 +197,20 @@ def test_version_and_help():
         assert "Usage: trisect" in said.out
 
 
+def test_help_imports_no_scipy():
+    program = """
+import sys
+from core.cli import main
+try:
+    main(["--help"])
+finally:
+    print(*sorted(name for name in sys.modules if name.partition(".")[0] in ("scipy", "numba", "pydantic")))
+"""
+    ran = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert "Usage: trisect" in ran.stdout
+    assert ran.stdout.splitlines()[-1] == ""
+
+
 def test_a_wrong_command_line_leaves_with_2():
     assert trisect("measure").code == 2
     assert trisect("run").code == 2

@@ -1,4 +1,7 @@
-"""Rigid motions between frames. `pose_cam_target` maps target coordinates into the camera frame."""
+"""Rigid motions between frames. `pose_cam_target` maps target coordinates into the camera frame.
+
+scipy's rotations are imported where they are used: a fifth of a second that no `--help` should wait for.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +9,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.spatial.transform import Rotation
 
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -30,12 +32,16 @@ class Pose:
     @classmethod
     def from_vector(cls, vector: ArrayLike) -> Pose:
         """From six numbers: rotation vector in rad, translation in mm."""
+        from scipy.spatial.transform import Rotation
+
         six = np.asarray(vector, dtype=np.float64)
         return cls(Rotation.from_rotvec(six[:3]).as_matrix(), six[3:])
 
     @property
     def vector(self) -> Array:
         """Six numbers: rotation vector in rad, translation in mm."""
+        from scipy.spatial.transform import Rotation
+
         return np.concatenate([Rotation.from_matrix(self.rotation).as_rotvec(), self.translation])
 
     def apply(self, points: ArrayLike) -> Array:

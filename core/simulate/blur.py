@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 import cv2
 import numpy as np
-from scipy.special import erf
 
 if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled loops
     from core.simulate.rays import Map
@@ -18,6 +17,8 @@ BLUR_REACH = 4.5
 
 def blurred(light: Map, sigma_px: float) -> Map:
     """Blur `light` (H, W) by a lens of Gaussian σ `sigma_px` and by the area of a pixel."""
+    from scipy.special import erf  # here: the command line reads scenarios, and `--help` waits for nothing it can spare
+
     reach = int(np.ceil(BLUR_REACH * sigma_px + 0.5))
     edges = np.arange(-reach, reach + 2) - 0.5
     kernel = np.diff(erf(edges / (sigma_px * np.sqrt(2)))) if sigma_px > 0 else np.ones(1)
