@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from core.remaining import USUAL_S, Remaining, in_words
 from core.translations import own_name
 from workbench.bench import Bench
 from workbench.language import spoken, tr
@@ -38,7 +39,7 @@ from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import TaskBar
-from workbench.work.remaining import Remaining, in_words
+from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
 
 WIDE = 1120
@@ -339,7 +340,8 @@ class MainWindow(QMainWindow):
     def _task_started(self, task: Task) -> None:
         self._task = task
         self._stage = ""
-        self._remaining = Remaining(self.bench.settings.stage_seconds(task.label))
+        usual = USUAL_S.get(name_of(task.job), {})
+        self._remaining = Remaining(usual, self.bench.settings.stage_seconds(task.label))
         task.progressed.connect(self._task_progressed)
         task.done.connect(self._task_done)
         self.task_bar.begin(task.label)

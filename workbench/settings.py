@@ -91,8 +91,8 @@ class AppSettings(QObject):
         return {str(k): float(v) for k, v in stored.items()} if isinstance(stored, dict) else {}
 
     def keep_stage_seconds(self, label: str, seconds: dict[str, float]) -> None:
-        """Remember how long the stages of a job took."""
-        self._store.setValue(f"stages/{label}", seconds)
+        """Remember how long the stages of a job took; of those it did without, what was known before."""
+        self._store.setValue(f"stages/{label}", {**self.stage_seconds(label), **seconds})
 
     def _keep_recent(self, paths: list[Path]) -> None:
         self._store.setValue("recent", [str(path) for path in paths[:RECENT]])

@@ -8,7 +8,7 @@ from pathlib import Path
 from rich.table import Table
 
 from core.cli import output
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
 from core.messages import Message, visible
@@ -29,7 +29,7 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
         require_free(plan, target, rig)
         imported = None
     else:
-        with bars() as progress:
+        with bar() as progress:
             imported = import_pictures(plan, target, rig, progress)
     notes = plan.notes if imported is None else imported.notes
     if as_json:

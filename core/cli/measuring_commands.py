@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.cli.options import (
     EPILOG,
     K3,
@@ -71,7 +71,7 @@ def run(
             channel=channel,
         )
         options = measuring.leaving_out(options, folder, exclude)
-        with bars() as progress:
+        with bar("run") as progress:
             watched = measuring.timed(progress, profile)
             result = measuring.run_all(folder, out, options, watched, beside)
     measuring.show_run(result, as_json=json)
@@ -98,7 +98,7 @@ def batch(
     from core.cli import measuring
 
     options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
-    with bars() as progress:
+    with bar() as progress:
         results = measuring.run_sets(sets, out, executor, workers, options, progress)
     measuring.show_sets(results, as_json=json)
     raise typer.Exit(measuring.batch_exit_code(results))
@@ -112,7 +112,7 @@ def camera(
     from core.cli import measuring
 
     options = measuring.leaving_out(measuring.options(camera=measuring.camera_options(skew, k3)), folder, exclude)
-    with bars() as progress:
+    with bar("camera") as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)
 
@@ -140,7 +140,7 @@ def planes(
         channel=channel,
     )
     options = measuring.leaving_out(chosen, folder, exclude)
-    with bars() as progress:
+    with bar("planes") as progress:
         shown = measuring.run_planes(folder, out, options, progress)
     shown.show(as_json=json)
 
@@ -173,7 +173,7 @@ def check(
         return
     if adjust:
         options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
-        with bars() as progress:
+        with bar() as progress:
             shown = measuring.run_adjusting(folder, out, options, progress)
         shown.show(as_json=json)
         return
@@ -182,7 +182,7 @@ def check(
         shown.show(as_json=json)
         raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
     options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
-    with bars() as progress:
+    with bar() as progress:
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code("conforming" if result.passed else "changed"))
@@ -222,7 +222,7 @@ def scan(
 
     options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
-    with bars() as progress:
+    with bar("scan") as progress:
         watched = measuring.timed(progress, profile)
         shown = measuring.run_scan(folder, out, options, watched)
     shown.show(as_json=json)
@@ -260,7 +260,7 @@ def profile(
 
     options = measuring.options(part=part, stripe_width=stripe_width, contrast=contrast, channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
-    with bars() as progress:
+    with bar() as progress:
         result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code(result.verdict))
@@ -271,7 +271,7 @@ def gauge(folder: Set, out: Out, json: Json = False) -> None:
     """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
     from core.cli import measuring
 
-    with bars() as progress:
+    with bar() as progress:
         result, shown = measuring.run_gauge(folder, out, progress)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code(result.verdict))

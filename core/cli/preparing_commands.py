@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.cli.options import Json, OrderBy, SigmaCut, WhichTarget
 
 commands = typer.Typer()
@@ -71,7 +71,7 @@ def plan(
     """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
     from core.cli import preparing
 
-    with bars() as progress:
+    with bar() as progress:
         shown = preparing.run_plan(
             rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, bounds=bounds, progress=progress
         )

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.cli.options import EPILOG, ExitCode, Json
 
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ def pack(
     from core.cli.measuring import Shown
     from core.files.project.packing import pack_project
 
-    with bars() as progress:
+    with bar() as progress:
         made = pack_project(project, out, progress)
     rows = [("files", str(made.files)), ("size", f"{made.bytes / 1e6:.1f} MB")]
     Shown(rows, {"files_packed": made.files, "bytes": made.bytes}, files={"packed": made.path}).show(as_json=json)
@@ -43,7 +43,7 @@ def unpack(
     from core.cli.measuring import Shown
     from core.files.project.packing import unpack_project
 
-    with bars() as progress:
+    with bar() as progress:
         folder = unpack_project(file, out, progress)
     Shown([("project", str(folder))], {"project": str(folder)}).show(as_json=json)
 
@@ -63,7 +63,7 @@ def verify(
     from core.cli.measuring import Shown
     from core.pipeline.project.verify import verify as compare
 
-    with bars() as progress:
+    with bar() as progress:
         found = compare(folder, set_, head, progress)
     rows = [
         ("audit trail", f"{len(found.trail.entries)} entries, head {found.trail.head or 'none'}"),

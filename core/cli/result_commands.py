@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.cli.options import EPILOG, Json, Out, Part, Set
 
 commands = typer.Typer()
@@ -42,7 +42,7 @@ def inspect(
     """Measure the features of a plan on a scan; writes inspection.json."""
     from core.cli import results as work
 
-    with bars() as progress:
+    with bar() as progress:
         inspection, written = work.run_inspect(source, plan, out, progress)
     work.show_inspection(inspection, written, as_json=json)
     raise typer.Exit(work.inspection_exit_code(inspection))
@@ -68,7 +68,7 @@ def mesh(
     from core.cli import results as work
     from core.pipeline.steps.mesh_step import MeshOptions
 
-    with bars() as progress:
+    with bar() as progress:
         shown = work.run_mesh(results, formats, MeshOptions(fill_holes, triangles, error), to, progress)
     shown.show(as_json=json)
 
@@ -100,7 +100,7 @@ def report(
     from core.cli import results as work
 
     chosen = work.ReportOptions(part, template, language, paper, without or (), serial, customer, operator, study or ())
-    with bars() as progress:
+    with bar("make_report") as progress:
         shown = work.run_report(folder, out, chosen, progress)
     shown.show(as_json=json)
 
@@ -130,7 +130,7 @@ def export(
     from core.cli import results as work
 
     chosen = work.ReportOptions(part, template, serial=serial, customer=customer, operator=operator)
-    with bars() as progress:
+    with bar() as progress:
         shown = work.run_export(results, formats, to, chosen, progress)
     shown.show(as_json=json)
 

@@ -12,7 +12,7 @@ from typing import Annotated
 
 import typer
 
-from core.cli.bars import bars
+from core.cli.bar import bar
 from core.cli.measuring_commands import TAKEN_OVER
 from core.cli.options import EPILOG, Json
 from core.progress import Progress
@@ -141,7 +141,7 @@ def simulate(
     )
     if effects is not None:
         scenario = scenario.with_effects_of(Scenario.read(effects))
-    with bars() as progress:
+    with bar() as progress:
         simulate_set(scenario, out, progress)
     if json:
         output.print_json({"set": str(out)})
@@ -161,7 +161,7 @@ def demo(
         from core.report.wording import thickness_line
 
         options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
-        with bars() as progress, _sample(progress, quick=quick) as folder:
+        with bar("run") as progress, _sample(progress, quick=quick) as folder:
             result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)
     if result.gauge is not None and not json:

@@ -135,9 +135,9 @@ def acceptance(
     u_mm. Or a folder of results for each position.
     """
     from core.cli import studying
-    from core.cli.bars import bars
+    from core.cli.bar import bar
 
     limits = {"form": form, "size": size, "spacing": spacing, "flatness": flatness}
-    with bars() as progress:
+    with bar() as progress:
         study = studying.acceptance(files, artefact, nominal, u, diameter, limits, progress)
     studying.finish(study, out, as_json=json)

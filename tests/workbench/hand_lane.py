@@ -55,7 +55,7 @@ class HandLane(QObject):
         offers: dict[str, str] | None = None,
         replace_waiting: bool = False,
     ) -> Task:
-        task = Task(cast(Lane, self), receiver, len(self.ran), label)
+        task = Task(cast(Lane, self), receiver, len(self.ran), job, label)
         task.done.connect(on_done)
         if on_failed:
             task.failed.connect(on_failed)

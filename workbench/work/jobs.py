@@ -84,6 +84,11 @@ COMPILE_AHEAD = Job("core.pipeline.live.warm_up:stages")
 REFUSE = Job("core.errors:refuse")
 
 
+def name_of(job: Job) -> str:
+    """The name of the function, without its module."""
+    return job.rpartition(":")[2]
+
+
 def resolve(job: Job) -> Any:
     """The function behind the name; imports its module."""
     module, _, name = job.partition(":")

@@ -38,9 +38,9 @@ class Task(QObject):
     cancelled = Signal()
     ended = Signal()
 
-    def __init__(self, lane: Lane, receiver: QObject, number: int, label: str) -> None:
+    def __init__(self, lane: Lane, receiver: QObject, number: int, job: Job, label: str) -> None:
         super().__init__(lane)
-        self.number, self.label = number, label
+        self.number, self.job, self.label = number, job, label
         self.cancelling = self.unwanted = False
         receiver.destroyed.connect(self._receiver_gone)
 
@@ -157,7 +157,7 @@ class Lane(QObject):
             Drop waiting ones of this job with the same label: only the newest matters.
         """
         self._numbers += 1
-        task = Task(self, receiver, self._numbers, label)
+        task = Task(self, receiver, self._numbers, job, label)
         task.done.connect(on_done)
         if on_failed:
             task.failed.connect(on_failed)
