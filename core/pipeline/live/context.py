@@ -90,13 +90,14 @@ class LiveContext:
     """What every step works with.
 
     `recorded` counts what is on the disk, `lost` frames the disk was too slow for. `settings` is what the source has
-    been told, `capabilities` what it can be told.
+    been told, `capabilities` what it can be told, `rate_hz` how many frames a second have come of late.
     """
 
     def __init__(self, request: LiveRequest, source: FrameSource, emit: Callable[[LiveEvent], None]) -> None:
         self.request, self.source, self.emit = request, source, emit
         self.worker = Worker()
         self.recorded = self.lost = 0
+        self.rate_hz = 0.0
         self.lasers = Lasers(fan=False, hand=False)
         self.settings, self.capabilities = request.settings, Capabilities()
         self._asking = False

@@ -137,6 +137,7 @@ class LiveLoop:
         self._times.append(frame.time_s)
         while len(self._times) > 2 and frame.time_s - self._times[0] > _RATE_OVER_S:
             self._times.popleft()
+        self._context.rate_hz = self._rate()
         was_busy = self._context.worker.busy
         self._step.frame(frame)
         if self._step.paired and self._context.worker.busy and not was_busy:
@@ -182,7 +183,13 @@ class LiveLoop:
         picture, scale = ahead[1] if ahead and ahead[0] is frame else self._display.reduced(frame.picture)
         self._context.emit(
             LiveView(
-                picture, scale, frame.index, self._rate(), self._context.recorded, self.dropped, self._step.detail()
+                picture,
+                scale,
+                frame.index,
+                self._context.rate_hz,
+                self._context.recorded,
+                self.dropped,
+                self._step.detail(),
             )
         )
 

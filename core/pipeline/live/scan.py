@@ -9,7 +9,8 @@ from typing import Protocol
 
 import numpy as np
 
-from core.acquire.source import Frame, Lasers, Picture
+from core.acquire.settings import FREE_RUNNING, SourceSettings
+from core.acquire.source import Frame, Lasers, Picture, Unplugged
 from core.errors import InputError
 from core.files.recording.marks import mark_frame
 from core.messages import Message, label
@@ -36,6 +37,11 @@ MOVED_FRAMES = 5
 SAY_EVERY_S = 0.2
 STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
+
+SLOWER = 0.8
+"""A camera that is too fast for the disk is told so much of the rate it has."""
+SLOWED_FOR_S = 2.0
+"""And told again only after so long: what waits is written first."""
 
 _SLOWER_ADVICE = {
     ".png": Message("live.record_pgm", "Record PGM, which takes less time, or choose a lower frame rate."),
@@ -81,6 +87,7 @@ class LiveScan:
         self._preview: FramePreview | None = None
         self._coverage: CoverageMap | None = None
         self._moved = 0
+        self._slowed_s = -np.inf
         self._looked = False
         self._new: list[PreviewCloud] = []
         self._renewed = False
@@ -209,6 +216,8 @@ class LiveScan:
             return
         if not taken:
             self._context.lost += 1
+            if self._is_slowed(frame.time_s):
+                return
             self._context.notice(
                 Message(
                     "live.disk_too_slow", "The disk is too slow for all frames: some are lost. {todo}",
@@ -219,6 +228,32 @@ class LiveScan:
         self._context.worker.start(self._previewer.look, self._number, name, frame)
         self._number, self._newest = self._number + 1, name
         self._context.recorded += 1
+
+    def _is_slowed(self, now_s: float) -> bool:
+        """Have fewer frames come, where the source lets itself be told; whether it does."""
+        context, rate_hz = self._context, SLOWER * self._context.rate_hz
+        limits, by_itself = context.capabilities.rate_hz, context.settings.trigger in (None, FREE_RUNNING)
+        if limits is None or not by_itself or not limits[0] <= rate_hz <= limits[1]:
+            return False
+        if now_s - self._slowed_s < SLOWED_FOR_S:
+            return True
+        settings = SourceSettings(rate_hz=rate_hz)
+        try:
+            context.source.configure(settings)
+        except Unplugged:
+            raise
+        except InputError:  # it may have no such rate: the loss itself is told
+            return False
+        context.settings, self._slowed_s = context.settings.updated(settings), now_s
+        context.notice(
+            Message(
+                "live.rate_lowered",
+                "The disk is too slow for {before_hz:.3g} frames a second, and some were lost: the camera takes "
+                "{rate_hz:.3g} from now on.",
+                before_hz=context.rate_hz, rate_hz=rate_hz,
+            )
+        )  # fmt: skip
+        return True
 
     def _mark(self, name: str) -> None:
         try:

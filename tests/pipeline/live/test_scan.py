@@ -4,7 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.acquire.source import Frame, Lasers, SourceSettings
+from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
@@ -66,9 +66,9 @@ def scan(monkeypatch, folder, stage, source, window, **choices):
     return record(monkeypatch, source, window, "scan", RIG, folder / "scan", **choices)
 
 
-def swept(picture_of, frames, **how):
+def swept(picture_of, frames, kind=ScriptedSource, **how):
     """A source that ends after so many frames with the hand-held laser on."""
-    return ScriptedSource(picture_of, frames, counts=lambda lasers: lasers.hand, **how)
+    return kind(picture_of, frames, counts=lambda lasers: lasers.hand, **how)
 
 
 def names(folder):
@@ -395,6 +395,63 @@ def test_frames_that_wait_for_a_slow_disk_are_saved_before_the_end(monkeypatch, 
     assert len(saving) > 2
     assert saving == sorted(saving, reverse=True)
     assert ended.recorded == len(names(tmp_path)) - 1 == 40
+
+
+class PacedSource(ScriptedSource):
+    """A source whose rate can be set; its clock goes on by one frame with each."""
+
+    capabilities = Capabilities(rate_hz=(1.0, 100.0))
+    rate_hz, now = 40.0, 0.0
+
+    def configure(self, settings):
+        super().configure(settings)
+        self.rate_hz = settings.rate_hz or self.rate_hz
+
+    def read(self, timeout_s):
+        self.now += 1 / self.rate_hz
+        return replace(super().read(timeout_s), time_s=self.now)
+
+
+class SlowStore:
+    """A disk that takes twenty frames a second, by the clock of the source, and has room for three more."""
+
+    written = dropped = waiting = 0
+    free_s = 0.0
+
+    def __init__(self, folder, ending):
+        folder.mkdir(exist_ok=True)
+
+    def write(self, name, picture, frame):
+        taken = self.free_s <= frame.time_s + 3 / 20
+        self.free_s = max(self.free_s, frame.time_s) + 1 / 20 if taken else self.free_s
+        self.written, self.dropped = self.written + taken, self.dropped + (not taken)
+        return taken
+
+    def close(self):
+        pass
+
+
+def test_a_camera_that_is_too_fast_for_the_disk_is_slowed_until_no_frame_is_lost(monkeypatch, tmp_path, stage):
+    monkeypatch.setattr(live, "Recorder", SlowStore)
+    source, window = swept(stage, 600, kind=PacedSource, pace_s=0.0), Window()
+    ended = scan(monkeypatch, tmp_path, stage, source, window)
+    rates = [call.rate_hz for call in source.calls if isinstance(call, SourceSettings) and call.rate_hz]
+    assert rates[0] == pytest.approx(32.0)
+    assert 12 < rates[-1] < 20
+    assert len(rates) == len([one for one in window.all(LiveNotice) if one.sentence.code == "live.rate_lowered"]) < 6
+    assert 0 < ended.dropped < 100
+    assert ended.recorded == 600 - ended.dropped
+
+
+@pytest.mark.parametrize("trigger", ["Line1", None])
+def test_a_camera_whose_rate_is_not_its_own_is_left_alone_and_the_loss_told(monkeypatch, tmp_path, stage, trigger):
+    monkeypatch.setattr(live, "Recorder", SlowStore)
+    source, window = swept(stage, 60, kind=PacedSource, pace_s=0.0), Window()
+    source.capabilities = Capabilities(rate_hz=(1.0, 100.0), triggers=("Off", "Line1")) if trigger else Capabilities()
+    ended = scan(monkeypatch, tmp_path, stage, source, window, settings=SourceSettings(trigger=trigger))
+    assert ended.dropped > 0
+    assert "live.disk_too_slow" in [one.sentence.code for one in window.all(LiveNotice)]
+    assert source.rate_hz == 40.0
 
 
 def test_settings_go_to_the_source_and_a_refusal_is_told(monkeypatch, tmp_path, stage):
