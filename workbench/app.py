@@ -1,4 +1,7 @@
-"""The program: arguments, theme, messages, the window."""
+"""The program: arguments, theme, messages, the window.
+
+What the window is made of takes a second or more to import, so it is imported once something is on the screen.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import sys
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
-from typing import TextIO
+from typing import TYPE_CHECKING, TextIO
 
 from PySide6.QtCore import QEvent, QLocale, QTimer
 from PySide6.QtGui import QFileOpenEvent, QIcon
@@ -19,14 +22,15 @@ from PySide6.QtWidgets import QApplication
 from core import __version__
 from core.errors import InputError
 from core.translations import PSEUDO, language, languages, preferred
-from workbench.bench import Bench, make_bench
 from workbench.language import choose, text_of, tr
-from workbench.main_window import MainWindow
-from workbench.notices import log_to_file
-from workbench.pages.project import double_click
-from workbench.settings import THEMES
+from workbench.settings import THEMES, AppSettings
 from workbench.theme import apply_colours, apply_sheet
-from workbench.views.scene import view as scene_view
+from workbench.views.splash import Splash
+
+if TYPE_CHECKING:
+    from workbench.bench import Bench
+    from workbench.main_window import MainWindow
+    from workbench.pages.project.double_click import Outcome
 
 
 class Application(QApplication):
@@ -54,6 +58,8 @@ def build_window(app: QApplication, bench: Bench, theme: str = "") -> MainWindow
     The style sheet comes last: under one, Qt looks up the rules of all widgets anew each time a part is put into
     another, which takes longer than all the rest.
     """
+    from workbench.main_window import MainWindow
+
     apply_colours(app, theme or bench.settings.theme)
     window = MainWindow(bench)
     apply_sheet(app)
@@ -97,11 +103,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--uninstall-desktop", action="store_true", help=tr("take that back, and end"))
     given = parser.parse_args(argv)
     if given.install_desktop or given.uninstall_desktop:
+        from workbench.pages.project import double_click
+
         return _associate(double_click.install if given.install_desktop else double_click.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
     app = Application(sys.argv[:1])
+    settings = AppSettings()
+    apply_colours(app, given.theme or settings.theme)
+    splash = Splash(app.windowIcon(), app.applicationDisplayName())
+    from workbench.bench import make_bench
+    from workbench.notices import log_to_file
+
     log_file = log_to_file()
-    bench = make_bench()
+    bench = make_bench(settings)
     wanted = (given.language, bench.settings.language, os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
@@ -114,6 +128,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         return made
 
     window = put()
+    splash.finish()
     gc.freeze()  # what is there now stays: later collections need not go through it, and are short
     QTimer.singleShot(0, window, lambda: _after_start(window, given.path))
     try:
@@ -124,7 +139,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         bench.notices.release()
 
 
-def _associate(do: Callable[[], double_click.Outcome]) -> int:
+def _associate(do: Callable[[], Outcome]) -> int:
     """Tell the system what opens projects, and say on the terminal what was done."""
     try:
         outcome = do()
@@ -145,6 +160,8 @@ def _after_start(window: MainWindow, path: Path | None) -> None:
     """Once the window is there: open what was asked for, start the processes, import what the 3D view needs."""
     if path is not None:
         window.projects.open_dropped(path)
+    from workbench.views.scene import view as scene_view
+
     window.bench.measuring.prepare()
     window.bench.quick.prepare()
     scene_view.prepare_3d()

@@ -38,3 +38,46 @@ def test_the_program_starts_soon_imports_nothing_that_can_wait_and_ends_well(tmp
     assert "Traceback" not in program.stderr
     (log,) = tmp_path.rglob("workbench.log") if list(tmp_path.rglob("workbench.log")) else (None,)
     assert log is None or "ERROR" not in log.read_text(encoding="utf-8")
+
+
+def test_something_is_on_the_screen_before_what_takes_long_is_imported(tmp_path: Path) -> None:
+    program = """
+import sys
+from PySide6.QtWidgets import QApplication
+import workbench.app as program
+
+class Stopped(Exception):
+    pass
+
+class Watched(program.Splash):
+    def paintEvent(self, event):
+        super().paintEvent(event)
+        slow = ("workbench.main_window", "workbench.bench", "scipy", "numpy", "pyqtgraph", "pydantic", "cv2")
+        print("drawn", self.isVisible(), *(name for name in slow if name in sys.modules))
+
+    def finish(self):
+        windows = [type(one).__name__ for one in QApplication.topLevelWidgets() if one.isVisible() and one is not self]
+        print("replaced by", *windows)
+        super().finish()
+        print("gone", not self.isVisible())
+        raise Stopped
+
+program.Splash = Watched
+try:
+    program.main([])
+except Stopped:
+    pass
+"""
+    surroundings = {"HOME": str(tmp_path), "XDG_CONFIG_HOME": str(tmp_path), "XDG_STATE_HOME": str(tmp_path)}
+    ran = subprocess.run(
+        [sys.executable, "-c", program],
+        cwd=ROOT,
+        env=os.environ | surroundings,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        check=False,
+    )
+    said = ran.stdout.splitlines()
+    assert said[0] == "drawn True", ran.stderr
+    assert said[-2:] == ["replaced by MainWindow", "gone True"]
