@@ -123,6 +123,7 @@ def test_beside_four_busy_processes_the_tour_ends_in_a_verdict(
     with capsys.disabled():
         minutes = ", ".join(f"{part} {seconds / 60:.1f}" for part, seconds in told.items())
         print(f"\nThe tour beside {BUSY} busy processes: {sum(told.values()) / 60:.1f} min ({minutes})")
+    assert sum(told.values()) <= PATIENCE_S  # usual are two and a half minutes
     assert t.errors() == []
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert gauge["verdict"] == "conforming"
