@@ -1,0 +1,38 @@
+"""The time left in the status bar."""
+
+from __future__ import annotations
+
+from workbench.main_window import MainWindow
+from workbench.work import jobs
+from workbench.work.jobs import Job
+from workbench.work.tasks import Task
+
+
+def begun(window: MainWindow, job: Job, label: str, stage: str) -> str:
+    """What is said of the time left as soon as a job has told its first stage."""
+    task = Task(window.bench.measuring, window, 1, job, label)
+    window.bench.measuring.task_started.emit(task)
+    task.progressed.emit(stage, 0, 1)
+    said = window.task_bar._left.text()
+    window.bench.measuring.task_ended.emit(task)
+    return said
+
+
+def test_a_job_that_was_never_done_says_from_the_start_how_long_it_takes(window: MainWindow) -> None:
+    assert begun(window, jobs.MEASURE_SCAN, "Scan", "reference") == "about 5 s left"
+
+
+def test_what_it_took_the_last_time_counts_more(window: MainWindow) -> None:
+    window.bench.settings.keep_stage_seconds("Scan", {"frames": 50.0})
+    assert begun(window, jobs.MEASURE_SCAN, "Scan", "reference") == "about 53 s left"
+
+
+def test_of_a_job_nobody_knows_nothing_is_said_before_it_tells_more(window: MainWindow) -> None:
+    assert begun(window, jobs.PACK_PROJECT, "Packing the project", "packing") == ""
+
+
+def test_stages_that_are_done_without_this_time_stay_remembered(window: MainWindow) -> None:
+    settings = window.bench.settings
+    settings.keep_stage_seconds("Scan", {"frames": 50.0, "network": 3.0})
+    settings.keep_stage_seconds("Scan", {"network": 4.0})
+    assert settings.stage_seconds("Scan") == {"frames": 50.0, "network": 4.0}
