@@ -45,32 +45,93 @@ class Region:
         """
         if len(near) < 3:
             return cls(near[:0], 0.0)
+        laid = _Laid.out(points[near], normal, margin_mm)
+        covered = _without_small_parts(_closed(laid.occupied, laid.cell), smallest_part)
+        depth_in = cv2.distanceTransform(covered, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+        # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
+        inner = (depth_in - 0.5) * laid.cell >= margin_mm
+        return cls(near[inner[laid.row, laid.column]], float(inner.sum()) * laid.cell**2)
+
+
+def connected_with(
+    points: Array, near: NDArray[np.int64], elsewhere: NDArray[np.int64], normal: Array, place: Array
+) -> NDArray[np.int64]:
+    """Those of `points[near]` (at least one) that one face holds together with the one nearest to `place`.
+
+    They are laid out as for `Region.of`, seen along `normal`; gaps as wide as those between stripes are bridged unless
+    points of something else, `points[elsewhere]`, lie in them.
+    """
+    laid = _Laid.out(points[near], normal, 0.0)
+    to_mine = _distances(laid.occupied)
+    bridged = to_mine <= _half_gap(laid.occupied, to_mine, laid.cell)
+    others = laid.with_points(points[elsewhere])
+    if others.any():
+        bridged &= to_mine <= _distances(others)
+    labels = cv2.connectedComponents(bridged.astype(np.uint8))[1][laid.row, laid.column]
+    nearest = int(np.argmin(((points[near] - place) ** 2).sum(axis=1)))
+    connected: NDArray[np.int64] = near[labels == labels[nearest]]
+    return connected
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Laid:
+    """Points (n, 3) laid out on a plane in cells of side `cell` mm: each one's `row` and `column`, which are occupied.
+
+    `axes` (2, 3) span the plane; a place X is in the cell of (axes·X − low)/cell + pad.
+    """
+
+    axes: Array
+    low: Array
+    cell: float
+    pad: int
+    row: NDArray[np.int64]
+    column: NDArray[np.int64]
+    occupied: NDArray[np.uint8]
+
+    @classmethod
+    def out(cls, points: Array, normal: Array, room_mm: float) -> _Laid:
+        """On the plane with this normal, with `room_mm` about them besides the largest gap."""
         axes = np.linalg.svd(normal[None, :])[2][1:]
-        flat = points[near] @ axes.T
+        flat = points @ axes.T
         low = flat.min(axis=0)
         cell = max(CELL_MM, float((flat.max(axis=0) - low).max()) / MOST_CELLS)
-        pad = int(np.ceil((LARGEST_GAP_MM + margin_mm) / cell)) + 2
+        pad = int(np.ceil((LARGEST_GAP_MM + room_mm) / cell)) + 2
         column, row = (np.floor((flat - low) / cell).astype(np.int64) + pad).T
         occupied = np.zeros((int(row.max()) + pad + 1, int(column.max()) + pad + 1), dtype=np.uint8)
         occupied[row, column] = 1
-        covered = _without_small_parts(_closed(occupied, cell), smallest_part)
-        depth_in = cv2.distanceTransform(covered, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-        # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
-        inner = (depth_in - 0.5) * cell >= margin_mm
-        return cls(near[inner[row, column]], float(inner.sum()) * cell**2)
+        return cls(axes, low, cell, pad, row, column, occupied)
+
+    def with_points(self, points: Array) -> NDArray[np.uint8]:
+        """Which cells hold one of other points (m, 3)."""
+        column, row = (np.floor((points @ self.axes.T - self.low) / self.cell).astype(np.int64) + self.pad).T
+        rows, columns = self.occupied.shape
+        inside = (row >= 0) & (row < rows) & (column >= 0) & (column < columns)
+        cells = np.zeros_like(self.occupied)
+        cells[row[inside], column[inside]] = 1
+        return cells
 
 
 def _closed(occupied: NDArray[np.uint8], cell: float) -> NDArray[np.uint8]:
     """Morphological closing with a disc as large as the gaps between stripes, by distances: fast for any radius."""
-    to_occupied = cv2.distanceTransform(1 - occupied, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    to_occupied = _distances(occupied)
+    radius = _half_gap(occupied, to_occupied, cell)
+    to_empty = _distances(to_occupied > radius)
+    return np.asarray((to_empty > radius) | (occupied > 0), dtype=np.uint8)
+
+
+def _half_gap(occupied: NDArray[np.uint8], to_occupied: NDArray[np.float32], cell: float) -> float:
+    """Half the widest gap between stripes that counts as covered, in cells."""
     row, column = np.nonzero(occupied)
     hull = cv2.convexHull(np.column_stack([column, row]).astype(np.int32))
     within = cv2.fillConvexPoly(np.zeros_like(occupied), hull, 1) > 0
     gap = GAP_SHARE * float(np.median(to_occupied[within]))
-    radius = float(np.clip(gap, SMALLEST_GAP_MM / cell, LARGEST_GAP_MM / cell))
-    grown = (to_occupied <= radius).astype(np.uint8)
-    to_empty = cv2.distanceTransform(grown, cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
-    return np.asarray((to_empty > radius) | (occupied > 0), dtype=np.uint8)
+    return float(np.clip(gap, SMALLEST_GAP_MM / cell, LARGEST_GAP_MM / cell))
+
+
+def _distances(cells: NDArray[np.uint8] | NDArray[np.bool_]) -> NDArray[np.float32]:
+    """Distance, in cells, of each cell from the nearest of those that are set."""
+    away = cv2.distanceTransform((cells == 0).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE)
+    return np.asarray(away, dtype=np.float32)
 
 
 def _without_small_parts(covered: NDArray[np.uint8], smallest_part: float) -> NDArray[np.uint8]:

@@ -36,6 +36,8 @@ class RegionTable(Table):
         None, min_length=2, max_length=2, description="two corners [[x, y, z], [x, y, z]] in mm, the lower one first"
     )
     points_of: _Name | None = Field(None, description=_A_NAME)
+    face_at_px: _Pair | None = Field(None, description="a place [u, v] in pixels on a face")
+    face_at_mm: _Triple | None = Field(None, description="a place [x, y, z] in mm on a face, in part coordinates")
 
     @model_validator(mode="after")
     def _one_of_them(self) -> RegionTable:
@@ -46,7 +48,8 @@ class RegionTable(Table):
                 "polygon_px",
                 Message(
                     "inspection.one_kind_of_region",
-                    "or number, sphere_mm, box_mm or points_of is wanted, one of them, not {named}",
+                    "or number, sphere_mm, box_mm, points_of, face_at_px or face_at_mm is wanted, one of them, "
+                    "not {named}",
                     named=named,
                 ),
             )

@@ -25,6 +25,7 @@ from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
+    FaceAt,
     FeatureSpec,
     Filters,
     InBox,
@@ -110,6 +111,10 @@ def _region(table: RegionTable | str | None) -> Region:
     if table.box_mm is not None:
         low, high = ((x, y, z) for x, y, z in table.box_mm)
         return InBox(low, high)
+    if table.face_at_px is not None:
+        return FaceAt(at_px=_two(table.face_at_px))
+    if table.face_at_mm is not None:
+        return FaceAt(at_mm=_three(table.face_at_mm))
     return PointsOf(table.points_of or "")
 
 
@@ -190,6 +195,8 @@ def _region_table(region: Region) -> Any:
         return {"sphere_mm": [*region.centre_mm, region.radius_mm]}
     if isinstance(region, InBox):
         return {"box_mm": [list(region.low_mm), list(region.high_mm)]}
+    if isinstance(region, FaceAt):
+        return {f"face_{key}": list(at) for key in ("at_px", "at_mm") if (at := getattr(region, key)) is not None}
     return {"points_of": region.feature}
 
 

@@ -6,15 +6,20 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.inspect.face_region import inside_polygon
+from core.inspect.face_region import LARGEST_GAP_MM, inside_polygon
+from core.inspect.face_region import Region as Covered
 from core.inspect.faces import DRAW_OVER_FACE, face_inside
 from core.inspect.features.measured import Scene
+from core.inspect.fit.grown_face import FaceKind, GrownFace, grow_face
 from core.inspect.fit.plane_search import FEWEST_POINTS
-from core.inspect.plan.feature_spec import Auto, Filters, InSphere, PointsOf, Polygon, Region
+from core.inspect.plan.feature_spec import Auto, FaceAt, Filters, InSphere, PointsOf, Polygon, Region
 from core.messages import Message
 from core.model.arrays import Array
 
 Indices = NDArray[np.int64]
+
+SEED_PX = 40.0
+"""A face goes on from a pixel if a point was measured so near to it: normals look as far for neighbours."""
 
 
 def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
@@ -37,6 +42,33 @@ def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     return indices
 
 
+def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> GrownFace:
+    """The face that goes on from a place, of this kind; None: the simplest that the points allow.
+
+    Raises
+    ------
+    InputError
+        If there is none, or nothing was measured at that place.
+    """
+    scene.ensure_normals()
+    seen, at, limit = scene.cloud.uv, np.array(region.at_px), SEED_PX
+    if region.at_mm is not None:
+        seen, at, limit = in_part(scene.cloud.points, scene), np.array(region.at_mm), LARGEST_GAP_MM
+    away = np.linalg.norm(seen - at, axis=1)
+    if away.min(initial=np.inf) > limit:
+        raise InputError(
+            Message("feature.nothing_where_clicked", "nothing was measured at the place that was clicked"),
+            todo=Message("feature.advice_click_again", "click the face on this scan"),
+        )
+    return grow_face(scene.cloud, int(np.argmin(away)), kind)
+
+
+def sure_enough(indices: Indices, filters: Filters, scene: Scene) -> Indices:
+    """Those of the points that pass the filter by σ, ascending."""
+    allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
+    return np.sort(indices[scene.cloud.sigma[indices] <= allowed])
+
+
 def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     """Indices of the points of the plane face in a region, less its margin.
 
@@ -45,6 +77,14 @@ def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     InputError
         If there is no plane face.
     """
+    if isinstance(region, FaceAt):
+        grown = grown_at(region, scene, "plane")
+        normal = grown.shape.outward(scene.cloud.points[grown.indices[:1]], np.zeros(1, dtype=np.int64))[0]
+        inner = Covered.of(scene.cloud.points, grown.indices, normal, filters.margin_mm, smallest_part=0.0)
+        face = sure_enough(inner.indices, filters, scene)
+        if len(face) < FEWEST_POINTS:
+            raise _no_face(len(grown.indices))
+        return face
     if isinstance(region, Auto):
         planes = scene.planes(filters.margin_mm)
         if region.number > len(planes):
@@ -57,9 +97,7 @@ def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
                 ),
                 todo=Message("feature.advice_draw_on_face", "draw a region on the face"),
             )
-        found = planes[region.number - 1].region.indices
-        allowed = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm
-        return np.sort(found[scene.cloud.sigma[found] <= allowed])
+        return sure_enough(planes[region.number - 1].region.indices, filters, scene)
     indices = points_in(region, filters, scene)
     if isinstance(region, PointsOf):
         return indices
@@ -68,13 +106,15 @@ def face_in(region: Region, filters: Filters, scene: Scene) -> Indices:
     inside[indices] = True
     face = face_inside(scene.cloud, inside, margin_mm=filters.margin_mm)
     if len(face) < FEWEST_POINTS:
-        raise InputError(
-            Message(
-                "feature.region_holds_no_face", "its region holds {n} measured points but no plane face", n=len(indices)
-            ),
-            todo=DRAW_OVER_FACE,
-        )
+        raise _no_face(len(indices))
     return np.sort(face)
+
+
+def _no_face(count: int) -> InputError:
+    return InputError(
+        Message("feature.region_holds_no_face", "its region holds {n} measured points but no plane face", n=count),
+        todo=DRAW_OVER_FACE,
+    )
 
 
 def in_part(points: Array, scene: Scene) -> Array:
@@ -88,9 +128,10 @@ def _inside(region: Region, scene: Scene) -> NDArray[np.bool_]:
         return np.ones(len(cloud), dtype=np.bool_)
     if isinstance(region, Polygon):
         return inside_polygon(cloud.uv, np.array(region.corners_px, dtype=np.float64))
-    if isinstance(region, PointsOf):
-        inside = np.zeros(len(cloud), dtype=np.bool_)
-        inside[scene.found[region.feature].indices] = True
+    if isinstance(region, PointsOf | FaceAt):
+        of = scene.found[region.feature] if isinstance(region, PointsOf) else grown_at(region, scene)
+        inside = np.zeros(len(scene.cloud), dtype=np.bool_)
+        inside[of.indices] = True
         return inside
     points = in_part(cloud.points, scene)
     if isinstance(region, InSphere):

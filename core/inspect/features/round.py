@@ -6,13 +6,13 @@ import numpy as np
 
 from core.errors import InputError
 from core.inspect.features.measured import FeatureResult, Scene
-from core.inspect.features.regions import points_in
+from core.inspect.features.regions import grown_at, points_in, sure_enough
 from core.inspect.fit.elements import Element
 from core.inspect.fit.judged_form import CYLINDER, SPHERE, notes_on_form
 from core.inspect.fit.round import find_cylinder, find_sphere, sphere_through, too_few_for_a_sphere, with_uneven_light
 from core.inspect.fit.shapes import Cylinder, Sphere
 from core.inspect.fit.surface_fit import FEWEST, SurfaceFit, fit_surface
-from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf
+from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec, PointsOf
 from core.messages import Message
 
 
@@ -20,8 +20,11 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Fit a sphere to the points of the region that lie on one; InputError if they do not."""
     scene.ensure_normals()
     region, cloud = spec.regions[0], scene.cloud
-    indices = points_in(region, spec.filters, scene)
-    if not isinstance(region, PointsOf):
+    if isinstance(region, FaceAt):
+        indices = sure_enough(grown_at(region, scene, "sphere").indices, spec.filters, scene)
+    else:
+        indices = points_in(region, spec.filters, scene)
+    if not isinstance(region, PointsOf | FaceAt):
         part = cloud.select(indices)
         indices = indices[find_sphere(part, on_table=isinstance(region, Auto), progress=scene.progress)]
     if len(indices) < FEWEST:
@@ -42,10 +45,15 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Fit a cylinder to the points of the region that lie on one; InputError if they do not."""
     scene.ensure_normals()
-    region, cloud = spec.regions[0], scene.cloud
-    indices = points_in(region, spec.filters, scene)
-    on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
-    indices, filters = indices[on], spec.filters
+    region, cloud, filters = spec.regions[0], scene.cloud, spec.filters
+    if isinstance(region, FaceAt):
+        grown = grown_at(region, scene, "cylinder")
+        indices, start = sure_enough(grown.indices, filters, scene), grown.shape
+        assert isinstance(start, Cylinder)
+    else:
+        indices = points_in(region, filters, scene)
+        on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
+        indices = indices[on]
     fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
     fit = with_uneven_light(fit, cloud, scene.errors)
     notes = notes_on_form(cloud, indices, fit.shape, scene.errors, (CYLINDER,))

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.inspect.fit.plane_search import POINT_CLOUD, above_table, search_tolerance
-from core.inspect.fit.shapes import Cylinder, Sphere
+from core.inspect.fit.shapes import Cylinder, Sphere, nearest_to
 from core.inspect.fit.surface_fit import SurfaceFit
 from core.inspect.uncertainty.budget import Effect
 from core.inspect.uncertainty.causes import UNEVEN_LIGHT
@@ -43,6 +43,9 @@ LIKE_NORMALS = 0.85
 FEWEST_VOTES, ONE_IN = 12, 20
 """A surface that explains fewer points, or fewer than one in so many, is none."""
 
+SPHERE_RADII_MM, CYLINDER_RADII_MM = (3.0, 150.0), (1.5, 150.0)
+"""Spheres and cylinders outside are not looked for."""
+
 SECTION = 0.8
 """How far a section of light of σ w on a surface of radius R may be off at the flanks, radially, in w²/R: 2 to 3 on
 rendered spheres of 50 mm as they are seen, of which a third at most is left where the scan was solved twice."""
@@ -53,7 +56,7 @@ LEAST_SEEN = 0.1
 def find_sphere(
     cloud: Cloud,
     *,
-    radius_range_mm: tuple[float, float] = (3.0, 150.0),
+    radius_range_mm: tuple[float, float] = SPHERE_RADII_MM,
     on_table: bool = True,
     seed: int = 0,
     progress: Progress = silent,
@@ -155,7 +158,7 @@ def _on_sphere(points: Array, normals: Array, centre: Array, radius: float, tole
 def find_cylinder(
     cloud: Cloud,
     *,
-    radius_range_mm: tuple[float, float] = (1.5, 150.0),
+    radius_range_mm: tuple[float, float] = CYLINDER_RADII_MM,
     on_table: bool = True,
     seed: int = 0,
     progress: Progress = silent,
@@ -230,19 +233,11 @@ def _best_cylinder(
 
 
 def _refined(points: Array, normals: Array, cylinder: Cylinder, part: NDArray[np.int64]) -> Cylinder:
-    """The axis square to the normals, its point amid the points, then a step of least squares."""
+    """The axis square to the normals, its point amid the points, then least squares."""
     direction = np.linalg.eigh(normals.T @ normals)[1][:, 0]
     middle = points.mean(axis=0)
     centre = cylinder.centre + direction * (direction @ (middle - cylinder.centre))
-    cylinder = Cylinder.along(centre, direction, cylinder.radius)
-    for _ in range(10):
-        design, misfit = cylinder.design(points, part), cylinder.misfit(points, part)
-        step = np.linalg.lstsq(design, misfit, rcond=None)[0]
-        size = float(np.abs(step).max())
-        cylinder = cylinder.moved(np.asarray(step * min(1.0, 5.0 / max(size, 1e-12)), dtype=np.float64))
-        if size < 1e-6:
-            break
-    return cylinder
+    return nearest_to(Cylinder.along(centre, direction, cylinder.radius), points, part)
 
 
 def _on_cylinder(points: Array, normals: Array, cylinder: Cylinder, tolerance: float) -> NDArray[np.bool_]:

@@ -8,7 +8,7 @@ are in mm and rad about a place amid the points, so the parameters hardly hang t
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Protocol, Self
+from typing import Any, Protocol, Self, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,24 @@ class Shape(Protocol):
     def values(self) -> dict[str, Any]:
         """Where it lies in the camera frame, in mm, by the names that result files use."""
         ...
+
+
+S = TypeVar("S", bound=Shape)
+
+
+def nearest_to(shape: S, points: Array, part: Parts, *, least: float | None = None) -> S:
+    """The surface of least squares of its plain distances from `points` (N, 3), from a start near it.
+
+    What the points fix by less than `least` of what they fix best stays as it is; None: by rounding errors only.
+    """
+    for _ in range(10):
+        design, misfit = shape.design(points, part), shape.misfit(points, part)
+        step = np.linalg.lstsq(design, misfit, rcond=least)[0]
+        size = float(np.abs(step).max())
+        shape = shape.moved(np.asarray(step * min(1.0, 5.0 / max(size, 1e-12)), dtype=np.float64))
+        if size < 1e-6:
+            break
+    return shape
 
 
 @dataclass(frozen=True, eq=False, slots=True)

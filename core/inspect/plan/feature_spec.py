@@ -52,7 +52,22 @@ class PointsOf:
     feature: str
 
 
-Region: TypeAlias = Auto | Polygon | InSphere | InBox | PointsOf
+@dataclass(frozen=True, slots=True)
+class FaceAt:
+    """The face that goes on from one place, as far as it reaches: a pixel, or a place in part coordinates.
+
+    Of a sphere or a cylinder that surface is meant, of a section or a deviation whichever is there, else a plane face.
+    """
+
+    at_px: Pixel | None = None
+    at_mm: Place | None = None
+
+    def __post_init__(self) -> None:
+        if (self.at_px is None) == (self.at_mm is None):
+            raise ValueError("a face is at a pixel or at a place, one of the two")
+
+
+Region: TypeAlias = Auto | Polygon | InSphere | InBox | PointsOf | FaceAt
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +202,7 @@ class FeatureSpec:
         """Whether it can only be measured once the part's frame is known."""
         placed = self.section is not None and self.section.line_px is None
         framed = self.deviation is not None and self.deviation.align == "frame"
-        return placed or framed or any(isinstance(region, InSphere | InBox) for region in self.regions)
+        return placed or framed or any(map(_is_placed, self.regions))
 
     def limits_of(self, result: str) -> Limits | None:
         """What is asked of one of its results, as "diameter" or "height 2"; None: nothing."""
@@ -199,3 +214,8 @@ class FeatureSpec:
         if step > len(self.nominal_heights):
             return None
         return replace(asked[name], nominal=self.nominal_heights[step - 1])
+
+
+def _is_placed(region: Region) -> bool:
+    """Whether a region is in part coordinates."""
+    return isinstance(region, InSphere | InBox) or (isinstance(region, FaceAt) and region.at_mm is not None)
