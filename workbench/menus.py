@@ -44,8 +44,9 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("fit", "F", label("Picture: show the whole picture")),
     ("one", "1", label("Picture: one screen pixel a picture pixel")),
     ("views", "1 … 7, R", label("3D view: standard views, fit")),
+    ("click", "C, Shift+C", label("Inspect, 3D view: click a face, or two, to measure them")),
     ("frames", "Left, Right", label("Scan: go through the frames")),
-    ("polygon", "Return, Esc", label("Drawing a region: close it, give it up")),
+    ("polygon", "Return, Esc", label("Drawing a region, clicking a face: take it, give it up")),
 )
 """Every key the window knows: name, key and meaning. The list under ? shows them, the actions are made from them."""
 

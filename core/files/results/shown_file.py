@@ -30,12 +30,13 @@ from core.files.complaints import checked_json, fitting
 from core.files.json_text import to_json
 from core.files.reading import file_hash, json_of, read_json
 from core.files.results.inspection_file import read_inspection
-from core.files.tables import Finite, ResultFile
+from core.files.tables import Finite, ResultFile, Row3
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.shown.deviation_map import bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import as_text, from_text, plain
+from core.model import Pose
 
 
 class _Feature(ResultFile):
@@ -50,12 +51,20 @@ class _Feature(ResultFile):
     tolerance_mm: Annotated[Finite | None, Field(gt=0)]
 
 
+class _Pose(ResultFile):
+    """Where the part's coordinates are in the camera's."""
+
+    rotation: Annotated[tuple[Row3, ...], Field(min_length=3, max_length=3)]
+    translation: Row3
+
+
 class _About(ResultFile):
     """What is kept beside the arrays; `of` is the hash of the inspection.json it was written with."""
 
     features: tuple[_Feature, ...]
     verdict: Verdict
     of: str
+    pose_camera_part: _Pose | None = None
 
 
 NAME = "shown.npz"
@@ -94,6 +103,8 @@ def write_shown(inspection: Path, shown: ShownInspection) -> None:
         tolerance = None if one.deviations is None else one.deviations.tolerance_mm
         features.append(about | {"profile": one.profile is not None, "tolerance_mm": tolerance})
     about = {"features": features, "verdict": shown.verdict, "of": file_hash(inspection)}
+    if (pose := shown.pose_camera_part) is not None:
+        about["pose_camera_part"] = {"rotation": pose.rotation, "translation": pose.translation}
     write_arrays(inspection.with_name(NAME), {**arrays, "about": pack_texts([to_json(about)])})
 
 
@@ -140,7 +151,14 @@ def _shown(about: _About, arrays: Arrays, inspection: Path) -> ShownInspection:
                 deviations=None if one.tolerance_mm is None else _deviations(number, one.tolerance_mm, arrays),
             )
         )
-    return ShownInspection(tuple(features), about.verdict, file.notes, file.calibration_id)
+    pose = about.pose_camera_part
+    return ShownInspection(
+        tuple(features),
+        about.verdict,
+        file.notes,
+        file.calibration_id,
+        None if pose is None else Pose(np.array(pose.rotation), np.array(pose.translation)),
+    )
 
 
 def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[Any]]:

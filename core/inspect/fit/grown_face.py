@@ -27,6 +27,7 @@ from core.scan.surface.cloud import Cloud
 
 FaceKind: TypeAlias = Literal["plane", "sphere", "cylinder"]
 """Of a face, by the names of the kinds of features that measure it."""
+KINDS: tuple[FaceKind, ...] = ("plane", "sphere", "cylinder")
 
 SIGMAS, LEAST_MM = 5.0, 0.1
 """A point belongs to a face within so many of its σ, added in squares to what a face's form may be."""

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.messages import Message
+from core.model import Pose
 from core.model.arrays import Array
 
 
@@ -110,9 +111,13 @@ class ShownFeature:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownInspection:
-    """A plan measured on the scan of a project; `verdict` is the worst of all."""
+    """A plan measured on the scan of a project.
+
+    `verdict` is the worst of all; `pose_camera_part` maps part coordinates into the camera frame, where there are any.
+    """
 
     features: tuple[ShownFeature, ...]
     verdict: Verdict
     notes: tuple[Message, ...]
     calibration_id: str
+    pose_camera_part: Pose | None = None

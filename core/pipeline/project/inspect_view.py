@@ -120,15 +120,18 @@ def outline_selected(folder: Path, numbers: NDArray[np.int32], face: str, progre
     path = results_folder(folder) / FILES["cloud"]
     cloud = read_cloud(path).cloud
     if len(numbers) and int(numbers.max()) >= len(cloud):
-        raise InputError(
-            Message("project.scan_replaced", "this scan has been replaced by another one"),
-            where=path,
-            todo=Message("advice.draw_region_again", "draw the region again"),
-        )
+        raise scan_replaced(path, Message("advice.draw_region_again", "draw the region again"))
     chosen = numbers.astype(np.int64)
     outline = face_outline(cloud, chosen, face) if face else outline_px(cloud.uv[chosen])
     progress("outline", 1, 1)
     return outline
+
+
+def scan_replaced(path: Path, todo: Message) -> InputError:
+    """The complaint that a choice was made on another scan than the one in `path`."""
+    return InputError(
+        Message("project.scan_replaced", "this scan has been replaced by another one"), where=path, todo=todo
+    )
 
 
 def _height(gauge: GaugeResult | None, points: Array) -> Array:

@@ -86,7 +86,9 @@ def _inspected(
 
 def _shown(inspection: Inspection, scan: InspectedScan) -> ShownInspection:
     features = tuple(_feature(result, scan.cloud) for result in inspection.results)
-    return ShownInspection(features, inspection.verdict, inspection.notes, scan.calibration_id)
+    return ShownInspection(
+        features, inspection.verdict, inspection.notes, scan.calibration_id, inspection.pose_camera_part
+    )
 
 
 def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:

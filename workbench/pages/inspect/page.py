@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QTabWidget, QWidget
 from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
+from workbench.pages.inspect.features.form import CLICK
 from workbench.pages.inspect.features.panel import FeaturesPanel
 from workbench.pages.inspect.features.plot import PlotTab
 from workbench.pages.inspect.panels import FacesPanel, ResultPanel
@@ -99,7 +100,7 @@ class InspectPage(StepPage):
 
     def _tab_changed(self) -> None:
         if self.tabs.currentWidget() is not self.surface:
-            self.presenter.picks.stop()
+            self.presenter.end_picking()
         self._refresh_tab()
 
     def _add_repeat(self) -> None:
@@ -108,6 +109,10 @@ class InspectPage(StepPage):
         QTimer.singleShot(1, self, lambda: self.tabs.setCurrentWidget(self.series))
 
     def _draw(self, face: str, kind: Any) -> None:
+        if kind == CLICK:
+            self.tabs.setCurrentWidget(self.surface)
+            self.presenter.click_region(face)
+            return
         if self.tabs.currentWidget() not in (self.surface, self.picture):
             self.tabs.setCurrentWidget(self.picture)
         tab: Any = self.tabs.currentWidget()
@@ -116,7 +121,7 @@ class InspectPage(StepPage):
     def _pick(self, mode: Any) -> None:
         if mode:
             self.tabs.setCurrentWidget(self.surface)
-        self.presenter.picks.start(mode)
+        self.presenter.start_picking(mode)
 
     def _show_stage(self, stage: Stage) -> None:
         p = self.presenter

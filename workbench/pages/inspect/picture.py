@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from PySide6.QtWidgets import QComboBox, QLabel, QWidget
 
-from core.inspect.plan.feature_spec import Polygon
+from core.inspect.plan.feature_spec import FaceAt, Polygon
 from workbench.language import tr
 from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
@@ -144,6 +144,9 @@ class PictureTab(QWidget):
             if isinstance(region, Polygon):
                 title = tr("region of the feature")
                 self.image.set_polygon(name, region.corners_px, editable=True, colour=FEATURE, title=title)
+            elif isinstance(region, FaceAt) and region.at_px is not None:
+                title = tr("clicked face of the feature")
+                self.image.set_points(name, [region.at_px], colour=FEATURE, symbol="+", size=16, title=title)
             else:
                 self.image.remove_layer(name)
         self._regions = len(regions)

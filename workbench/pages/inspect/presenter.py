@@ -14,12 +14,14 @@ from core.files.project.folder import source_folder
 from core.files.project.keys import finished
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.inspect.clicked import InspectClicked, Target
+from workbench.pages.inspect.clicked import Mode as ClickMode
 from workbench.pages.inspect.faces import FACES, InspectFaces
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
-from workbench.pages.inspect.picks import InspectPicks
+from workbench.pages.inspect.picks import InspectPicks, Mode
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.inspect.stage import Facts, Stage, WhyNot, stage_of, why_not_measure
@@ -61,8 +63,9 @@ class InspectPresenter(StepPresenter):
         self.studies = InspectStudies(bench, self.repeats)
         self.features = InspectFeatures(bench)
         self.feature = InspectFeatureEdit(self.features, self.scan)
+        self.clicked = InspectClicked(self.features, self.scan)
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
-        for part in (self.faces, self.picks, self.repeats, self.studies, self.features):
+        for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked):
             part.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(self._look_at_scan)
@@ -203,6 +206,35 @@ class InspectPresenter(StepPresenter):
             replace_waiting=True,
         )
 
+    # ---- points and faces clicked in 3D
+
+    def start_picking(self, mode: Mode) -> None:
+        """From now on a click in 3D picks a point, or an end of a distance; "" ends it."""
+        self.clicked.stop()
+        self.picks.start(mode)
+
+    def start_clicking(self, mode: ClickMode, target: Target | None = None) -> None:
+        """From now on a click in 3D proposes a face, or two a step; "" ends it."""
+        self.picks.stop()
+        self.clicked.start(mode, target)
+
+    def click_region(self, name: str) -> None:
+        """From now on a face that is clicked is proposed for the region of the chosen feature called so."""
+        if self.feature.spec is not None:
+            self.start_clicking("face", Target(self.feature.spec.name, self.feature.place_of(name)))
+
+    def click(self, point: int) -> None:
+        """A point of the view was clicked."""
+        if self.clicked.mode:
+            self.clicked.click(point)
+        else:
+            self.picks.pick(point)
+
+    def end_picking(self) -> None:
+        """Clicks in 3D mean nothing any more."""
+        self.picks.stop()
+        self.clicked.stop()
+
     # ---- regions chosen in 3D
 
     def outline(self, face: str, chosen: NDArray[np.bool_]) -> None:
@@ -262,7 +294,7 @@ class InspectPresenter(StepPresenter):
 
     def left(self) -> None:
         self._seen = False
-        self.picks.stop()
+        self.end_picking()
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.rig.gauge != after.rig.gauge:
@@ -274,6 +306,7 @@ class InspectPresenter(StepPresenter):
         """Another scan is shown, or the same one with another thickness, or none."""
         if self.scan.is_new:
             self.picks.clear()
+            self.clicked.stop()
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
         if self.scan.view is None or self.picture not in (RELIEF, *self.scan.view.pictures):

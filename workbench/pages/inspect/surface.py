@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QHideEvent, QShowEvent
+from PySide6.QtGui import QHideEvent, QKeySequence, QShortcut, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
@@ -19,11 +19,12 @@ from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.refresh import Refresh
-from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, to_rgba
+from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, PROPOSED, to_rgba
 from workbench.views.layouts import in_column
 from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
+    from core.inspect.shown.clicked_faces import ClickedFaces
     from core.inspect.shown.shown_features import ShownFeature
     from core.inspect.shown.shown_scan import InspectionView, ShownMesh
 
@@ -32,6 +33,9 @@ PLAIN = "#8A96A3"
 
 MOST_MARKED = 100_000
 """So many of the points used are marked on a mesh; more would be no clearer."""
+
+PROPOSALS = ("proposed 1", "proposed 2")
+"""Names of the highlights of faces that were clicked."""
 
 DRAW_WITHIN_MS = 60
 
@@ -56,7 +60,8 @@ class SurfaceTab(QWidget):
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
         self._oriented = False
-        self._picking = False
+        self._proposal: ClickedFaces | None = None
+        self._picking = ""
         self._later = QTimer(self)
         self._later.setSingleShot(True)
         self._later.setInterval(DRAW_WITHIN_MS)
@@ -70,12 +75,18 @@ class SurfaceTab(QWidget):
         foot.addWidget(self.line, 1)
         foot.addWidget(self.hint)
         in_column(self.choices, (self.scene, 1), foot, on=self, margins=(6, 6, 6, 4), spacing=4)
-        self.scene.point_picked.connect(lambda point, _: presenter.picks.pick(point))
+        self.scene.point_picked.connect(lambda point, _: presenter.click(point))
+        self.scene.taken.connect(presenter.clicked.take)
         self.scene.region_selected.connect(self._selected)
         self.scene.drawing_cancelled.connect(self._cancelled)
         self.scene.notice.connect(self.notice)
         self.choices.changed.connect(self.refresh)
         self.choices.limited.connect(presenter.clip)
+        self.choices.click.connect(presenter.start_clicking)
+        for key, mode in (("C", "face"), ("Shift+C", "step")):
+            shortcut = QShortcut(QKeySequence(key), self)
+            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
+            shortcut.activated.connect(self.choices.clicks[mode].click)
         presenter.measured.connect(self._show_faces)
 
     def _show_faces(self) -> None:
@@ -94,7 +105,9 @@ class SurfaceTab(QWidget):
             else:
                 self._later.start()
         self._show_feature()
+        self._show_proposal()
         self._show_picks()
+        self._show_tool()
         self._show_words(view)
 
     @property
@@ -109,7 +122,7 @@ class SurfaceTab(QWidget):
 
     def start_region(self, face: str, kind: Literal["polygon", "lasso"]) -> None:
         """Let the user draw round the points of a face."""
-        self._presenter.picks.stop()
+        self._presenter.end_picking()
         if kind == "polygon":
             self.scene.start_polygon()
         else:
@@ -137,6 +150,7 @@ class SurfaceTab(QWidget):
         self._later.stop()
         self._drawn = self._cloud = self._mesh = ()
         self._marked, self._oriented, self._feature, self._highlights = [], False, None, []
+        self._proposal = None
         self.scene.clear(message)
         self.line.setText("")
         self.hint.setText("")
@@ -223,6 +237,17 @@ class SurfaceTab(QWidget):
         for one in result.deviations.classes:
             self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
 
+    def _show_proposal(self) -> None:
+        """The faces that were clicked and are not taken yet."""
+        proposal = self._presenter.clicked.proposal
+        if proposal is self._proposal:
+            return
+        self._proposal = proposal
+        for name in PROPOSALS:
+            self.scene.remove_highlight(name)
+        for name, face in zip(PROPOSALS, () if proposal is None else proposal.faces, strict=False):
+            self.scene.set_highlight(name, face.places, PROPOSED)
+
     def _legend(self) -> str:
         """What the colours of the chosen feature mean, each with its sign, behind what is shown."""
         features = self._presenter.features
@@ -261,12 +286,22 @@ class SurfaceTab(QWidget):
             if picks.first is not None:
                 self.scene.set_labels("first", [(picks.first.place, tr("first end"))])
             self._marked = wanted
-        if picks.mode and not self._picking:
-            self.scene.start_picking()
-            self._picking = True
-        elif not picks.mode and self._picking:
-            self._picking = False
-            self.scene.stop_drawing()
+
+    def _show_tool(self) -> None:
+        """Let clicks pick points or faces, or nothing any more."""
+        clicked = self._presenter.clicked
+        for mode, button in self.choices.clicks.items():
+            button.setChecked(clicked.mode == mode)
+        wanted = "faces" if clicked.mode else "points" if self._presenter.picks.mode else ""
+        if wanted != self._picking:
+            self._picking = ""  # what ends now is not ended by the user
+            if wanted:
+                self.scene.start_picking()
+            else:
+                self.scene.stop_drawing()
+            self._picking = wanted
+        if wanted == "faces":
+            self.scene.set_hint(clicked.hint())
 
     def _mark(self, item: Pick | Span) -> None:
         if isinstance(item, Pick):
@@ -284,8 +319,8 @@ class SurfaceTab(QWidget):
     def _cancelled(self) -> None:
         self._face = ""
         if self._picking:
-            self._picking = False
-            self._presenter.picks.stop()
+            self._picking = ""
+            self._presenter.end_picking()
 
     def _show_words(self, view: InspectionView) -> None:
         p = self._presenter

@@ -38,6 +38,9 @@ class ViewControl(Protocol):
     def pick(self, at: QPointF) -> None:
         """Choose the point of the cloud under the cursor."""
 
+    def take(self) -> None:
+        """Take what was chosen last."""
+
     def centre_on(self, at: QPointF) -> None:
         """Turn about the point under the cursor from now on."""
 
@@ -130,6 +133,12 @@ class Pick(Navigate):
 
     def click(self, at: QPointF) -> None:
         self.view.pick(at)
+
+    def key(self, event: QKeyEvent) -> bool:
+        if event.key() in (Qt.Key.Key_Return, Qt.Key.Key_Enter):
+            self.view.take()
+            return True
+        return super().key(event)
 
     def double_click(self, event: QMouseEvent) -> None:
         """Two clicks on one point are one choice."""

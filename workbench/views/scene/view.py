@@ -99,6 +99,9 @@ class SceneView(QWidget):
     region_selected = Signal(object)
     """Which of the cloud's points, as given, lie inside the drawn region: (N,) bool."""
 
+    taken = Signal()
+    """Enter was pressed while points are picked."""
+
     drawing_cancelled = Signal()
     """Picking or drawing was ended by Esc or `stop_drawing`, without a result."""
 
@@ -327,8 +330,16 @@ class SceneView(QWidget):
     # ---- choosing
 
     def start_picking(self) -> None:
-        """Every click on the cloud gives `point_picked` until Esc or `stop_drawing`; dragging still turns the view."""
+        """Every click on the cloud gives `point_picked`, and Enter `taken`, until Esc or `stop_drawing`.
+
+        Dragging still turns the view.
+        """
         self._start(Pick(self))
+
+    def set_hint(self, hint: str) -> None:
+        """Write what the tool in hand does over the view, instead of its own words; one line or two."""
+        self._canvas.tool.hint = hint
+        self._canvas.update()
 
     def start_polygon(self) -> None:
         """Let the user click the corners of a region; a double click or Enter closes it, Esc cancels."""
@@ -401,6 +412,10 @@ class SceneView(QWidget):
             self._marked = points[number].copy()
             self._canvas.update()
             self.point_picked.emit(number, self._marked)
+
+    def take(self) -> None:
+        """Say that Enter was pressed."""
+        self.taken.emit()
 
     def centre_on(self, at: QPointF) -> None:
         """Turn about the point under the cursor from now on."""

@@ -166,3 +166,18 @@ def test_features_and_their_plots_never_keep_the_window_waiting(presenter, qtbot
     page.close()
     assert all(one.rows for one in features.shown.features if one.kind != "section")
     assert too_long(watchdog, slowness()) == []
+
+
+def test_two_clicked_faces_measure_what_is_found_by_itself(presenter, qtbot):
+    gauge, features = presenter.scan.gauge, presenter.features
+    presenter.start_clicking("step")
+    for face in (gauge.lower, gauge.upper):
+        before = presenter.clicked.proposal
+        presenter.click(int(face.indices[len(face.indices) // 2]))
+        qtbot.waitUntil(lambda before=before: presenter.clicked.proposal is not before, timeout=20_000)
+    presenter.clicked.take()
+    features.measure()
+    qtbot.waitUntil(lambda: features.shown is not None, timeout=60_000)
+    (row,) = features.result("thickness 1").rows
+    assert row.value == pytest.approx(gauge.thickness_mm, abs=gauge.U_mm)
+    settled(presenter, qtbot)

@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from core.inspect.plan.feature_spec import Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon
+from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec, InBox, InSphere, PointsOf, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import MOST_FACES, kind_of
 from workbench.language import tr
@@ -21,7 +21,16 @@ from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import heading, in_column
+from workbench.views.layouts import enable, heading, in_column
+
+CLICK = "face"
+"""The tool that takes a face clicked in 3D for a region."""
+TOOLS = {
+    "polygon": "mdi6.vector-polygon",
+    "lasso": "mdi6.lasso",
+    CLICK: "mdi6.cursor-default-click-outline",
+}
+"""Tools to say where a region is, and their icons."""
 
 
 class FeatureForm(QWidget):
@@ -99,7 +108,11 @@ class FeatureForm(QWidget):
 
     def _add_region(self, spec: FeatureSpec, plan: InspectionPlan, place: int, found: bool) -> None:
         region = spec.regions[place]
-        choices = [(fields.AUTO, words.source_of_none(spec)), (fields.DRAWN, tr("drawn"))]
+        choices = [
+            (fields.AUTO, words.source_of_none(spec)),
+            (fields.DRAWN, tr("drawn")),
+            (fields.CLICKED, tr("clicked face")),
+        ]
         if isinstance(region, InSphere | InBox):
             choices.append((fields.PLACED, tr("as in the plan file")))
         choices += [
@@ -133,10 +146,10 @@ class FeatureForm(QWidget):
             several = tr("Draw “{name}”", name=self._region_title(spec, place))
             title = several if len(spec.regions) > 1 else tr("Draw the region")
             grid.addWidget(QLabel(title), place, 0)
-            for column, kind in enumerate(("polygon", "lasso"), start=1):
+            for column, (kind, symbol) in enumerate(TOOLS.items(), start=1):
                 button = QToolButton()
                 button.setAutoRaise(True)
-                button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
+                button.setIcon(icon(symbol))
                 button.setIconSize(QSize(20, 20))
                 button.setAccessibleName(f"{title}, {kind}")
                 button.clicked.connect(lambda _=False, place=place, kind=kind: self._draw(place, kind))
@@ -166,12 +179,14 @@ class FeatureForm(QWidget):
 
     def _edited(self, key: str, value: object) -> None:
         spec = self._edit.spec
-        if not key.startswith("source ") or spec is None or value not in (fields.DRAWN, fields.PLACED):
+        by_hand = {fields.DRAWN: (Polygon, "polygon"), fields.CLICKED: (FaceAt, CLICK), fields.PLACED: (object, "")}
+        if not key.startswith("source ") or spec is None or value not in by_hand:
             self._edit.set_value(key, value)
             return
         place = int(key.removeprefix("source "))
-        if not isinstance(spec.regions[place], Polygon) and value == fields.DRAWN:
-            self._draw(place, "polygon")
+        made, tool = by_hand[value]
+        if not isinstance(spec.regions[place], made):
+            self._draw(place, tool)
         self.where.set_values(self._edit.values())
 
     def _draw(self, place: int, kind: str) -> None:
@@ -186,15 +201,14 @@ class FeatureForm(QWidget):
 
     def _show_tools(self) -> None:
         why_not = "" if self._scan.view is not None else tr("There is no surface to draw on yet.")
+        more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")
+        tips = {
+            "polygon": tr("Draw the region corner by corner.") + " " + more,
+            "lasso": tr("Draw round the region with the button held down.") + " " + more,
+            CLICK: tr("Click the face in 3D: the region is all of it."),
+        }
         for (_, kind), button in self.tools.items():
-            first = (
-                tr("Draw the region corner by corner.")
-                if kind == "polygon"
-                else tr("Draw round the region with the button held down.")
-            )
-            button.setEnabled(not why_not)
-            more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")
-            button.setToolTip(why_not or f"{first} {more}")
+            enable(button, why_not, tips[kind])
 
 
 def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:

@@ -20,6 +20,7 @@ from workbench.work.tasks import Task
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_features import ShownFeature, ShownInspection
+    from core.model import Pose
 
 
 REMEMBERING = {"progress": "progress", "memory": "memory"}
@@ -47,10 +48,10 @@ class InspectFeatures(QObject):
         """What is to be measured."""
         return self.model.project.inspection
 
-    def free_name(self, kind: str) -> str:
-        """A name for a new feature that no other has: "plane 2"."""
+    def free_name(self, kind: str, taken: Sequence[str] = ()) -> str:
+        """A name for a new feature that no other has, and that is not `taken`: "plane 2"."""
         number = 1
-        while f"{kind} {number}" in self.plan.names:
+        while f"{kind} {number}" in (*self.plan.names, *taken):
             number += 1
         return f"{kind} {number}"
 
@@ -68,6 +69,12 @@ class InspectFeatures(QObject):
         label = tr("change {name}", name=spec.name) if instead_of else tr("add {name}", name=spec.name)
         self.chosen = spec.name
         self.put_plan(plan, label)
+
+    def add(self, specs: Sequence[FeatureSpec]) -> None:
+        """Add features, the last one made of the others, and choose that; one edit, undoable."""
+        self.chosen = specs[-1].name
+        plan = replace(self.plan, features=(*self.plan.features, *specs))
+        self.put_plan(plan, tr("add {name}", name=self.chosen))
 
     def remove(self, name: str) -> None:
         """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
@@ -173,6 +180,14 @@ class InspectFeatures(QObject):
     def shown(self) -> ShownInspection | None:
         """What the plan gave, if that is still what it would give now."""
         return self._shown if self._shown_for == self._wanted() else None
+
+    @property
+    def pose_camera_part(self) -> Pose | None:
+        """Part coordinates into the camera frame, if they are known and still those of this plan."""
+        frame = self.plan.frame
+        if frame is None or self._shown is None or any(self.result(name) is None for name in frame.names):
+            return None
+        return self._shown.pose_camera_part
 
     def result(self, name: str) -> ShownFeature | None:
         """What a feature gave; None if it is not measured, or something it depends on has changed since."""

@@ -13,6 +13,7 @@ from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
     Deviation,
+    FaceAt,
     FeatureSpec,
     PointsOf,
     Polygon,
@@ -23,9 +24,10 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import FILTERS, MOST_FACES, kind_named, kind_of, results_of
 from workbench.language import tr
 
-AUTO, DRAWN, PLACED = "auto", "drawn", "placed"
+AUTO, DRAWN, CLICKED, PLACED = "auto", "drawn", "clicked", "placed"
 POINTS_OF = "of "
-"""Where a region's points come from: found, drawn in the picture, placed in part coordinates, "of " and a feature."""
+"""Where a region's points come from: found, drawn in the picture, a face that was clicked, placed in part coordinates,
+"of " and a feature."""
 
 SIDES = ("nominal", "lower", "upper")
 
@@ -158,6 +160,8 @@ def _source(region: Region) -> str:
             return AUTO
         case Polygon():
             return DRAWN
+        case FaceAt():
+            return CLICKED
         case PointsOf():
             return POINTS_OF + region.feature
     return PLACED
