@@ -51,8 +51,8 @@ FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
 FEATURE = "#E66AD2"
 """Points and regions of the feature that is chosen."""
 
-PROPOSED = "#35E0D0"
-"""Points of a face that was clicked and is not taken yet."""
+PROPOSED = "#FF6D00"
+"""Points of a face that was clicked and is not taken yet; no scale of values has this colour."""
 
 DEVIATIONS = ("#08306B", "#2166AC", "#5B9FD0", "#A6CDE6", "#C9CDD2", "#F4B79A", "#E08259", "#C4403C", "#7A0221")
 """Classes of deviations from a nominal surface, from the farthest inwards to the farthest outwards; marks tell more."""

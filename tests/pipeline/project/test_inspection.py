@@ -9,13 +9,16 @@ import pytest
 
 from core.errors import InputError
 from core.files.plan.plan_file import write_plan
+from core.files.plan.translation import plan_tables
 from core.files.project.data import ProjectFile
 from core.files.project.folder import create_project, results_folder
 from core.files.results.mesh_export import write_stl
 from core.files.results.ply import read_mesh
+from core.files.results.shown_file import read_shown, write_shown
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.feature_spec import Auto, Deviation, FeatureSpec, Filters, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.model import Pose
 from core.pipeline.project import inspection as project_inspection
 from core.pipeline.project.inspection import look_at_features, measure_features
 from core.pipeline.project.report import project_content
@@ -115,6 +118,16 @@ def test_what_is_drawn_is_of_the_scan_and_kept_so_that_it_need_not_be_measured_a
     assert int(itself.deviations.counts.sum()) > 0
     monkeypatch.setattr(project_inspection, "inspect", lambda *_: pytest.fail("measured again"))
     assert drawn(look_at_features(folder, project)) == drawn(shown)
+
+
+def test_part_coordinates_are_kept_with_what_is_drawn(done, folder):
+    project = replace(done.project, inspection=InspectionPlan(PLAN.features[:1]))
+    shown, path = measure_features(folder, project), results_folder(folder) / "inspection.json"
+    assert shown.pose_camera_part is None
+    pose = Pose.from_vector([0.1, -0.2, 3.0, 1.0, 2.0, 500.0])
+    write_shown(path, replace(shown, pose_camera_part=pose))
+    kept = read_shown(path, plan_tables(project.inspection)).pose_camera_part
+    assert np.array_equal(kept.rotation, pose.rotation) and np.array_equal(kept.translation, pose.translation)
 
 
 def test_after_an_edit_only_what_it_changed_is_measured_and_the_file_is_as_if_all_were(done, folder, monkeypatch):

@@ -13,13 +13,11 @@ from PySide6.QtWidgets import (
     QLabel,
     QPushButton,
     QSlider,
-    QToolButton,
     QWidget,
 )
 
 from core.inspect.shown.shown_scan import DEPTH
 from workbench.language import tr
-from workbench.theme import icon
 from workbench.views.common import SpinBox
 from workbench.views.layouts import in_row
 
@@ -41,18 +39,12 @@ class SurfaceChoices(QWidget):
     limited = Signal(object)
     """Points up to this σ in mm are to be shown; None: all."""
 
-    click = Signal(str)
-    """Faces ("face") or steps between two ("step") are to be clicked; "": no more."""
-
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self.clicks: dict[str, QToolButton] = {}
         self.shapes: dict[Shape, QPushButton] = {}
         self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
         bar = in_row(on=self, spacing=4)
         self._make_shapes(bar)
-        bar.addSpacing(4)
-        self._make_clicks(bar)
         bar.addSpacing(4)
         self._make_colours(bar)
         bar.addStretch(1)
@@ -74,7 +66,7 @@ class SurfaceChoices(QWidget):
 
     def show_view(self, view: InspectionView | None, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
-        for widget in (*self.shapes.values(), *self.clicks.values(), self.colours, self.limit, self.slider):
+        for widget in (*self.shapes.values(), self.colours, self.limit, self.slider):
             widget.setEnabled(view is not None)
         if view is None:
             return
@@ -101,20 +93,6 @@ class SurfaceChoices(QWidget):
             self.shapes[name] = button
         self.shapes["points"].setChecked(True)
         group.buttonToggled.connect(lambda _, on: self.changed.emit() if on else None)
-
-    def _make_clicks(self, bar: QHBoxLayout) -> None:
-        for mode, symbol, text, key in (
-            ("face", "mdi6.cursor-default-click-outline", tr("Click a face to measure it"), "C"),
-            ("step", "mdi6.stairs", tr("Click two faces to measure from one to the other"), "Shift+C"),
-        ):
-            button = QToolButton()
-            button.setCheckable(True)
-            button.setIcon(icon(symbol))
-            button.setAccessibleName(text)
-            button.setToolTip(tr("{what} ({key})", what=text, key=key))
-            button.clicked.connect(lambda on, mode=mode: self.click.emit(mode if on else ""))
-            bar.addWidget(button)
-            self.clicks[mode] = button
 
     def _make_colours(self, bar: QHBoxLayout) -> None:
         self.colours.setAccessibleName(tr("Colour by"))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QHideEvent, QKeySequence, QShortcut, QShowEvent
+from PySide6.QtGui import QAction, QHideEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
@@ -15,6 +15,7 @@ from core.report.wording import grouped
 from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
+from workbench.pages.inspect.clicked import Mode
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
@@ -82,11 +83,14 @@ class SurfaceTab(QWidget):
         self.scene.notice.connect(self.notice)
         self.choices.changed.connect(self.refresh)
         self.choices.limited.connect(presenter.clip)
-        self.choices.click.connect(presenter.start_clicking)
-        for key, mode in (("C", "face"), ("Shift+C", "step")):
-            shortcut = QShortcut(QKeySequence(key), self)
-            shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
-            shortcut.activated.connect(self.choices.clicks[mode].click)
+        self.clicks: dict[Mode, QAction] = {
+            "face": self.scene.add_tool(tr("Click a face to measure it"), "C", "mdi6.cursor-default-click-outline"),
+            "step": self.scene.add_tool(
+                tr("Click two faces to measure from one to the other"), "Shift+C", "mdi6.stairs"
+            ),
+        }
+        for mode, action in self.clicks.items():
+            action.triggered.connect(lambda on, mode=mode: presenter.start_clicking(mode if on else ""))
         presenter.measured.connect(self._show_faces)
 
     def _show_faces(self) -> None:
@@ -96,6 +100,8 @@ class SurfaceTab(QWidget):
         """Show what the presenter says now."""
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.clip_mm)
+        for action in self.clicks.values():
+            action.setEnabled(view is not None)
         if view is None:
             self._clear()
             return
@@ -290,8 +296,8 @@ class SurfaceTab(QWidget):
     def _show_tool(self) -> None:
         """Let clicks pick points or faces, or nothing any more."""
         clicked = self._presenter.clicked
-        for mode, button in self.choices.clicks.items():
-            button.setChecked(clicked.mode == mode)
+        for mode, action in self.clicks.items():
+            action.setChecked(clicked.mode == mode)
         wanted = "faces" if clicked.mode else "points" if self._presenter.picks.mode else ""
         if wanted != self._picking:
             self._picking = ""  # what ends now is not ended by the user

@@ -74,6 +74,14 @@ class SceneButtons(QToolBar):
             "camera": (tr("What the camera sees"), "8"),
         }
         self._actions: dict[str, QAction] = {}
+        self._symbols = {
+            "iso": "mdi6.cube-outline",
+            "camera": "mdi6.camera-outline",
+            "fit": "mdi6.fit-to-screen-outline",
+            "parallel": "mdi6.rectangle-outline",
+            "grid": "mdi6.grid",
+            "save": "mdi6.content-save-outline",
+        }
         for view, (text, key) in names.items():
             self._add(view, text, key).triggered.connect(lambda _=False, view=view: self.view_asked.emit(view))
         self.addSeparator()
@@ -90,24 +98,25 @@ class SceneButtons(QToolBar):
         """One of the buttons' actions: a view's name, "fit", "parallel", "grid", "save"."""
         return self._actions[name]
 
+    def add_tool(self, text: str, key: str, symbol: str) -> QAction:
+        """A checkable button of whoever shows the view, before the others; `symbol` names its icon."""
+        first = self.actions()[0]
+        action = self._add(symbol, text, key, checkable=True)
+        self.insertAction(first, action)
+        self._symbols[symbol] = symbol
+        self.dress()
+        return action
+
     def dress(self) -> None:
         """Make the icons follow the palette."""
         role = QPalette.ColorRole
         palette = QGuiApplication.palette()  # the bar's own is told of a new theme after the view it belongs to
         text, accent = palette.color(role.WindowText), palette.color(role.Highlight)
-        library = {
-            "iso": "mdi6.cube-outline",
-            "camera": "mdi6.camera-outline",
-            "fit": "mdi6.fit-to-screen-outline",
-            "parallel": "mdi6.rectangle-outline",
-            "grid": "mdi6.grid",
-            "save": "mdi6.content-save-outline",
-        }
         for name, action in self._actions.items():
             if name in _FACES:
                 action.setIcon(_cube_icon(name, text, accent, self.devicePixelRatioF()))
             else:
-                action.setIcon(qtawesome.icon(library[name], color=text, color_on=accent))
+                action.setIcon(qtawesome.icon(self._symbols[name], color=text, color_on=accent))
 
         more = self.findChild(QToolButton, "qt_toolbar_ext_button")
         if more is not None:  # what there is no room for is behind it; the style draws it black on any theme

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
-from PySide6.QtGui import QCloseEvent, QColor, QImage, QPainter
+from PySide6.QtGui import QAction, QCloseEvent, QColor, QImage, QPainter
 from PySide6.QtWidgets import QFileDialog, QWidget
 
 from core.errors import InputError
@@ -329,6 +329,10 @@ class SceneView(QWidget):
 
     # ---- choosing
 
+    def add_tool(self, text: str, key: str, symbol: str) -> QAction:
+        """A checkable button in the view's tool bar, whose key works in the view; `symbol` names its icon."""
+        return self._buttons.add_tool(text, key, symbol)
+
     def start_picking(self) -> None:
         """Every click on the cloud gives `point_picked`, and Enter `taken`, until Esc or `stop_drawing`.
 
@@ -414,7 +418,9 @@ class SceneView(QWidget):
             self.point_picked.emit(number, self._marked)
 
     def take(self) -> None:
-        """Say that Enter was pressed."""
+        """Say that Enter was pressed; the mark of the last point goes."""
+        self._marked = None
+        self._canvas.update()
         self.taken.emit()
 
     def centre_on(self, at: QPointF) -> None:

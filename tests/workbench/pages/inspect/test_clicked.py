@@ -324,11 +324,15 @@ def marks(page):
     return {name: item for (kind, name), item in page.surface.scene._scene.items.items() if kind is Marks}
 
 
+def button(page, mode):
+    return page.surface.scene._buttons.widgetForAction(page.surface.clicks[mode])
+
+
 def test_a_face_is_clicked_seen_and_taken_with_mouse_and_keys(page, qtbot):
     scene, presenter = page.surface.scene, page.presenter
-    qtbot.mouseClick(page.surface.choices.clicks["face"], LEFT)
+    qtbot.mouseClick(button(page, "face"), LEFT)
     page.refreshing.at_once()
-    assert page.surface.choices.clicks["face"].isChecked()
+    assert page.surface.clicks["face"].isChecked()
     assert scene._canvas.tool.hint.startswith("Click a face.")
     spots = scene.screen_positions(presenter.scan.view.points)
     x, y = spots[np.argmin(np.hypot(*(spots - spots.mean(axis=0)).T))]
@@ -345,7 +349,7 @@ def test_a_face_is_clicked_seen_and_taken_with_mouse_and_keys(page, qtbot):
 
 def test_escape_drops_what_is_shown_and_puts_the_tool_down(page, qtbot):
     scene, presenter = page.surface.scene, page.presenter
-    qtbot.mouseClick(page.surface.choices.clicks["step"], LEFT)
+    qtbot.mouseClick(button(page, "step"), LEFT)
     page.refreshing.at_once()
     for number in (8, 10):
         click(presenter, qtbot, number)
@@ -354,7 +358,7 @@ def test_escape_drops_what_is_shown_and_puts_the_tool_down(page, qtbot):
     qtbot.keyClick(scene._canvas, Qt.Key.Key_Escape)
     page.refreshing.at_once()
     assert not set(PROPOSALS) & set(marks(page))
-    assert presenter.clicked.mode == "" and not page.surface.choices.clicks["step"].isChecked()
+    assert presenter.clicked.mode == "" and not page.surface.clicks["step"].isChecked()
     assert presenter.features.plan.features == () and edits(presenter) == 0
 
 

@@ -383,6 +383,20 @@ def test_added_points_are_picked_by_their_number_in_the_whole_cloud(view, qtbot)
     assert picked.args[0] == 13
 
 
+def test_enter_takes_what_was_picked_and_its_mark_goes(view, qtbot):
+    view.set_cloud(SPARSE)
+    view.view("top")
+    view.start_picking()
+    view.set_hint("Click a face.")
+    click(view, qtbot, view.screen_positions(SPARSE)[7])
+    assert view._marked is not None and view._canvas.tool.hint == "Click a face."
+    with qtbot.waitSignal(view.taken), qtbot.assertNotEmitted(view.drawing_cancelled):
+        qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Return)
+    assert view._marked is None
+    with qtbot.waitSignal(view.point_picked):
+        click(view, qtbot, view.screen_positions(SPARSE)[9])
+
+
 def test_turning_the_view_while_picking_picks_nothing(view, qtbot):
     view.set_cloud(SPARSE)
     view.view("top")
