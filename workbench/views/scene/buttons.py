@@ -74,6 +74,7 @@ class SceneButtons(QToolBar):
             "camera": (tr("What the camera sees"), "8"),
         }
         self._actions: dict[str, QAction] = {}
+        self._tools_end: QAction | None = None
         self._symbols = {
             "iso": "mdi6.cube-outline",
             "camera": "mdi6.camera-outline",
@@ -100,9 +101,10 @@ class SceneButtons(QToolBar):
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
         """A checkable button of whoever shows the view, before the others; `symbol` names its icon."""
-        first = self.actions()[0]
+        if self._tools_end is None:
+            self._tools_end = self.insertSeparator(self._actions["front"])
         action = self._add(symbol, text, key, checkable=True)
-        self.insertAction(first, action)
+        self.insertAction(self._tools_end, action)
         self._symbols[symbol] = symbol
         self.dress()
         return action

@@ -32,6 +32,9 @@ TOOLS = {
 }
 """Tools to say where a region is, and their icons."""
 
+BY_HAND = (fields.DRAWN, fields.CLICKED, fields.PLACED)
+"""Sources of points that are not set by choosing them."""
+
 
 class FeatureForm(QWidget):
     """Two forms with the tools to draw regions between them; made anew for a feature with other fields."""
@@ -179,14 +182,14 @@ class FeatureForm(QWidget):
 
     def _edited(self, key: str, value: object) -> None:
         spec = self._edit.spec
-        by_hand = {fields.DRAWN: (Polygon, "polygon"), fields.CLICKED: (FaceAt, CLICK), fields.PLACED: (object, "")}
-        if not key.startswith("source ") or spec is None or value not in by_hand:
+        if not key.startswith("source ") or spec is None or value not in BY_HAND:
             self._edit.set_value(key, value)
             return
         place = int(key.removeprefix("source "))
-        made, tool = by_hand[value]
-        if not isinstance(spec.regions[place], made):
-            self._draw(place, tool)
+        if value == fields.DRAWN and not isinstance(spec.regions[place], Polygon):
+            self._draw(place, "polygon")
+        if value == fields.CLICKED and not isinstance(spec.regions[place], FaceAt):
+            self._draw(place, CLICK)
         self.where.set_values(self._edit.values())
 
     def _draw(self, place: int, kind: str) -> None:
