@@ -131,6 +131,16 @@ def test_where_nothing_was_measured_there_is_no_face(block, region):
     assert "nothing was measured at the place that was clicked" in str(inspection.problems[0])
 
 
+def test_a_stray_point_where_a_face_was_clicked_does_no_harm(block):
+    u, v = block.uv[np.flatnonzero(BLOCK.upper)[300]]
+    at = int(np.argmin(np.linalg.norm(block.uv - [u, v], axis=1)))
+    points = np.array(block.points)
+    points[at] *= 1.02
+    stray = replace(block, points=points)
+    found = measured(stray, FeatureSpec("top", "plane", (FaceAt(at_px=(float(u), float(v))),)))
+    assert BLOCK.upper[found.result("top").indices].all() and at not in found.result("top").indices
+
+
 def test_a_face_smaller_than_its_margin_is_refused(block):
     wide = FeatureSpec("a", "plane", (seen(block, BLOCK.upper),), filters=Filters(margin_mm=40.0))
     inspection = evaluate(InspectionPlan((wide,)), block)

@@ -20,6 +20,8 @@ Indices = NDArray[np.int64]
 
 SEED_PX = 40.0
 """A face goes on from a pixel if a point was measured so near to it: normals look as far for neighbours."""
+SEEDS = 4
+"""So many of the nearest points are tried: single ones may be strays."""
 
 
 def points_in(region: Region, filters: Filters, scene: Scene) -> Indices:
@@ -60,7 +62,13 @@ def grown_at(region: FaceAt, scene: Scene, kind: FaceKind | None = None) -> Grow
             Message("feature.nothing_where_clicked", "nothing was measured at the place that was clicked"),
             todo=Message("feature.advice_click_again", "click the face on this scan"),
         )
-    return grow_face(scene.cloud, int(np.argmin(away)), kind)
+    nearest = np.argsort(away, kind="stable")[:SEEDS]
+    for seed in nearest[:-1]:
+        try:
+            return grow_face(scene.cloud, int(seed), kind)
+        except InputError:
+            continue  # a stray point
+    return grow_face(scene.cloud, int(nearest[-1]), kind)
 
 
 def sure_enough(indices: Indices, filters: Filters, scene: Scene) -> Indices:

@@ -1,9 +1,10 @@
 """The face that goes on from one point: grown over the surface from there, as a plane, a sphere or a cylinder.
 
-Around the point the plane that explains most of its neighbours is the start. In each round the face is fitted again to
-the points that lie on it, are connected with the point, and are no farther from it than twice as far as before: a fit
-is never trusted far outside of what it rests on. A plane whose residuals follow a curved surface is none; that surface
-says where a sphere and a cylinder start. The simplest of the three that the points allow is taken.
+The start is the plane that explains most of the points around. In each round the face is fitted again to the points
+that lie on it, are connected with the one clicked, and are no farther from it than twice as far as before: a fit is
+never trusted far outside of what it rests on. A plane whose residuals follow a curved surface is none, and one of few
+points may be none; the paraboloid through them says where a sphere and a cylinder start. The simplest of the three that
+the points allow is taken.
 """
 
 from __future__ import annotations
@@ -37,8 +38,8 @@ NEIGHBOURS = 150
 """Points about the seed that decide the start, or more:"""
 START_MM = 3.0
 """they reach so far at least."""
-HYPOTHESES = 40
-"""Of them, so many normals are tried."""
+HYPOTHESES = 100
+"""So many of their normals are tried, and planes through the seed and two of them."""
 ROUNDS = 12
 """Of fits: from 6 mm on, doubled in each, the reach grows to 12 m."""
 BOWED = 0.5
@@ -95,12 +96,16 @@ def grow_face(cloud: Cloud, seed: int, kind: FaceKind | None = None) -> GrownFac
     around = _around(cloud, seed)
     start = _start(cloud, seed, around)
     plane = None if start is None else _grown(cloud, seed, "plane", start, 2 * START_MM)
-    if start is None or (kind == "plane" and plane is None):
-        raise _refused("plane")
-    strip, of = (around, start) if plane is None or len(plane.indices) < NEIGHBOURS else (plane.indices, plane.shape)
-    bend = _Bend.of(cloud.points[strip], of)
-    if plane is not None and (kind == "plane" or (kind is None and of is plane.shape and bend.explains < BOWED)):
+    if start is None or kind == "plane":
+        if plane is None:
+            raise _refused("plane")
         return plane
+    if plane is None or len(plane.indices) < NEIGHBOURS:
+        strip, bend = around, _Bend.of(cloud.points[around], start)
+    else:
+        strip, bend = plane.indices, _Bend.of(cloud.points[plane.indices], plane.shape)
+        if kind is None and bend.explains < BOWED:
+            return plane
     reach = float(np.linalg.norm(cloud.points[strip] - cloud.points[seed], axis=1).max())
 
     def tried(name: FaceKind, shape: Shape | None) -> GrownFace | None:
@@ -131,19 +136,37 @@ def _simplest(plane: GrownFace | None, round_: list[GrownFace]) -> GrownFace | N
 
 
 def _around(cloud: Cloud, seed: int) -> NDArray[np.int64]:
-    """The points about the seed whose normals are known."""
+    """The points about the seed, and as many more whose normals are known."""
+    away = np.linalg.norm(cloud.points - cloud.points[seed], axis=1)
     known = np.flatnonzero(cloud.normals.any(axis=1))
-    away = np.linalg.norm(cloud.points[known] - cloud.points[seed], axis=1)
-    last = min(NEIGHBOURS, len(known)) - 1
-    return known[away <= max(START_MM, float(np.partition(away, last)[last]))] if len(known) else known
+    return np.union1d(_nearest(away, np.arange(len(away))), _nearest(away, known))
+
+
+def _nearest(away: Array, of: NDArray[np.int64]) -> NDArray[np.int64]:
+    """Those `of` the points that are the nearest NEIGHBOURS, or within START_MM."""
+    if not len(of):
+        return of
+    last = min(NEIGHBOURS, len(of)) - 1
+    return of[away[of] <= max(START_MM, float(np.partition(away[of], last)[last]))]
 
 
 def _start(cloud: Cloud, seed: int, around: NDArray[np.int64]) -> ParallelPlanes | None:
-    """The plane by the seed, with the normal of one of the points around, that explains most of these."""
-    tried = cloud.normals[around[:: max(1, len(around) // HYPOTHESES)]]
-    off = (cloud.points[around] - cloud.points[seed]) @ tried.T
-    close = np.abs(off) <= 2 * _tolerance(cloud)[around, None]  # the seed errs, too
-    like = close & (cloud.normals[around] @ tried.T > LIKE_NORMALS)
+    """The plane by the seed that explains most of the points around: with the normal of one, or through two of them.
+
+    Normals fail where few stripes cross a narrow face, and planes through points where there is but one stripe.
+    """
+    apart, normals = cloud.points[around] - cloud.points[seed], cloud.normals[around]
+    known = np.asarray(normals.any(axis=1))
+    a, b = np.random.default_rng(0).integers(len(around), size=(2, HYPOTHESES))
+    through = np.cross(apart[a], apart[b])
+    size = np.linalg.norm(through, axis=1)
+    sound = size > 0.2 * np.linalg.norm(apart[a], axis=1) * np.linalg.norm(apart[b], axis=1)  # not nearly on one line
+    through = through[sound] / size[sound, None]
+    through *= np.where(through @ cloud.points[seed] > 0, -1.0, 1.0)[:, None]  # towards the camera
+    tried = np.vstack([normals[known][:: max(1, int(known.sum()) // HYPOTHESES)], through])
+    off = apart @ tried.T
+    like: NDArray[np.bool_] = (normals @ tried.T > LIKE_NORMALS) | ~known[:, None]
+    like &= np.abs(off) <= 2 * _tolerance(cloud)[around, None]  # the seed errs, too
     if not like.any():
         return None
     best = int(np.argmax(like.sum(axis=0)))
@@ -152,22 +175,30 @@ def _start(cloud: Cloud, seed: int, around: NDArray[np.int64]) -> ParallelPlanes
 
 
 def _grown(cloud: Cloud, seed: int, kind: FaceKind, shape: Shape, reach: float) -> GrownFace | None:
-    """The face of this kind, from a start that is good within `reach` mm of the seed; None if it holds too little."""
+    """The face of this kind, from a start that is good within `reach` mm of the seed.
+
+    None if too few points are on it, or the seed is not: it is a stray point, or the fit went astray.
+    """
     away = np.linalg.norm(cloud.points - cloud.points[seed], axis=1)
+    tolerance = _tolerance(cloud)
     face: GrownFace | None = None
     for _ in range(ROUNDS):
         on = _on(cloud, seed, shape, np.flatnonzero(away <= reach))
         fitted = _fitted(shape, cloud.points[on]) if len(on) >= FEWEST_POINTS else None
-        if fitted is None:
+        if fitted is None or _rms(fitted, cloud.points[on]) > tolerance[on].max():
             break  # a fit that went astray: the last good one counts
         settled = face is not None and reach > away.max() and np.array_equal(on, face.indices)
-        shape = fitted
-        misfit = shape.misfit(cloud.points[on], np.zeros(len(on), dtype=np.int64))
-        face = GrownFace(kind, on, shape, float(np.sqrt(np.mean(misfit**2))))
+        shape, face = fitted, GrownFace(kind, on, fitted, _rms(fitted, cloud.points[on]))
         if settled:
             break
         reach *= 2
-    return face
+    held = face is not None and _rms(face.shape, cloud.points[[seed]]) <= 2 * tolerance[seed]
+    return face if held else None
+
+
+def _rms(shape: Shape, points: Array) -> float:
+    """Root mean square of the distances of points (n, 3) from a shape, in mm."""
+    return float(np.sqrt(np.mean(shape.misfit(points, np.zeros(len(points), dtype=np.int64)) ** 2)))
 
 
 def _on(cloud: Cloud, seed: int, shape: Shape, near: NDArray[np.int64]) -> NDArray[np.int64]:

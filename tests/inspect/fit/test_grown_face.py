@@ -139,15 +139,29 @@ def test_a_flat_face_is_refused_as_a_round_one(block, kind, said):
         grow_face(cloud, int(seeds(scan, cloud, scan.upper)[0]), kind)
 
 
-def test_a_stray_point_is_refused_with_a_sentence(block):
+def test_stray_points_are_refused_with_a_sentence(block):
     scan, cloud = block
-    stray = np.flatnonzero(np.linalg.norm(cloud.points - scan.points, axis=1) > 2.0)
-    with pytest.raises(InputError, match="no face goes on"):
-        grow_face(cloud, int(stray[0]))
+    strays = np.flatnonzero(np.linalg.norm(cloud.points - scan.points, axis=1) > 2.0)
+    grown = []
+    for stray in strays:
+        try:
+            grown.append(len(grow_face(cloud, int(stray)).indices))
+        except InputError as refused:
+            assert "no face goes on" in str(refused)
+    assert len(grown) < 0.1 * len(strays) and max(grown, default=0) < 0.02 * len(cloud), "a slice at most"
 
 
-def test_points_without_normals_are_refused(block):
-    cloud = block[1]
+def test_faces_whose_normals_are_not_known_are_found_by_their_points(block):
+    scan, cloud = block
     blind = replace(cloud, normals=np.zeros((len(cloud), 3)))
+    for upper in (True, False):
+        found = [grow_face(blind, int(seed)) for seed in seeds(scan, cloud, scan.upper == upper)]
+        assert all(np.array_equal(face.indices, found[0].indices) for face in found)
+        assert np.mean(scan.upper[found[0].indices] == upper) > 0.99
+
+
+def test_a_single_stripe_is_no_face():
+    line = land(-30.0, 30.0, spacing=100.0)
+    cloud = parts(line)
     with pytest.raises(InputError, match="no face goes on"):
-        grow_face(blind, 0)
+        grow_face(replace(cloud, normals=np.zeros((len(cloud), 3))), len(cloud) // 2)
