@@ -46,7 +46,7 @@ class InspectClicked(QObject):
         self._points: tuple[int, ...] = ()
         self._growing: Task | None = None
         self._chosen = ""
-        features.changed.connect(self._follow)
+        features.changed.connect(self.follow)
 
     def start(self, mode: Mode, target: Target | None = None) -> None:
         """From now on a click in 3D proposes a face, or two clicks a step; "" ends it.
@@ -70,7 +70,7 @@ class InspectClicked(QObject):
             return
         first = self._points[:1] if self.mode == "step" and self.proposal is not None else ()
         points = (*first, int(view.number[point]))
-        if points == self._points:
+        if points[-1:] == self._points[-1:]:
             return  # a double click
         self._points = points
 
@@ -126,6 +126,19 @@ class InspectClicked(QObject):
         if self.mode == "step" and len(faces) < 2:
             return shown + "\n" + tr("Click the second face. Esc ends.")
         return shown + "\n" + self._what_enter_does() + " " + tr("Click elsewhere for another, Esc drops it.")
+
+    def follow(self) -> None:
+        """Another feature was chosen: the next face is for that; or the one chosen has another name, or is gone."""
+        features = self._features
+        if not self.mode or features.chosen == self._chosen:
+            return
+        if not self._chosen or self._chosen in features.plan.names:
+            self.start(self.mode)
+            return
+        self._chosen = features.chosen
+        if self._target is not None:
+            self._target = self._region_of(features.chosen)
+            self.changed.emit()
 
     # ---- inside
 
@@ -201,19 +214,6 @@ class InspectClicked(QObject):
     def _drop(self) -> None:
         self.proposal, self._points, self._growing = None, (), None
         self.changed.emit()
-
-    def _follow(self) -> None:
-        """Another feature was chosen: the next face is for that; or the one chosen has another name, or is gone."""
-        features = self._features
-        if not self.mode or features.chosen == self._chosen:
-            return
-        if not self._chosen or self._chosen in features.plan.names:
-            self.start(self.mode)
-            return
-        self._chosen = features.chosen
-        if self._target is not None:
-            self._target = self._region_of(features.chosen)
-            self.changed.emit()
 
 
 def _said(face: ClickedFace) -> str:

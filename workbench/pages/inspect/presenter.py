@@ -301,6 +301,7 @@ class InspectPresenter(StepPresenter):
             self._unmeasurable = ""
         self.faces.follow(before.rig.gauge, after.rig.gauge)
         self.features.follow(before.inspection)
+        self.clicked.follow()
 
     def _scan_changed(self) -> None:
         """Another scan is shown, or the same one with another thickness, or none."""

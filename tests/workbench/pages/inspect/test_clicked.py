@@ -172,6 +172,16 @@ def test_a_feature_added_by_a_click_can_be_renamed_before_the_next_click(present
     assert presenter.features.plan.names == ("top", "plane 1")
 
 
+def test_when_the_feature_meant_is_undone_the_face_is_for_a_new_one(presenter, qtbot):
+    presenter.feature.add("sphere")
+    presenter.start_clicking("face")
+    presenter.model.undo_stack.undo()
+    click(presenter, qtbot, 7)
+    assert "Enter adds it as a feature." in presenter.clicked.hint()
+    presenter.clicked.take()
+    assert presenter.features.plan.names == ("plane 1",)
+
+
 def test_a_refused_face_is_told_and_another_can_be_clicked(presenter, qtbot, quick):
     grow = quick.answers[jobs.CLICKED_FACES]
 
@@ -239,7 +249,7 @@ def test_two_clicks_on_parallel_faces_make_a_thickness_in_one_edit(presenter, qt
 
 def test_a_third_click_replaces_the_second_face(presenter, qtbot, asked):
     presenter.start_clicking("step")
-    for number in (8, 10, 12):
+    for number in (8, 8, 10, 10, 12):  # some of them twice
         click(presenter, qtbot, number)
     assert [points for points, *_ in asked] == [(8,), (8, 10), (8, 12)]
 
