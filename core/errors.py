@@ -1,4 +1,4 @@
-"""The one kind of error a user is meant to read."""
+"""Errors a user is meant to read: what keeps us from measuring, and values that nothing can be made of."""
 
 from __future__ import annotations
 
@@ -46,6 +46,12 @@ class InputError(Exception):
         return f"{f'{where}: ' if where else ''}{what}{f'; {todo}' if todo else ''}."
 
     @property
+    def reason(self) -> Message:
+        """Where and what, without a full stop and without what to do: for a message that names a reason."""
+        where = self.where if isinstance(self.where, Message) else plain(self.where)
+        return Message("input.reason", "{where}: {what}", where=where, what=self.what) if where.text else self.what
+
+    @property
     def message(self) -> Message:
         """The whole sentence as a message, for notes and files."""
         where, what, todo = self.where, self.what, self.todo
@@ -61,6 +67,28 @@ class InputError(Exception):
 
     def __reduce__(self) -> tuple[object, ...]:
         return _restored, (type(self), self.what, self.where, self.todo)
+
+
+class WrongValue(ValueError):
+    """A value that nothing can be made of, with a message for those who gave it.
+
+    Algorithms and data types raise it. The code that knows where the value came from (a file, a table, a field of the
+    window) tells it as an `InputError`.
+
+    Parameters
+    ----------
+    what
+        What is wrong, without a full stop: 'a gauge R&R study needs values that differ'.
+    """
+
+    def __init__(self, what: Message) -> None:
+        super().__init__(what)
+        self.what = what
+
+
+def words_of(error: Exception) -> Message | str:
+    """What an error says, as a value of a message: its own message, or the words of another program."""
+    return error.what if isinstance(error, (InputError, WrongValue)) else str(error)
 
 
 def _shortened(parts: list[str]) -> list[str]:

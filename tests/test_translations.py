@@ -139,6 +139,12 @@ FOR_PROGRAMMERS = {
     "BufferError", "EOFError", "OSError", "LinAlgError",
 }  # fmt: skip
 """Raised for wrong arguments: nobody who uses the program reads them; nor what is written to a `_log`."""
+READ_BY_PEOPLE = (
+    "core/model", "core/study/acceptance.py", "core/study/grr.py", "core/study/repeats.py", "core/study/type1.py",
+    "core/image/targets/kinds.py", "core/image/stripes/stripe.py", "core/calibrate/board_shape.py",
+    "core/acquire/drivers/pixel_formats.py", "core/files/stl.py", "core/pipeline/steps/acceptance_step.py",
+)  # fmt: skip
+"""Modules whose complaints about wrong values reach people: a `WrongValue` has a message, a `ValueError` none."""
 ALLOWED = {
     "core/cli": "help of commands, shown by typer",
     "core/files/exchange/e57.py": "what the file says to other programs",
@@ -194,3 +200,30 @@ def test_no_sentence_bypasses_the_catalogues():
             sentences = [f"{where}:{line}: {text}" for line, text in bypassing(tree)]
             found += sentences
     assert found == []
+
+
+def calls(tree, name):
+    return (node for node in ast.walk(tree) if isinstance(node, ast.Call) and translations.called(node) == name)
+
+
+def test_no_error_is_passed_on_as_its_english_text():
+    found = []
+    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        told = [call for call in (*calls(tree, "plain"), *calls(tree, "InputError")) if call.args]
+        found += [
+            f"{path.relative_to(translations.ROOT)}:{call.lineno}"
+            for call in told
+            if ast.unparse(call.args[0]).startswith("str(")
+        ]
+    assert found == [], "tell error.what, error.reason or error.message: they are told in the reader's language"
+
+
+def test_values_that_people_give_are_refused_with_a_message():
+    found = []
+    for where in READ_BY_PEOPLE:
+        place = translations.ROOT / where
+        for path in place.rglob("*.py") if place.is_dir() else [place]:
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            found += [f"{path.relative_to(translations.ROOT)}:{call.lineno}" for call in calls(tree, "ValueError")]
+    assert found == [], "raise a WrongValue with a Message"

@@ -11,7 +11,7 @@ from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.messages import Language, Message, label
 from workbench.work.worker import ENDED, Failure
 
@@ -90,6 +90,8 @@ def text_of(message: Message | Exception | Failure | str) -> str:
         return tr("Something went wrong in the program; your work is kept. Details: {details}", details=str(message))
     if isinstance(message, InputError):
         return message.told(_chosen)
+    if isinstance(message, WrongValue):
+        return _chosen(message.what)
     return _chosen(message) if isinstance(message, Message) else str(message)
 
 

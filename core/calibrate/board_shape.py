@@ -21,6 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.special import chdtrc
 
+from core.errors import WrongValue
 from core.messages import Field, Message
 from core.model.arrays import Array
 
@@ -53,7 +54,7 @@ class BoardTolerance:
 
     Raises
     ------
-    ValueError
+    WrongValue
         If either is negative or absurd.
     """
 
@@ -62,9 +63,22 @@ class BoardTolerance:
 
     def __post_init__(self) -> None:
         if self.flatness_mm is not None and not 0 <= self.flatness_mm <= 100:
-            raise ValueError(f"a flatness of {self.flatness_mm} mm is not between 0 and 100 mm")
+            raise WrongValue(
+                Message(
+                    "target.flatness_absurd",
+                    "a flatness of {flatness_mm:g} mm is not between 0 and 100 mm",
+                    flatness_mm=self.flatness_mm,
+                )
+            )
         if self.scale_sd is not None and not 0 <= self.scale_sd <= 0.1:
-            raise ValueError(f"a relative uncertainty of {self.scale_sd} of the size is not between 0 and 0.1")
+            raise WrongValue(
+                Message(
+                    "target.scale_absurd",
+                    "a relative uncertainty of {scale_sd:g} of the size is not between 0 and {most:g}",
+                    scale_sd=self.scale_sd,
+                    most=0.1,
+                )
+            )
 
     def notes(
         self, target: Literal["camera_target", "plane_target"], *, shape_known: bool = False

@@ -9,7 +9,7 @@ import numpy as np
 
 from core.cli import output
 from core.cli.measuring import Shown
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
 from core.files.recording.rig import read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
@@ -53,8 +53,8 @@ def target_of_words(
         if kind == "circle_grid":
             return CircleGrid(across, down, size, asymmetric)
         return BlackSquare(size)
-    except ValueError as error:
-        raise InputError(str(error), where=kind) from error
+    except WrongValue as error:
+        raise InputError(error.what, where=kind) from error
 
 
 def target_of_rig(path: Path, which: str) -> Target:

@@ -13,7 +13,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 from pydantic import BaseModel, RootModel, ValidationError
 from pydantic.fields import FieldInfo
 
-from core.errors import InputError
+from core.errors import InputError, WrongValue, words_of
 from core.messages import Message, label
 
 _Model = TypeVar("_Model", bound=BaseModel)
@@ -35,16 +35,15 @@ _UNKNOWN = ("extra_forbidden", "unexpected_keyword_argument")
 """Pydantic's names of unknown keys, of models and of dataclasses."""
 
 
-class Clash(ValueError):
+class Clash(WrongValue):
     """Two keys of one table that contradict each other; told as a complaint about `key`.
 
     Raise it from a model's validator; `what` continues the sentence that the key begins.
     """
 
     def __init__(self, key: str, what: Message) -> None:
+        super().__init__(what)
         self.key = key
-        self.what = what
-        super().__init__(str(what))
 
 
 def checked(model: type[_Model], tables: object, path: Path) -> _Model:
@@ -67,13 +66,13 @@ def checked_json(model: type[_Model], tables: object, path: Path) -> _Model:
 
 
 @contextmanager
-def fitting(path: Path) -> Iterator[None]:
+def fitting(path: Path, *, todo: Message | str = "") -> Iterator[None]:
     """Tell as InputError that values of `path`, each of its kind, do not fit each other, which the model refuses."""
     try:
         yield
     except (ValueError, TypeError, LookupError, OverflowError) as error:
-        what = Message("file.values_do_not_fit", "its values do not fit together ({reason})", reason=str(error))
-        raise InputError(what, where=path) from error
+        what = Message("file.values_do_not_fit", "its values do not fit together ({reason})", reason=words_of(error))
+        raise InputError(what, where=path, todo=todo) from error
 
 
 def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
@@ -84,9 +83,11 @@ def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
     name = ".".join(names)
     if first["type"] in _UNKNOWN:
         return _unknown_key(name, tables)
-    clash = first.get("ctx", {}).get("error")
-    if isinstance(clash, Clash):
-        return Message("file.clash", "{field} {what}", field=".".join([*names, clash.key]), what=clash.what)
+    wrong = first.get("ctx", {}).get("error")
+    if isinstance(wrong, Clash):
+        return Message("file.clash", "{field} {what}", field=".".join([*names, wrong.key]), what=wrong.what)
+    if isinstance(wrong, WrongValue):
+        return Message("file.field_refused", "{field}: {what}", field=name, what=wrong.what) if name else wrong.what
     if first["type"] in ("union_tag_invalid", "union_tag_not_found"):
         kinds = " or ".join(f'"{kind}"' for kind in _kinds(tables))
         given = first.get("ctx", {}).get("tag")

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
+from core.errors import WrongValue
 from core.files.limits import STL_BYTES, check_file
+from core.messages import Message
 from core.model.arrays import Array
 
 HEAD = 80
@@ -40,5 +42,5 @@ def read_corners(path: Path) -> Array:
             return np.asarray(np.frombuffer(data, TRIANGLE, offset=_START)["corners"], dtype=np.float64)
     numbers = np.fromiter((float(number) for found in _VERTEX.finditer(data) for number in found.groups()), np.float64)
     if len(numbers) % 9:
-        raise ValueError("a triangle has not three corners")
+        raise WrongValue(Message("file.stl_triangle", "a triangle has not three corners"))
     return numbers.reshape(-1, 3, 3)

@@ -7,6 +7,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from core.errors import WrongValue
+from core.messages import Message
+
 Array = NDArray[np.float64]
 
 
@@ -15,7 +18,7 @@ def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) ->
 
     Raises
     ------
-    ValueError
+    WrongValue
         If the shape does not match; the message names `name`.
     """
     array = np.array(values, dtype=np.float64)
@@ -23,7 +26,15 @@ def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) ->
         want is not None and have != want for have, want in zip(array.shape, shape, strict=True)
     ):
         wanted = " × ".join("n" if n is None else str(n) for n in shape)
-        raise ValueError(f"{name} has shape {array.shape}, not {wanted}")
+        raise WrongValue(
+            Message(
+                "model.wrong_shape",
+                "{name} has shape {shape}, not {wanted}",
+                name=name,
+                shape=str(array.shape),
+                wanted=wanted,
+            )
+        )
     array.flags.writeable = False
     return array
 

@@ -26,6 +26,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import ArrayLike
 
+from core.errors import WrongValue
+from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.pose import Pose
 
@@ -54,7 +56,7 @@ class Camera:
 
     Raises
     ------
-    ValueError
+    WrongValue
         If a shape is wrong, a value is not finite, or a focal length is not positive.
     """
 
@@ -69,15 +71,26 @@ class Camera:
         coefficients = np.zeros(5)
         given = np.asarray(self.distortion, dtype=np.float64).ravel()
         if given.size not in (4, 5):
-            raise ValueError(f"distortion has {given.size} values, not 4 or 5")
+            raise WrongValue(
+                Message("model.distortion_count", "distortion has {n} values, not 4 or 5", n=int(given.size))
+            )
         coefficients[: given.size] = given
         set_field(self, "distortion", frozen_array(coefficients, (5,), "distortion"))
         if width <= 0 or height <= 0:
-            raise ValueError(f"image_size {self.image_size} is not positive")
+            raise WrongValue(
+                Message(
+                    "model.image_size",
+                    "an image size of {width} × {height} is not positive",
+                    width=width,
+                    height=height,
+                )
+            )
         if not (np.isfinite(self.matrix).all() and np.isfinite(self.distortion).all()):
-            raise ValueError("matrix and distortion must be finite")
+            raise WrongValue(Message("model.camera_not_finite", "matrix and distortion must be finite"))
         if self.matrix[0, 0] <= 0 or self.matrix[1, 1] <= 0:
-            raise ValueError("the focal lengths on the diagonal of matrix must be positive")
+            raise WrongValue(
+                Message("model.focal_length", "the focal lengths on the diagonal of matrix must be positive")
+            )
 
     @property
     def focal(self) -> float:

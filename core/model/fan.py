@@ -8,6 +8,8 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from core.errors import WrongValue
+from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.light_plane import LightPlane, angle_between
 
@@ -34,7 +36,7 @@ class Fan:
     def __post_init__(self) -> None:
         set_field(self, "planes", tuple(self.planes))
         if not self.planes:
-            raise ValueError("a fan needs at least one plane")
+            raise WrongValue(Message("model.fan_without_planes", "a fan needs at least one plane"))
         size = 3 * len(self.planes)
         covariance = np.zeros((size, size)) if self.covariance is None else self.covariance
         set_field(self, "covariance", frozen_array(covariance, (size, size), "covariance"))

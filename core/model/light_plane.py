@@ -11,6 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike
 
+from core.errors import WrongValue
+from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 
 
@@ -23,7 +25,7 @@ class LightPlane:
     def __post_init__(self) -> None:
         set_field(self, "pi", frozen_array(np.ravel(self.pi), (3,), "pi"))
         if not np.isfinite(self.pi).all() or not np.any(self.pi):
-            raise ValueError("pi must be finite and not zero")
+            raise WrongValue(Message("model.plane_not_finite", "pi must be finite and not zero"))
 
     @classmethod
     def from_normal(cls, normal: ArrayLike, d_mm: float) -> LightPlane:

@@ -5,10 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
 from core.image.targets import Target
-from core.messages import Message, plain
+from core.messages import Message
 from core.plan.design import PAPER_PIXEL_UM, Design
 
 
@@ -52,7 +52,7 @@ def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:
 def _target(table: TargetTable, name: str, path: Path) -> Target:
     try:
         return table.target()
-    except ValueError as error:
+    except WrongValue as error:
         raise InputError(
-            Message("plan.impossible_target", "{name}: {why}", name=name, why=plain(str(error))), where=path
+            Message("plan.impossible_target", "{name}: {why}", name=name, why=error.what), where=path
         ) from error

@@ -26,8 +26,9 @@ from typing import Literal, TypeAlias, get_args
 
 import numpy as np
 
+from core.errors import WrongValue
 from core.inspect.conformity import Verdict, Zones
-from core.messages import Message
+from core.messages import Message, label
 from core.model.arrays import Array
 
 LEFT_OUT = 0.003
@@ -53,24 +54,28 @@ def probed_sphere(points: Array) -> ProbedSphere:
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there are fewer than FEWEST points, or they lie in one plane.
     """
-    _enough(points, "sphere")
+    _enough(points, label("sphere"))
     fitted, residuals, used = _trimmed(points, _sphere)
     return ProbedSphere(fitted[:3], 2 * float(fitted[3]), float(np.ptp(residuals)), used)
 
 
 def probed_flatness(points: Array) -> tuple[float, int]:
-    """Range in mm of the distances of (N, 3) points from their plane, and how many were used; ValueError as above."""
-    _enough(points, "plane")
+    """Range in mm of the distances of (N, 3) points from their plane, and how many were used; WrongValue as above."""
+    _enough(points, label("plane"))
     _, residuals, used = _trimmed(points, _plane)
     return float(np.ptp(residuals)), used
 
 
 def _enough(points: Array, what: str) -> None:
     if len(points) < FEWEST or not np.isfinite(points).all():
-        raise ValueError(f"a {what} needs {FEWEST} finite points or more")
+        raise WrongValue(
+            Message(
+                "study.too_few_points", "a {artefact} needs {least} finite points or more", artefact=what, least=FEWEST
+            )
+        )
 
 
 def _trimmed(points: Array, fit: Callable[[Array], tuple[Array, Callable[[Array], Array]]]) -> tuple[Array, Array, int]:
@@ -96,7 +101,7 @@ def _sphere(points: Array) -> tuple[Array, Callable[[Array], Array]]:
         np.column_stack([2 * centred, np.ones(len(points))]), (centred**2).sum(axis=1), rcond=1e-9
     )
     if rank < 4:
-        raise ValueError("the points of the sphere lie in one plane")
+        raise WrongValue(Message("study.sphere_flat", "the points of the sphere lie in one plane"))
     centre, radius = start[:3], float(np.sqrt(start[3] + start[:3] @ start[:3]))
     for _ in range(50):
         away = centred - centre
@@ -262,15 +267,22 @@ def acceptance_check(
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there is no reading, or a limit is not above 0.
     """
     limits = limits or {}
     if not readings:
-        raise ValueError("an acceptance check needs a reading")
+        raise WrongValue(Message("study.no_reading", "an acceptance check needs a reading"))
     for quantity, limit in limits.items():
         if not limit > 0:
-            raise ValueError(f"a limit of {limit} for {TITLES[quantity]} is none")
+            raise WrongValue(
+                Message(
+                    "study.limit_not_positive",
+                    "the limit for {quantity} must be above 0, not {limit}",
+                    quantity=TITLES[quantity],
+                    limit=limit,
+                )
+            )
     found = []
     for quantity in QUANTITIES:
         mine = tuple(one for one in readings if one.quantity == quantity)

@@ -22,6 +22,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.sparse.csgraph import connected_components
 
+from core.errors import WrongValue
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import (
     GIVEN,
@@ -298,7 +299,7 @@ def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, u
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there is one value alone and nothing is known of its uncertainty.
     """
     n, scatter = len(values), _scatter(values)
@@ -311,7 +312,7 @@ def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, u
     if scatter is not None:
         rows.append(Contribution(REPEATABILITY, scatter / math.sqrt(n), scatter, "t", float(n - 1), unit=unit))
     if not rows:
-        raise ValueError("one value alone, with no stated uncertainty, has no budget")
+        raise WrongValue(Message("study.one_value_alone", "one value alone, with no stated uncertainty, has no budget"))
     return add_up(rows, value=float(np.mean(values)), unit=unit)
 
 

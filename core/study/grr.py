@@ -36,6 +36,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from scipy.special import fdtrc
 
+from core.errors import WrongValue
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -309,17 +310,28 @@ def grr_study(
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there are too few parts or repeats, a value is not finite, all values are the same, or the tolerance is not
         above 0.
     """
     y = np.array(values, dtype=np.float64)
     if y.ndim != 3 or y.shape[0] < 2 or y.shape[1] < 1 or y.shape[2] < 2 or not np.isfinite(y).all():
-        raise ValueError("a gauge R&R study needs two parts, one operator and two repeats of each, or more, all finite")
+        raise WrongValue(
+            Message(
+                "study.grr_too_small",
+                "a gauge R&R study needs two parts, one operator and two repeats of each, or more, all finite",
+            )
+        )
     if not np.ptp(y) > 0:
-        raise ValueError("a gauge R&R study needs values that differ")
+        raise WrongValue(Message("study.grr_all_the_same", "a gauge R&R study needs values that differ"))
     if tolerance is not None and not (tolerance > 0 and math.isfinite(tolerance)):
-        raise ValueError(f"a tolerance of {tolerance} is none")
+        raise WrongValue(
+            Message(
+                "study.tolerance_not_positive",
+                "the tolerance must be a number above 0, not {tolerance}",
+                tolerance=tolerance,
+            )
+        )
     y.setflags(write=False)
     names = (tuple(parts) or _numbers(y.shape[0]), tuple(operators) or _numbers(y.shape[1]))
     full = _anova(y)

@@ -17,6 +17,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from core.errors import WrongValue
 from core.inspect.conformity import Verdict, Zones
 from core.messages import Message
 from core.model.arrays import Array
@@ -52,12 +53,12 @@ def repeat_statistics(thicknesses: Sequence[float], nominal_mm: float | None = N
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there is no thickness, or one is not a finite number.
     """
     values = np.asarray(thicknesses, dtype=np.float64)
     if values.ndim != 1 or not len(values) or not np.isfinite(values).all():
-        raise ValueError("repeats need one finite thickness or more")
+        raise WrongValue(Message("study.no_repeats", "repeats need one finite thickness or more"))
     mean = float(values.mean())
     std = float(values.std(ddof=1)) if len(values) > 1 else float("nan")
     if nominal_mm is None:
@@ -229,7 +230,7 @@ def repeat_study(
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there is no value, one is not finite, or the limits are not in order.
     """
     nominal, limits = asked.nominal, asked.limits

@@ -16,6 +16,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 from scipy.special import chdtri, stdtr, stdtrit
 
+from core.errors import WrongValue
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -167,18 +168,29 @@ def type1_study(
 
     Raises
     ------
-    ValueError
+    WrongValue
         If there are fewer than two values, one is not finite, or the tolerance or the resolution is not above 0.
     """
     measured = np.array(values, dtype=np.float64)
     if measured.ndim != 1 or len(measured) < 2 or not np.isfinite(measured).all():
-        raise ValueError("a type-1 study needs two finite values or more")
+        raise WrongValue(Message("study.type1_too_few", "a type-1 study needs two finite values or more"))
     if not tolerance > 0 or not math.isfinite(tolerance) or not math.isfinite(reference):
-        raise ValueError(
-            f"a type-1 study needs a reference value and a tolerance above 0, not {reference}, {tolerance}"
+        raise WrongValue(
+            Message(
+                "study.type1_reference",
+                "a type-1 study needs a reference value and a tolerance above 0, not {reference} and {tolerance}",
+                reference=reference,
+                tolerance=tolerance,
+            )
         )
     if resolution is not None and not resolution > 0:
-        raise ValueError(f"a resolution of {resolution} is none")
+        raise WrongValue(
+            Message(
+                "study.resolution_not_positive",
+                "the resolution must be above 0, not {resolution}",
+                resolution=resolution,
+            )
+        )
     measured.setflags(write=False)
     n, mean = len(measured), float(measured.mean())
     s = float(measured.std(ddof=1)) if np.ptp(measured) else 0.0

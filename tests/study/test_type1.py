@@ -104,5 +104,5 @@ def test_few_repeats_are_said_to_be_few():
     [([1.0], 1.0, None), ([1.0, math.nan], 1.0, None), ([1, 2], 0, None), ([1, 2], math.inf, None), ([1, 2], 1, 0)],
 )
 def test_what_no_study_can_be_made_of_is_refused(values, tolerance, resolution):
-    with pytest.raises(ValueError, match=r"type-1 study needs|resolution of 0"):
+    with pytest.raises(ValueError, match=r"type-1 study needs|resolution must be above 0"):
         type1_study(values, 1.0, tolerance, resolution=resolution)

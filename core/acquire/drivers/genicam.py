@@ -14,8 +14,8 @@ from core.acquire.drivers.genicam_features import TRIGGER, Features, apply, capa
 from core.acquire.drivers.pixel_formats import decode
 from core.acquire.grey import Channel
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
-from core.errors import InputError
-from core.messages import Message, plain
+from core.errors import InputError, WrongValue
+from core.messages import Message
 
 BUFFERS = 8
 """Frames that a driver keeps for a reader that is a little late; it counts those it has no room for."""
@@ -118,7 +118,7 @@ class GenICamSource:
         try:
             return capabilities_of(self._driver.features)
         except DriverError as problem:
-            raise self._gone(plain(str(problem))) from problem
+            raise self._gone(str(problem)) from problem
 
     def open(self) -> None:
         """Find the camera, open it and let it run."""
@@ -152,7 +152,7 @@ class GenICamSource:
                 self._tell(driver, settings)
             except DriverError as problem:
                 if driver.gone():
-                    raise self._gone(plain(str(problem))) from problem
+                    raise self._gone(str(problem)) from problem
                 raise InputError(
                     Message(
                         "camera.setting_refused_why",
@@ -185,7 +185,7 @@ class GenICamSource:
                     raise self._gone(Message("camera.pulled_out", "it was pulled out"))
                 return None
         except DriverError as problem:
-            raise self._gone(plain(str(problem))) from problem
+            raise self._gone(str(problem)) from problem
         self._ask_again_s = float("-inf")
         return self._frame(grabbed)
 
@@ -222,17 +222,17 @@ class GenICamSource:
             return None
         try:
             picture = decode(grabbed.data, grabbed.pixel_format, grabbed.width, grabbed.height, self._channel)
-        except ValueError as wrong:
+        except WrongValue as wrong:
             raise InputError(
-                Message("camera.picture_damaged", "the picture is damaged ({wrong})", wrong=wrong), where=self.name
+                Message("camera.picture_damaged", "the picture is damaged ({wrong})", wrong=wrong.what), where=self.name
             ) from wrong
         return Frame(picture, index, time_s - self._origin, self._dropped)
 
-    def _gone(self, why: Message) -> Unplugged:
+    def _gone(self, why: Message | str) -> Unplugged:
         self.close()
         return self._unplugged(why)
 
-    def _unplugged(self, why: Message) -> Unplugged:
+    def _unplugged(self, why: Message | str) -> Unplugged:
         return Unplugged(
             Message("camera.stopped_why", "the camera sends no pictures any more ({why})", why=why),
             where=self.name,

@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from core.acquire.grey import Channel, to_grey
 from core.acquire.source import Picture
+from core.errors import WrongValue
+from core.messages import Message
 
 
 @dataclass(frozen=True, slots=True)
@@ -56,16 +58,25 @@ def decode(data: NDArray[Any], name: str, width: int, height: int, channel: Chan
 
     Raises
     ------
-    ValueError
+    WrongValue
         If the format cannot be read, or the buffer is too short.
     """
     layout = _LAYOUTS.get(name)
     if layout is None:
-        raise ValueError(f"{name} cannot be read")
+        raise WrongValue(Message("camera.pixel_format", "{name} cannot be read", name=name))
     values = data.view(np.uint8 if layout.bits == 8 else np.dtype("<u2")).ravel()
     count = width * height * layout.channels
     if len(values) < count:
-        raise ValueError(f"{len(values)} values are no {width} × {height} pixels of {name}")
+        raise WrongValue(
+            Message(
+                "camera.picture_short",
+                "{values} values are no {width} × {height} pixels of {name}",
+                values=len(values),
+                width=width,
+                height=height,
+                name=name,
+            )
+        )
     if layout.channels == 1:
         return full_range(values[:count].reshape(height, width), layout.bits)
     colour = values[:count].reshape(height, width, layout.channels)[:, :, :3]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.messages import Message
 from core.model import Camera
 
@@ -55,9 +55,9 @@ def imported_camera(
         )
     try:
         camera = Camera(image_size, matrix, values)
-    except ValueError as error:
+    except WrongValue as error:
         raise InputError(
-            Message("file.no_camera", "this is no camera: {reason}", reason=str(error)), where=path
+            Message("file.no_camera", "this is no camera: {reason}", reason=error.what), where=path
         ) from error
     size = len(CAMERA_PARAMETERS)
     return CameraCalibration(

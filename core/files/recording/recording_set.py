@@ -173,7 +173,7 @@ class RecordingSet:
         text = "\n".join(sorted(self.hashes.get(self.name_of(path), "") for path in paths))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
-    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | str]]:
+    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
         `times` learns what decoding costs.
@@ -184,19 +184,19 @@ class RecordingSet:
             If a picture's depth (8 or 16 bit) is not that of the first one.
         """
 
-        def attempt(path: Path) -> Picture | str:
+        def attempt(path: Path) -> Picture | Message:
             try:
                 with stage(times, "decoding"):
                     return self.read(path)
             except InputError as error:
-                return str(error.what)
+                return error.what
 
         first: tuple[str, Picture] | None = None
         if paths:
             self.laser_channel(self.part_of(paths[0]))  # chosen once, before several threads ask for it
         for path, result in read_ahead(paths, attempt):
             name = self.name_of(path)
-            if not isinstance(result, str):
+            if not isinstance(result, Message):
                 first = first or (name, result)
                 self._check_depth(path, result, *first)
             yield name, result

@@ -14,7 +14,7 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 from core.acquire.grey import Channel, PlainChannel, is_difference
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.change import Stability
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
 from core.files.toml_text import toml_text
@@ -470,9 +470,9 @@ def rig_to_toml(rig: Rig) -> str:
 def _target(path: Path, name: str, table: TargetTable) -> Target:
     try:
         return table.target()
-    except ValueError as error:  # what only the target itself can judge, as a dictionary of markers
+    except WrongValue as error:  # what only the target itself can judge, as a dictionary of markers
         raise InputError(
-            Message("rig.target_wrong", "{name}: {reason}", name=name, reason=str(error)), where=path
+            Message("rig.target_wrong", "{name}: {reason}", name=name, reason=error.what), where=path
         ) from error
 
 

@@ -12,7 +12,7 @@ from pydantic import Field, model_validator
 
 from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose, Readjustment
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import write_json
 from core.files.reading import read_json
@@ -342,9 +342,9 @@ def _camera(path: Path, table: _Camera | None, image_size: tuple[int, int]) -> C
         return None
     try:
         return Camera(image_size, np.array(table.matrix), np.array(table.distortion))
-    except ValueError as error:
+    except WrongValue as error:
         raise InputError(
-            Message("fan.camera_invalid", "camera is none: {reason}", reason=str(error)),
+            Message("fan.camera_invalid", "camera is none: {reason}", reason=error.what),
             where=path,
             todo=Message("advice.solve_fan_again", "calibrate the fan again"),
         ) from error

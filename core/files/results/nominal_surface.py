@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.errors import InputError
+from core.errors import InputError, words_of
 from core.files.stl import read_corners
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
@@ -34,7 +34,7 @@ def read_nominal(path: Path) -> Triangles:
     except (OSError, ValueError) as problem:
         raise InputError(
             Message(
-                "inspection.nominal_unreadable", "it cannot be read as an STL mesh ({reason})", reason=str(problem)
+                "inspection.nominal_unreadable", "it cannot be read as an STL mesh ({reason})", reason=words_of(problem)
             ),
             where=path,
             todo=_TODO,

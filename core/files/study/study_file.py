@@ -10,9 +10,8 @@ import numpy as np
 from pydantic import Field, RootModel
 
 from core import __version__
-from core.errors import InputError
 from core.files.atomic import make_folder, write_text
-from core.files.complaints import checked
+from core.files.complaints import checked, fitting
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, ResultFile, kept
@@ -350,7 +349,5 @@ def read_study(path: Path) -> Study:
     """
     tables = read_json(path, todo=_TODO)
     file = checked(_StudyFile, tables, path)
-    try:
+    with fitting(path, todo=_TODO):
         return file.root.study()
-    except ValueError as error:
-        raise InputError(str(error), where=path, todo=_TODO) from error

@@ -5,6 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from core.errors import WrongValue
+from core.messages import Message
+
 WIDTH_IN_SIGMA = 4.0
 """Visible width of a laser stripe in its σ: the trade's 1/e² width of a Gaussian."""
 FILTER_IN_SIGMA = 1.4
@@ -33,7 +36,7 @@ class StripeSettings:
 
     Raises
     ------
-    ValueError
+    WrongValue
         If either is not a positive number.
     """
 
@@ -44,7 +47,9 @@ class StripeSettings:
         for name in ("width_px", "contrast"):
             value = getattr(self, name)
             if not (math.isfinite(value) and value > 0):
-                raise ValueError(f"{name} is {value}, not a positive number")
+                raise WrongValue(
+                    Message("stripes.not_positive", "{name} is {value}, not a positive number", name=name, value=value)
+                )
 
     @property
     def stripe_px(self) -> float:

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import cv2
 import numpy as np
 
+from core.errors import WrongValue
+from core.messages import Message, label
 from core.model.arrays import Array
 
 USUAL: Mapping[str, tuple[int, int, float]] = {
@@ -39,7 +41,7 @@ class Checkerboard:
     square_mm: float
 
     def __post_init__(self) -> None:
-        _check_grid(self.columns, self.rows, 3, "inner corners")
+        _check_grid(self.columns, self.rows, 3, label("inner corners"))
         _check_length(self.square_mm, "square_mm")
 
     @property
@@ -62,13 +64,26 @@ class Charuco:
     dictionary: str = "DICT_4X4_50"
 
     def __post_init__(self) -> None:
-        _check_grid(self.columns, self.rows, 3, "squares")
+        _check_grid(self.columns, self.rows, 3, label("squares"))
         _check_length(self.square_mm, "square_mm")
         _check_length(self.marker_mm, "marker_mm")
         if self.marker_mm >= self.square_mm:
-            raise ValueError(f"marker_mm ({self.marker_mm:g}) must be smaller than square_mm ({self.square_mm:g})")
+            raise WrongValue(
+                Message(
+                    "target.marker_too_large",
+                    "marker_mm ({marker_mm:g}) must be smaller than square_mm ({square_mm:g})",
+                    marker_mm=self.marker_mm,
+                    square_mm=self.square_mm,
+                )
+            )
         if not hasattr(cv2.aruco, self.dictionary_id):
-            raise ValueError(f"dictionary {self.dictionary!r} is not one of OpenCV's, such as DICT_4X4_50")
+            raise WrongValue(
+                Message(
+                    "target.dictionary_unknown",
+                    "dictionary {dictionary!r} is not one of OpenCV's, such as DICT_4X4_50",
+                    dictionary=self.dictionary,
+                )
+            )
 
     @property
     def dictionary_id(self) -> str:
@@ -97,7 +112,7 @@ class CircleGrid:
     asymmetric: bool = False
 
     def __post_init__(self) -> None:
-        _check_grid(self.columns, self.rows, 3, "circles")
+        _check_grid(self.columns, self.rows, 3, label("circles"))
         _check_length(self.pitch_mm, "pitch_mm")
 
     @property
@@ -149,13 +164,42 @@ _SHORTEST_MM, _LONGEST_MM = 1e-3, 5000.0
 
 def _check_grid(columns: int, rows: int, least: int, what: str) -> None:
     if min(columns, rows) < least:
-        raise ValueError(f"{columns} × {rows} {what} are too few: at least {least} × {least}")
+        raise WrongValue(
+            Message(
+                "target.grid_too_small",
+                "{columns} × {rows} {what} are too few: at least {least} × {least}",
+                columns=columns,
+                rows=rows,
+                what=what,
+                least=least,
+            )
+        )
     if max(columns, rows) > _MOST:
-        raise ValueError(f"{columns} × {rows} {what} are too many: at most {_MOST} in a row")
+        raise WrongValue(
+            Message(
+                "target.grid_too_large",
+                "{columns} × {rows} {what} are too many: at most {most} in a row",
+                columns=columns,
+                rows=rows,
+                what=what,
+                most=_MOST,
+            )
+        )
 
 
 def _check_length(value: float, name: str) -> None:
     if not (np.isfinite(value) and value > 0):
-        raise ValueError(f"{name} must be positive, not {value!r}")
+        raise WrongValue(
+            Message("target.length_not_positive", "{name} must be positive, not {value}", name=name, value=value)
+        )
     if not _SHORTEST_MM <= value <= _LONGEST_MM:
-        raise ValueError(f"{name} must be from {_SHORTEST_MM:g} to {_LONGEST_MM:g} mm, not {value:g}")
+        raise WrongValue(
+            Message(
+                "target.length_absurd",
+                "{name} must be from {shortest_mm:g} to {longest_mm:g} mm, not {value_mm:g}",
+                name=name,
+                shortest_mm=_SHORTEST_MM,
+                longest_mm=_LONGEST_MM,
+                value_mm=value,
+            )
+        )

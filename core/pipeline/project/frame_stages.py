@@ -166,7 +166,7 @@ def _common(recording: _Recording) -> _Common:
     stripe = options.stripe or (settled.sweep_stripe if settled else None)
     if stripe is None:
         stream = found.stream(recording.taken[:LOOK_AHEAD])
-        ahead = [(name, picture) for name, picture in stream if not isinstance(picture, str)]
+        ahead = [(name, picture) for name, picture in stream if not isinstance(picture, Message)]
         stripe = choose_sweep_stripe(ahead, reference, told.within_step)
     told("reference", 2, 2)
     return _Common(reference, stripe, white_level(picture))

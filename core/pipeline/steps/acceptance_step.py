@@ -9,11 +9,11 @@ from typing import Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.results.ply import read_cloud
 from core.inspect.fit.plane_search import find_planes
 from core.inspect.fit.round import find_sphere
-from core.messages import Command, Message, plain
+from core.messages import Command, Message
 from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -65,19 +65,15 @@ def read_positions(
             )
         try:
             found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm, diameter_mm)
-        except (InputError, ValueError) as error:
+        except (InputError, WrongValue) as error:
             raise InputError(
                 Message(
-                    "study.artefact_not_found", "no {artefact} was found: {why}", artefact=artefact, why=_why(error)
+                    "study.artefact_not_found", "no {artefact} was found: {why}", artefact=artefact, why=error.what
                 ),
                 where=path,
             ) from error
     progress("positions", len(folders), len(folders))
     return tuple(found)
-
-
-def _why(error: InputError | ValueError) -> Message:
-    return error.what if isinstance(error, InputError) else plain(str(error))
 
 
 def _readings(
@@ -86,7 +82,7 @@ def _readings(
     if artefact == "plane":
         planes = find_planes(cloud, most=1)
         if not planes:
-            raise ValueError("the points lie on no plane")
+            raise WrongValue(Message("study.no_plane", "the points lie on no plane"))
         return [Reading("flatness", position, probed_flatness(cloud.points[planes[0].region.indices])[0], u=u)]
     cloud = cloud if cloud.normals.any() else with_normals(cloud)
     if artefact == "sphere":

@@ -18,7 +18,7 @@ from core.files.recording.recording_set import RecordingSet, require_camera
 from core.files.results.camera_file import read_camera, write_camera
 from core.image.targets import detect
 from core.image.targets.target_view import TargetView
-from core.messages import Field, Message, plain
+from core.messages import Field, Message
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -61,10 +61,10 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     """
     require_camera(found)
 
-    def look(item: tuple[str, Picture | str]) -> SeenView:
+    def look(item: tuple[str, Picture | Message]) -> SeenView:
         name, picture = item
-        if isinstance(picture, str):
-            return SeenView(name, reason=plain(picture))
+        if isinstance(picture, Message):
+            return SeenView(name, reason=picture)
         size = (picture.shape[1], picture.shape[0])
         try:
             with stage(progress, "camera views"):

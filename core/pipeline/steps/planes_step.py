@@ -22,7 +22,7 @@ from core.files.recording.set_listing import PlanePair
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.stripes.stripe import StripeSettings
-from core.messages import Command, Message, plain
+from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.target_sizes import with_compared_sizes
 from core.pipeline.steps.workspace import Workspace, check_size
@@ -131,7 +131,7 @@ def _pose_features(
             off = found.read(pair.off) if pair.off is not None else None
             colour = _colour(found, pair)
     except InputError as error:
-        return PoseFeatures(pair.name, None, (), plain(str(error).rstrip(".")))
+        return PoseFeatures(pair.name, None, (), error.reason)
     check_size(pair.on, on.shape, camera)
     if off is not None and off.dtype != on.dtype:
         reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")

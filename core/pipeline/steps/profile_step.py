@@ -22,7 +22,7 @@ from core.inspect.gauge import doubted
 from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.messages import Message, as_json, from_json
+from core.messages import Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED
@@ -99,8 +99,8 @@ def profile_step(
         stream = found.stream(paths)
         for index, (name, picture) in enumerate(stream):
             progress("profiles", index, len(paths))
-            if isinstance(picture, str):
-                pictures.append(PictureStep(index, name, reason=from_json(picture)))
+            if isinstance(picture, Message):
+                pictures.append(PictureStep(index, name, reason=picture))
                 continue
             check_size(paths[index], picture.shape, camera)
             try:

@@ -12,7 +12,7 @@ from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
-from core.messages import Message, from_json
+from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
 from core.progress import Progress, silent, steps
@@ -104,7 +104,7 @@ def stream_frames(found: RecordingSet, options: Options, times: StageTimes | Non
             yield name, LEFT_OUT
             continue
         _, picture = next(pictures)
-        yield name, from_json(picture) if isinstance(picture, str) else picture
+        yield name, picture
 
 
 def require_frames(found: RecordingSet, options: Options) -> None:
@@ -140,7 +140,7 @@ def reference_picture(
     taken = taken_frames(found, options)
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(found.stream(sample), progress, "reference", len(sample))
-    pictures = [picture for _, picture in stream if not isinstance(picture, str)]
+    pictures = [picture for _, picture in stream if not isinstance(picture, Message)]
     if len(pictures) < FEWEST_FOR_QUANTILE:
         raise InputError(
             Message(

@@ -16,7 +16,7 @@ from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
-from core.messages import Field, Message, plain, plural_message
+from core.messages import Field, Message, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
@@ -161,7 +161,7 @@ def _lost(found: RecordingSet) -> tuple[Message, ...]:
     try:
         lost = lost_frames(read_log(found.frames[0].parent))
     except InputError as error:
-        return (plain(str(error)),)
+        return (error.message,)
     if not lost:
         return ()
     return (

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal, cast
 
-from core.errors import InputError
+from core.errors import InputError, WrongValue
 from core.files.atomic import make_inner_folder, write_bytes, write_text
 from core.files.csv_text import harmless_table
 from core.files.json_text import to_json
@@ -74,8 +74,8 @@ def keep_study(
             study = acceptance_check(readings_of(table), cast(Mapping[Quantity, float], limits))
     except InputError as error:
         raise InputError(error.what, where="table", todo=error.todo) from error
-    except ValueError as error:
-        raise InputError(str(error), where="table") from error
+    except WrongValue as error:
+        raise InputError(error.what, where="table") from error
     return _kept(folder, study, text)
 
 
@@ -89,8 +89,8 @@ def keep_type1(folder: Path, values: Sequence[float], nominal: float, tolerance:
     """
     try:
         study = type1_study(values, nominal, tolerance)
-    except ValueError as error:
-        raise InputError(str(error), where="repeats") from error
+    except WrongValue as error:
+        raise InputError(error.what, where="repeats") from error
     return _kept(folder, study, "\n".join(["value_mm", *(repr(float(value)) for value in values)]) + "\n")
 
 

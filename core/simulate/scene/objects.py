@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from core.errors import InputError
+from core.errors import InputError, words_of
 from core.files.stl import read_corners
-from core.messages import Message, plain
+from core.messages import Message
 from core.model.arrays import Array
 from core.simulate.scene.scene import OBJECT_ALBEDO, Mesh
 
@@ -112,7 +112,7 @@ def stl(path: Path) -> Mesh:
         triangles = read_corners(path)
     except (OSError, ValueError) as problem:
         raise InputError(
-            Message("simulate.bad_stl", "it cannot be read as an STL mesh ({why})", why=plain(str(problem))), where=path
+            Message("simulate.bad_stl", "it cannot be read as an STL mesh ({why})", why=words_of(problem)), where=path
         ) from problem
     if not len(triangles) or not np.isfinite(triangles).all():
         raise InputError(

@@ -7,6 +7,7 @@ import pytest
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
+from core.messages import Message
 
 RIG = """
 [camera_target]
@@ -63,8 +64,9 @@ def test_truncated_frame_among_good_ones_is_told_and_the_rest_go_on(folder):
     path.write_bytes(path.read_bytes()[:-20])
     found = open_set(folder)
     stream = list(found.stream(found.frames))
-    assert [type(picture) is str for _, picture in stream] == [False, False, True, False, False, False]
-    assert stream[2] == ("scan/frame_002.png", "the picture ends early")
+    assert [isinstance(picture, Message) for _, picture in stream] == [False, False, True, False, False, False]
+    assert (stream[2][0], str(stream[2][1])) == ("scan/frame_002.png", "the picture ends early")
+    assert stream[2][1].code
 
 
 def test_streaming_reads_only_a_few_frames_ahead(folder, monkeypatch):

@@ -23,7 +23,7 @@ from PySide6.QtWidgets import QWidget
 from core.errors import InputError
 from core.files.atomic import make_folder, write_text
 from core.files.project.folder import OPENER
-from core.messages import Message, plain
+from core.messages import Message
 from workbench.language import tr
 from workbench.notices import Notices
 from workbench.views import ask
@@ -94,7 +94,7 @@ def uninstall() -> Outcome:
             path.unlink()
         except OSError as error:
             raise InputError(
-                Message("file.not_removed", "cannot be removed ({reason})", reason=plain(str(error.strerror))),
+                Message("file.not_removed", "cannot be removed ({reason})", reason=str(error.strerror)),
                 where=path,
                 todo=Message("advice.remove_by_hand", "remove it by hand"),
             ) from error

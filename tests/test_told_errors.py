@@ -1,0 +1,131 @@
+"""An error that is passed on is told in the reader's language, not in the English of the code that raised it."""
+
+import json
+import pickle
+from contextlib import contextmanager
+
+import numpy as np
+import pytest
+from pydantic import BaseModel, ConfigDict
+
+from core.cli.preparing import target_of_words
+from core.errors import InputError, WrongValue
+from core.files.complaints import checked
+from core.files.exchange.imported import imported_camera
+from core.files.pictures import write_picture
+from core.files.recording.recording_log import LOG
+from core.files.recording.recording_set import open_set
+from core.files.study.study_file import read_study, write_study
+from core.image.stripes.stripe import StripeSettings
+from core.messages import Message
+from core.model import Camera
+from core.pipeline.steps.camera_step import see_views
+from core.pipeline.steps.planes_step import measure_poses
+from core.pipeline.steps.scan_step import _lost
+from core.pipeline.steps.study_step import keep_study, keep_type1
+from core.study.repeats import repeat_statistics
+from core.translations import PSEUDO, language, strange
+from tests.files.study.test_study_file import STUDIES
+
+RIG = """
+[camera_target]
+kind = "charuco"
+squares = [9, 6]
+square_mm = 10.0
+marker_mm = 7.0
+dictionary = "DICT_4X4_50"
+[plane_target]
+kind = "black_square"
+side_mm = 60.0
+[laser_fan]
+lines = 1
+"""
+
+
+def pseudo(message):
+    return language(PSEUDO)(message)
+
+
+@contextmanager
+def refused(english):
+    """What is within raises an InputError that has this in English and, translated, in another language."""
+    with pytest.raises(InputError) as error:
+        yield
+    assert english in str(error.value)
+    assert strange(english) in error.value.told(language(PSEUDO))
+
+
+@pytest.fixture
+def recorded(tmp_path):
+    for name in ("camera/a", "planes/p", "scan/f"):
+        (tmp_path / name).parent.mkdir()
+        path = tmp_path / f"{name}.png"
+        write_picture(path, np.arange(1200, dtype=np.uint8).reshape(30, 40))
+        path.write_bytes(path.read_bytes()[:-20])
+    (tmp_path / "rig.toml").write_text(RIG)
+    return tmp_path
+
+
+def test_a_damaged_picture_of_the_camera_target(recorded):
+    (view,) = see_views(open_set(recorded)).views
+    assert str(view.reason) == "the picture ends early"
+    assert strange("ends early") in pseudo(view.reason)
+
+
+def test_a_damaged_picture_of_the_plane_target(recorded):
+    found = open_set(recorded)
+    (pose,) = measure_poses(found, Camera((40, 30), [[50, 0, 20], [0, 50, 15], [0, 0, 1]]))
+    assert str(pose.reason) == f"{recorded / 'planes' / 'p.png'}: the picture ends early"
+    assert strange("ends early") in pseudo(pose.reason)
+
+
+def test_a_damaged_log_of_a_recording(recorded):
+    (recorded / "scan" / LOG).write_text("name,index,time_s,dropped\nf.png,one,0,0\n")
+    (note,) = _lost(open_set(recorded))
+    assert "line is damaged" in str(note)
+    assert "ļííñéé ííš dáámááĝééd" in pseudo(note)
+
+
+def test_tables_and_repeats_of_which_no_study_can_be_made(tmp_path):
+    table = "part;operator;value\n" + "1;A;50\n1;A;50\n2;A;50\n2;A;50\n"
+    with refused("a gauge R&R study needs values that differ"):
+        keep_study(tmp_path, "grr", table, tmp_path, {})
+    with refused("a type-1 study needs two finite values or more"):
+        keep_type1(tmp_path, [50.0], 50.0, 1.0)
+
+
+def test_a_study_file_of_which_no_study_can_be_made(tmp_path):
+    path = write_study(tmp_path, STUDIES["repeats"])
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"scans": []}))
+    with refused("repeats need one finite thickness or more"):
+        read_study(path)
+
+
+def test_a_target_that_cannot_be():
+    with pytest.raises(InputError) as error:
+        target_of_words("checkerboard", 2, 2, 10.0, None, "", asymmetric=False)
+    assert strange("inner corners") in error.value.told(language(PSEUDO))
+
+
+def test_a_camera_of_another_program_that_cannot_be(tmp_path):
+    with refused("the focal lengths on the diagonal of matrix must be positive"):
+        imported_camera(tmp_path, (40, 30), [[-50, 0, 20], [0, 50, 15], [0, 0, 1]], [0.0] * 5)
+
+
+def test_a_value_that_a_data_type_within_a_file_refuses(tmp_path):
+    class File(BaseModel):
+        model_config = ConfigDict(extra="forbid")
+        stripe: StripeSettings
+
+    with pytest.raises(InputError) as error:
+        checked(File, {"stripe": {"width_px": -1, "contrast": 60}}, tmp_path)
+    assert "stripe: width_px is −1.0, not a positive number" in str(error.value)
+    assert "Value error" not in error.value.told(language(PSEUDO))
+
+
+def test_a_refused_value_is_an_ordinary_error_of_pythons_too():
+    with pytest.raises(ValueError, match="repeats need") as error:
+        repeat_statistics([])
+    again = pickle.loads(pickle.dumps(error.value))
+    assert isinstance(again, WrongValue)
+    assert again.what == Message("study.no_repeats", "repeats need one finite thickness or more")
