@@ -70,8 +70,9 @@ screenshots: $(READY)     ## pictures of every page, both sizes, both themes, in
 pictures: $(READY)        ## the four pictures of the README
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots resources/pictures --readme
 
-translations: $(READY)    ## every text of the code into the catalogues of all languages, resources/translations/*.po
-	$(BIN)/python -m tests.translations
+# LANGUAGE counts on the command line alone: in the surroundings it is the reader's own, gettext's list.
+translations: $(READY)    ## every text of the code into the catalogues of all languages, resources/translations/*.po; LANGUAGE=fr adds one
+	$(BIN)/python -m tests.translations$(if $(findstring command,$(origin LANGUAGE)), $(LANGUAGE))
 
 notice: $(READY)          ## NOTICE: what the program stands on, and under which licences
 	$(BIN)/python -m tests.licences

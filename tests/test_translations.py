@@ -1,7 +1,10 @@
 """Every text that the code tells is in the catalogues, and none is told past them."""
 
 import ast
+import os
 import re
+import shutil
+import subprocess
 from collections import Counter
 from string import Formatter
 
@@ -12,16 +15,6 @@ from core.report.wording import Words
 from core.translations import PSEUDO, language, languages, preferred, strange
 from tests import translations
 
-REPORTED = (
-    "core/report", "core/calibrate", "core/image", "core/scan", "core/inspect", "core/study",
-    "core/pipeline/steps/scan_step.py", "core/pipeline/steps/gauge_step.py", "core/files/exchange/imported.py",
-    "core/errors.py",
-)  # fmt: skip
-"""Rooms and steps whose messages a report may print: each language must have all of them."""
-WINDOW_ALONE = ("core/scan/preview", "core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py")
-"""Modules in these rooms that only a window listens to."""
-FIXED_WORDS = ("core/report", "core/pipeline/steps/report_step.py")
-"""Where the fixed words of a report stand."""
 OTHERS = [name for name in languages() if name != "en"]
 
 
@@ -58,12 +51,10 @@ def test_code_and_text_of_a_message_stand_in_the_call():
 
 
 @pytest.mark.parametrize("name", OTHERS)
-def test_no_text_of_a_report_lacks_its_translation(name):
+def test_no_text_lacks_its_translation(name):
     catalog = translations.catalogue(name)
     lacking = []
-    for text in translations.texts(*REPORTED):
-        if text.path.startswith(WINDOW_ALONE if text.code else FIXED_WORDS) is bool(text.code):
-            continue
+    for text in translations.texts():
         known = catalog.get(text.english if len(text.english) > 1 else text.english[0], text.code or None)
         if known is None or known.fuzzy or not all(forms(known.string)):
             lacking.append(f"{text.path}:{text.line}: {text.code} {text.english[0]}")
@@ -87,6 +78,26 @@ def test_a_translation_has_the_places_of_the_english_text(name):
 def test_places_have_names():
     numbered = [text for text in translations.texts() if re.search(r"\{\d*[:}]", " ".join(text.english))]
     assert numbered == [], "a translator reads the names of the places"
+
+
+def test_a_language_that_is_asked_for_gets_a_catalogue_of_every_text(tmp_path, monkeypatch):
+    monkeypatch.setattr(translations, "FOLDER", tmp_path)
+    monkeypatch.setattr("sys.argv", ["translations", "fr"])
+    translations.main()
+    assert len(translations.catalogue("fr")) == len(translations.template())
+
+
+@pytest.mark.skipif(shutil.which("make") is None, reason="there is no make")
+@pytest.mark.parametrize(
+    ("given", "surroundings", "asked"),
+    [(("LANGUAGE=fr",), {}, "tests.translations fr"), ((), {"LANGUAGE": "en_GB:en"}, "tests.translations")],
+)
+def test_make_asks_for_the_language_on_its_command_line_and_not_for_the_readers_own(given, surroundings, asked):
+    command = ["make", "--dry-run", "translations", *given]
+    done = subprocess.run(
+        command, cwd=translations.ROOT, env={**os.environ, **surroundings}, capture_output=True, text=True, check=True
+    )
+    assert done.stdout.splitlines()[-1].endswith(f"python -m {asked}")
 
 
 def test_a_text_that_changed_is_kept_to_be_looked_at():
