@@ -82,7 +82,7 @@ def test_one_truncated_frame_among_good_ones_is_skipped_counted_and_reported(fol
     values = json.loads(said.out)
     name = f"scan/{victim.name}"
     assert {"name": name, "reason": "the picture ends early"} in values["frames_left_out"]
-    assert any(name in note and "1 of" in note for note in values["notes"])
+    assert any(name in note["text"] and "1 of" in note["text"] and note["code"] for note in values["notes"])
     assert len(frame_records(out)) == SMALL.frames
     assert (frame_records(out)[3]["name"], frame_records(out)[3]["points"]) == (name, 0)
     assert frame_records(out)[4]["points"] > 0
@@ -168,7 +168,7 @@ def test_a_view_without_a_board_and_a_black_and_a_white_one_are_left_out(folder,
     assert values["views_used"] == SMALL.camera_views - 3
     assert [view["name"] for view in values["views_left_out"]] == [f"camera/{view.name}" for view in views[:3]]
     assert all(view["reason"] for view in values["views_left_out"])
-    assert any(f"camera/{views[0].name}" in note for note in values["notes"])
+    assert any(f"camera/{views[0].name}" in note["text"] for note in values["notes"])
 
 
 def test_black_and_white_frames_among_good_ones(folder, out):
@@ -242,7 +242,7 @@ def test_the_object_moves_towards_the_end(folder, out):
     assert said.code == 0, said.err
     moved = [record for record in frame_records(out) if record["reason"] and "moved" in record["reason"]["text"]]
     assert [record["index"] for record in moved] == list(range(14, SMALL.frames))
-    assert any("moved" in note for note in json.loads(said.out)["notes"])
+    assert any("moved" in note["text"] for note in json.loads(said.out)["notes"])
 
 
 def test_the_object_moves_before_enough_is_seen(folder, out):

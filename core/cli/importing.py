@@ -83,5 +83,5 @@ def _values(plan: ImportPlan, imported: Imported | None, notes: Sequence[Message
         "files": {} if imported is None else dict(imported.ways),
         "rules": {part: str(rule) for part, rule in plan.rules.items()},
         "pictures": [{"name": name, "from": str(path)} for one in plan.pictures for name, path in one.files()],
-        "notes": [str(note) for note in notes],
+        "notes": output.notes_json(notes),
     }

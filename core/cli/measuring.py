@@ -54,14 +54,14 @@ class Shown:
 
     rows: output.Rows
     values: Mapping[str, Any]
-    notes: tuple[Message | str, ...] = ()
+    notes: tuple[Message, ...] = ()
     files: Mapping[str, Path] = field(default_factory=dict)
 
     def show(self, *, as_json: bool) -> None:
         """Print it, for people or for machines."""
         if as_json:
             output.print_json(
-                {**self.values, "notes": [str(note) for note in self.notes], "files": output.files_json(self.files)}
+                {**self.values, "notes": output.notes_json(self.notes), "files": output.files_json(self.files)}
             )
         else:
             output.print_rows(self.rows, self.notes, self.files)

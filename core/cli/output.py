@@ -27,7 +27,7 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
-from core.messages import Message, visible
+from core.messages import Message, as_json, visible
 from core.pipeline.steps.validity import date_of
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
@@ -40,6 +40,11 @@ _NAMES_SHOWN = 3
 
 PIPE_WIDTH = 1000
 """Columns in a pipe, where nobody's screen wraps lines: whatever reads it gets them whole."""
+
+
+def notes_json(notes: Sequence[Message]) -> list[dict[str, Any]]:
+    """Notes as ``--json`` has them and result files keep them: code, English text and values."""
+    return [as_json(note) for note in notes]
 
 
 def print_json(values: Mapping[str, Any]) -> None:
@@ -55,7 +60,7 @@ def console() -> Console:
     return out
 
 
-def print_rows(rows: Rows, notes: Sequence[Message | str] = (), files: Mapping[str, Path] | None = None) -> None:
+def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Path] | None = None) -> None:
     """A table of labels and values, the notes below it, then where the files are."""
     out = console()
     table = Table(box=None, show_header=False, padding=(0, 2, 0, 0))

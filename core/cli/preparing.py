@@ -19,7 +19,7 @@ from core.pipeline.steps.plan_step import PlanResult, plan, plan_values, write_p
 from core.plan.bounds import Bound
 from core.plan.predict import Prediction
 from core.progress import Progress
-from core.report.target_sheet import PAPER_MM, SheetPaper, sheet_layout, target_sheet
+from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.wording import grouped, target_in_words
 
 
@@ -95,7 +95,14 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
         return
     output.print_rows(
         [("target", target_in_words(target)), ("paper", sheet), ("written", str(out))],
-        ["print at 100 %, without fitting to the page, then measure both rulers: each must be 100.0 mm long"],
+        [
+            Message(
+                "target.print_to_size",
+                "print at 100 %, without fitting to the page, then measure both rulers: each must be {ruler_mm:.1f} mm "
+                "long",
+                ruler_mm=RULER_MM,
+            )
+        ],
     )
 
 

@@ -61,6 +61,7 @@ def verify(
 ) -> None:
     """Is everything still what it was? The audit trail link by link, the results, and all they were made of."""
     from core.cli.measuring import Shown
+    from core.cli.output import notes_json
     from core.pipeline.project.verify import verify as compare
 
     with bar() as progress:
@@ -77,7 +78,7 @@ def verify(
         "head": found.trail.head,
         "results": found.results,
         "inputs": found.inputs,
-        "problems": [str(problem) for problem in found.problems],
+        "problems": notes_json(found.problems),
     }
     Shown(rows, values, found.notes).show(as_json=json)
     raise typer.Exit(ExitCode.NOT_PROVEN if found.problems else ExitCode.DONE)

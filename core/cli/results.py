@@ -165,4 +165,4 @@ def run_import(file: Path, out: Path) -> Shown:
     camera = calibration.camera
     rows = [("picture", " × ".join(map(str, camera.image_size)) + " px"), ("focal length", f"{camera.focal:.2f} px")]
     values = output.camera_json(calibration)
-    return Shown(rows, values, tuple(map(str, calibration.notes)), {"camera": out / "camera.json"})
+    return Shown(rows, values, calibration.notes, {"camera": out / "camera.json"})

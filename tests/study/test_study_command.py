@@ -81,7 +81,7 @@ def test_a_repeat_of_a_rig_that_surely_changed_takes_its_proof_from_the_mean(tmp
     sure, doubted = results(tmp_path / "a", 50.001), results(tmp_path / "b", 50.002, complete=False)
     said = json.loads(trisect("study", "repeats", sure, doubted, "--json").out)
     assert (said["verdict"], said["doubted"]) == ("not proven", ["b"])
-    assert any("b prove" in note for note in map(str, said["notes"]))
+    assert any("b prove" in note["text"] for note in said["notes"])
 
 
 def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tmp_path):
@@ -187,7 +187,7 @@ def test_an_acceptance_table_is_judged_by_its_worst_position(tmp_path, limit, co
     assert said.code == code
     assert [one["quantity"] for one in found["quantities"]] == ["form", "size", "flatness"]
     assert found["quantities"][1]["largest_error"] == pytest.approx(-0.012)
-    assert "not a certificate" in found["notes"][0]
+    assert "not a certificate" in found["notes"][0]["text"]
 
 
 def test_clouds_of_a_sphere_give_its_probing_errors_position_by_position(tmp_path):

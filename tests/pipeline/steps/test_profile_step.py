@@ -95,7 +95,7 @@ def test_one_line_measures_along_the_normal_of_the_plate_that_lay_on_the_stage(o
     said = trisect("profile", folder, "--out", out, "--stage", "planes/stage", "--json")
     told = json.loads(said.out)
     assert abs(told["thickness_mm"] - 30.0) < told["U_mm"] < 0.25
-    assert any("parallel to the plate of planes/stage" in note for note in told["notes"])
+    assert any("parallel to the plate of planes/stage" in note["text"] for note in told["notes"])
 
 
 @pytest.mark.slow
