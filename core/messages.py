@@ -14,8 +14,9 @@ from __future__ import annotations
 import json
 import re
 import string
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import PurePath
 from types import MappingProxyType
 from typing import Any
@@ -61,7 +62,7 @@ class Message:
         The English text with {places}.
     values
         What stands in the places: names, whole and real numbers (with the unit at the end of their names: `rms_px`),
-        paths, `Field`, `Command`, fixed words (`label`), other messages, and sequences of these.
+        paths, times, `Field`, `Command`, fixed words (`label`), other messages, and sequences of these.
 
     Notes
     -----
@@ -147,6 +148,11 @@ def _frozen(value: Any) -> Any:
     return value.item() if hasattr(value, "item") else value
 
 
+def iso_time(at: datetime, seconds: bool) -> str:
+    """Date and time of day as English texts have them, which files keep: '2026-11-24 11:32'."""
+    return f"{at:%Y-%m-%d %H:%M:%S}" if seconds else f"{at:%Y-%m-%d %H:%M}"
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Language:
     """How messages are told to one reader.
@@ -165,6 +171,8 @@ class Language:
         The decimal sign.
     conjunction
         How the last of several is joined to those before it: '{0} and {1}'.
+    times
+        How date and time of day are written, with seconds or without.
     fields
         What this reader calls the field of a file, by its key; others are called as in the file.
     commands
@@ -177,6 +185,7 @@ class Language:
     plural_form: Any = None
     decimal: str = "."
     conjunction: str = "{0} and {1}"
+    times: Callable[[datetime, bool], str] = iso_time
     fields: Mapping[str, str] = field(default_factory=dict)
     commands: bool = True
 
@@ -196,6 +205,10 @@ class Language:
     def numeral(self, digits: str) -> str:
         """Digits as Python writes them, with the decimal sign here and a true minus sign."""
         return digits.replace("-", MINUS).replace(".", self.decimal)
+
+    def time(self, at: datetime, *, seconds: bool = False) -> str:
+        """Date and time of day, in the time zone that `at` is in."""
+        return self.times(at, seconds)
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
         """Several texts in a row: see the module."""
@@ -235,6 +248,8 @@ class _Formatter(string.Formatter):
             return f": {value.text}" if language.commands else ""
         if isinstance(value, Label):
             return language.label(value)
+        if isinstance(value, datetime):
+            return language.time(value)
         if isinstance(value, tuple):
             return language.joined([self.format_field(one, "") for one in value], format_spec)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
@@ -299,6 +314,8 @@ def _json(value: Any) -> Any:
         return {"command": value.text}
     if isinstance(value, Label):
         return {"label": str(value)}
+    if isinstance(value, datetime):
+        return {"time": value.isoformat()}
     if isinstance(value, tuple):
         return [_json(one) for one in value]
     return value
@@ -312,5 +329,7 @@ def _value(kept: Any) -> Any:
             return Field(str(kept["field"]), str(kept["file"]), bool(kept.get("whole")))
         if "label" in kept:
             return Label(kept["label"])
+        if "time" in kept:
+            return datetime.fromisoformat(kept["time"])
         return Command(str(kept["command"])) if "command" in kept else from_json(kept)
     return kept

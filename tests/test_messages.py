@@ -1,5 +1,7 @@
 import json
 import pickle
+from dataclasses import replace
+from datetime import datetime, timedelta, timezone
 from pathlib import Path
 
 import numpy as np
@@ -7,6 +9,7 @@ import pytest
 
 from core.errors import InputError
 from core.messages import ENGLISH, Command, Field, Language, Message, as_json, from_json, label, plain, plural_message
+from core.translations import language
 
 GERMAN = Language(
     "de",
@@ -118,3 +121,33 @@ def test_a_message_cannot_be_changed():
 
 def test_fixed_words_have_no_code():
     assert (ENGLISH.label("Camera"), GERMAN.label("Camera"), GERMAN.label("Fan")) == ("Camera", "Kamera", "Fan")
+
+
+NOON = datetime(2026, 3, 4, 12, 5, 6, tzinfo=timezone(timedelta(hours=8)))
+
+
+def test_a_time_in_a_message_is_told_as_the_reader_writes_it_also_after_a_file():
+    message = Message("x.y", "checked on {at}", at=NOON)
+    assert str(message) == "checked on 2026-03-04 12:05"
+    kept = from_json(json.loads(json.dumps(as_json(message))))
+    assert kept == message
+    german = replace(language("de"), messages={"x.y": "geprüft am {at}"})
+    chinese = replace(language("zh_CN"), messages={"x.y": "检查于 {at}"})
+    assert german(kept) == "geprüft am 04.03.2026, 12:05"
+    assert chinese(kept) == "检查于 2026年3月4日 12:05"
+
+
+def test_seconds_are_written_where_they_are_asked_for():
+    told = [one.time(NOON, seconds=True) for one in (ENGLISH, language("de"))]
+    assert told == ["2026-03-04 12:05:06", "04.03.2026, 12:05:06"]
+
+
+def test_nobody_writes_a_date_for_people_in_a_way_of_their_own():
+    root = Path(__file__).parents[1]
+    found = [
+        str(path.relative_to(root))
+        for folder in ("core", "workbench")
+        for path in sorted((root / folder).rglob("*.py"))
+        if "%Y-%m-%d" in path.read_text(encoding="utf-8")
+    ]
+    assert found == ["core/files/exchange/xlsx.py", "core/messages.py"]  # a stamp in a file, and English

@@ -6,7 +6,7 @@ from contextlib import contextmanager
 
 import numpy as np
 import pytest
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel
 
 from core.cli.preparing import target_of_words
 from core.errors import InputError, WrongValue
@@ -40,6 +40,10 @@ side_mm = 60.0
 [laser_fan]
 lines = 1
 """
+
+
+class File(BaseModel):
+    stripe: StripeSettings
 
 
 def pseudo(message):
@@ -113,10 +117,6 @@ def test_a_camera_of_another_program_that_cannot_be(tmp_path):
 
 
 def test_a_value_that_a_data_type_within_a_file_refuses(tmp_path):
-    class File(BaseModel):
-        model_config = ConfigDict(extra="forbid")
-        stripe: StripeSettings
-
     with pytest.raises(InputError) as error:
         checked(File, {"stripe": {"width_px": -1, "contrast": 60}}, tmp_path)
     assert "stripe: width_px is −1.0, not a positive number" in str(error.value)

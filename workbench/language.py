@@ -7,6 +7,7 @@ one is chosen, the window is replaced.
 from __future__ import annotations
 
 from dataclasses import replace
+from datetime import datetime
 from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
@@ -98,6 +99,11 @@ def text_of(message: Message | Exception | Failure | str) -> str:
 def numeral(digits: str) -> str:
     """Digits as Python writes them, with the decimal sign of the window's language and a true minus."""
     return _chosen.numeral(digits)
+
+
+def time_of(at: datetime, *, seconds: bool = False) -> str:
+    """Date and time of day of this place, as the window's language writes them."""
+    return _chosen.time(at.astimezone(), seconds=seconds)
 
 
 def number(value: float, spec: str = "") -> str:

@@ -9,7 +9,7 @@ from enum import StrEnum
 from core.files.project.data import Done, Project
 from core.files.project.keys import changed, rests_on
 from core.messages import label
-from workbench.language import tr
+from workbench.language import time_of, tr
 
 ORDER = ("project", "camera", "planes", "scan", "inspect", "report")
 """The steps in the order of work."""
@@ -70,8 +70,7 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
         if stale:
             names = ", ".join(tr(_NAMES[need]) for need in stale)
             return StepState(State.OUTDATED, tr("Out of date, because this is: {steps}.", steps=names))
-        at = done.at.astimezone().strftime("%Y-%m-%d %H:%M")
-        return StepState(State.DONE, tr("Done on {at}.", at=at))
+        return StepState(State.DONE, tr("Done on {at}.", at=time_of(done.at)))
     missing = [need for need in NEEDS[step] if need not in results]
     if missing:
         return StepState(State.TODO, tr("First: {steps}.", steps=", ".join(tr(_NAMES[need]) for need in missing)))

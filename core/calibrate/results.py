@@ -158,7 +158,7 @@ class Readjustment:
             "and moved by {shift_um:.0f} µm, picture by {drift_px:.2f} px, focal length by {focal_ppm:+.0f}·10⁻⁶ "
             "(p before {p_before:.1g}, after {p_after:.2g}).",
             poses=self.poses,
-            date=self.taken_at.astimezone().strftime("%Y-%m-%d %H:%M"),
+            date=self.taken_at.astimezone(),
             turn_urad=1e6 * float(np.linalg.norm(turn)),
             shift_um=1e3 * float(np.linalg.norm(shift)),
             drift_px=float(np.linalg.norm(drift)),

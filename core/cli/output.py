@@ -27,8 +27,7 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
-from core.messages import Message, as_json, visible
-from core.pipeline.steps.validity import date_of
+from core.messages import ENGLISH, Message, as_json, visible
 from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -258,7 +257,7 @@ def history_rows(history: RigHistory) -> Rows:
         return [("rig", f"{history.name}: never checked on this computer")]
     return [
         ("rig", history.name),
-        *((date_of(one.taken_at), _past_check(one, history.chart(one))) for one in history.checks),
+        *((ENGLISH.time(one.taken_at.astimezone()), _past_check(one, history.chart(one))) for one in history.checks),
     ]
 
 

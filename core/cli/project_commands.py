@@ -10,6 +10,7 @@ import typer
 
 from core.cli.bar import bar
 from core.cli.options import EPILOG, ExitCode, Json
+from core.messages import ENGLISH
 
 if TYPE_CHECKING:
     from core.files.project.audit import Entry
@@ -112,7 +113,7 @@ def audit(
     trail = read_trail(project)
     rows = []
     for entry in trail.entries:
-        rows.append((f"{entry.n}  {entry.at:%Y-%m-%d %H:%M:%S}", _told(entry)))
+        rows.append((f"{entry.n}  {ENGLISH.time(entry.at, seconds=True)}", _told(entry)))
         rows += [("", f"{one.field}: {one.old or '–'} → {one.new or '–'}") for one in entry.changes]
         rows += [("", f"{name}: {digest}") for name, digest in entry.files.items()]
         rows += [("", entry.why)] if entry.why else []

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from dataclasses import dataclass
+from datetime import datetime
 from decimal import ROUND_HALF_EVEN, Decimal
 
 from core import messages
@@ -51,6 +52,10 @@ class Words:
         """A value as somebody stated it: no more digits than it has, a power of ten for very small and large ones."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
+
+    def time(self, at: datetime, *, seconds: bool = False) -> str:
+        """Date and time of day, in the time zone that `at` is in."""
+        return self.language.time(at, seconds=seconds)
 
     def numeral(self, digits: str) -> str:
         """Digits with the language's decimal sign and a true minus sign."""

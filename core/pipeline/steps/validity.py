@@ -53,7 +53,7 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             "validity.check_failed",
             "The check of camera and laser of {date} failed: nothing measured with these calibrations proves "
             "conformity; calibrate again.",
-            date=date_of(nearest.taken_at),
+            date=nearest.taken_at.astimezone(),
         )
     return _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
 
@@ -74,11 +74,6 @@ def stated_validity(rig: Rig) -> tuple[Message, ...]:
             "stated has no limit.",
         ),
     )
-
-
-def date_of(time: datetime) -> str:
-    """A date as files have it, in local time."""
-    return time.astimezone().strftime("%Y-%m-%d %H:%M")
 
 
 def _calibration_lapsed(found: RecordingSet, record: RunRecord, when: datetime) -> Message | None:
@@ -122,7 +117,7 @@ def _check_lapsed(rig: Rig, nearest: PastCheck | None, when: datetime) -> Messag
         "validity.check_lapsed",
         "The check of camera and laser nearest to this recording is of {date}, and they are to be checked every "
         "{days:g} days: nothing measured proves conformity; check again.",
-        date=date_of(nearest.taken_at),
+        date=nearest.taken_at.astimezone(),
         days=days,
     )
 

@@ -26,7 +26,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
     """Id, date, age and hash of every calibration the result rests on."""
     rows: list[list[Flowable]] = [heads(look, "Calibration", "id", "made", "age", "SHA-256 of its file")]
     for mark in content.calibrations:
-        made = look.words("not known") if mark.made_at is None else f"{mark.made_at:%Y-%m-%d %H:%M}"
+        made = look.words("not known") if mark.made_at is None else look.words.time(mark.made_at)
         rows.append(
             [
                 look.say(KINDS[mark.of], "small"),

@@ -69,7 +69,7 @@ def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
     marks = {mark.of: f"{mark.id}, {words('age')} {age_words(look, mark, content)}" for mark in content.calibrations}
     return {
         words("Report"): content.report_id,
-        words("Date and time"): f"{content.timestamp:%Y-%m-%d %H:%M:%S %Z}".strip(),
+        words("Date and time"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),
         words("Rig"): content.rig_id,
         words("Camera calibration"): marks.get("camera", ""),
         words("Fan calibration"): marks.get("fan", ""),

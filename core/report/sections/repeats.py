@@ -78,7 +78,7 @@ def _cells(look: ReportLook, repeat: RepeatLine, nominal_mm: float | None) -> tu
     error = "" if nominal_mm is None else fixed(repeat.thickness_mm - nominal_mm, decimals, signed=True)
     return (
         repeat.scan,
-        f"{repeat.measured_at:%Y-%m-%d %H:%M}",
+        look.words.time(repeat.measured_at),
         fixed(repeat.thickness_mm, decimals),
         fixed(repeat.U_mm, decimals),
         look.words.general(repeat.k),

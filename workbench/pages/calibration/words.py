@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from workbench.language import tr
+from workbench.language import time_of, tr
 from workbench.views.lists.value_rows import ValueRow
 
 
@@ -16,5 +16,4 @@ def used_row(name: str, views: tuple[Any, ...], tip: str) -> ValueRow:
 
 def history_row(entry: Any, accepted: str, *figures: str) -> tuple[str, ...]:
     """A kept calibration: when, its figures, whether in use."""
-    when = entry.kept_at.astimezone().strftime("%Y-%m-%d %H:%M")
-    return when, *figures, tr("in use") if entry.id == accepted else ""
+    return time_of(entry.kept_at), *figures, tr("in use") if entry.id == accepted else ""

@@ -10,7 +10,7 @@ from core.files.csv_text import harmless
 from core.files.project.data import Repeat
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
 from core.study.repeats import RepeatStatistics
-from workbench.language import number, text_of, tr
+from workbench.language import number, text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import capital, wording
 from workbench.views.colours import Level
@@ -134,7 +134,7 @@ def type1_rows(study: Type1Study) -> list[ValueRow]:
 def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
     """Scan, thickness, U, calibration, time."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm, wording())
-    time = repeat.measured_at.astimezone().strftime("%Y-%m-%d %H:%M")
+    time = time_of(repeat.measured_at)
     return scan_name(repeat.scan), value, f"± {expanded}", short_id(repeat.calibration_id), time
 
 

@@ -12,7 +12,7 @@ from core.files.project.audit import Entry, Trail, append, read_trail, trail_tab
 from core.files.project.people import ROLE_NAMES, sign
 from core.messages import visible
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import text_of, time_of, tr
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, in_column, in_row, muted
 
@@ -116,7 +116,7 @@ def _in_words(entry: Entry) -> str:
         "people reset": tr("people reset"),
         "signed": tr("signed"),
     }[entry.what]
-    lines = [f"{entry.n}  {entry.at.astimezone():%Y-%m-%d %H:%M:%S}  {entry.who}@{entry.host}  {what}"]
+    lines = [f"{entry.n}  {time_of(entry.at, seconds=True)}  {entry.who}@{entry.host}  {what}"]
     lines += [f"    {entry.by} ({tr(ROLE_NAMES[entry.role])})"] if entry.role in ROLE_NAMES else []
     lines += [f"    {one.field}: {one.old or '–'} → {one.new or '–'}" for one in entry.changes]
     lines += [f"    {name}  {digest}" for name, digest in entry.files.items()]

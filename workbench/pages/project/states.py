@@ -14,7 +14,7 @@ from core.files.project.folder import Version, read_project, recoverable, rescue
 from core.files.project.json_form import NewerProject
 from core.files.project.lock import held_by
 from core.messages import visible
-from workbench.language import tr
+from workbench.language import time_of, tr
 from workbench.project_model import Access
 from workbench.views import ask
 
@@ -41,7 +41,7 @@ def choose_access(parent: QWidget, folder: Path) -> Access | None:
         name=folder.name,
         owner=holder.owner,
         host=holder.host,
-        time=holder.since.astimezone().strftime("%Y-%m-%d %H:%M"),
+        time=time_of(holder.since),
     )
     answers = [tr("Open read only"), tr("Take over"), tr("Do not open")]
     chosen = ask.ask(parent, tr("Project in use"), text, answers)
@@ -121,4 +121,4 @@ def _in_words(version: Version) -> str:
 
 
 def _time(file: ProjectFile) -> str:
-    return file.saved.astimezone().strftime("%Y-%m-%d %H:%M") if file.saved else tr("an unknown time")
+    return time_of(file.saved) if file.saved else tr("an unknown time")

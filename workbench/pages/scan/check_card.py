@@ -12,7 +12,7 @@ from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.pipeline.live.events import Detail, PlanesDetail
-from workbench.language import number, text_of, tr
+from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.words import capital, mm, px
@@ -200,7 +200,7 @@ class CheckCard(QFrame):
 
 def when(check: PastCheck | InterimCheck) -> str:
     """When its pictures were taken."""
-    return check.taken_at.astimezone().strftime("%Y-%m-%d %H:%M")
+    return time_of(check.taken_at)
 
 
 def limits(history: RigHistory | None, past: PastCheck | None) -> list[ValueRow]:
