@@ -4,8 +4,9 @@
 2. Else another process renders a small picture off screen: if it comes out well, pictures of the scene are shown.
 3. Else there is no 3D.
 
-The libraries are imported by a thread that knows nothing of Qt: importing pyvista takes seconds. The answer holds for
-the life of the program.
+The libraries are imported by a thread that knows nothing of Qt: importing pyvista takes 1 s of processor time and, from
+a slow disk, many seconds, for which the window would stand still. It is the only thread that the window starts; at the
+program's end it stops before the next module. The answer holds for the life of the program.
 """
 
 from __future__ import annotations
@@ -15,6 +16,10 @@ import logging
 import os
 import sys
 import threading
+from collections.abc import Sequence
+from importlib.abc import MetaPathFinder
+from importlib.machinery import ModuleSpec
+from types import ModuleType
 from typing import Literal
 
 from PySide6.QtCore import QCoreApplication, QObject, QProcess, QTimer, Signal
@@ -53,6 +58,7 @@ class Readiness(QObject):
         self._opengl: bool | None = None
         self._trial: QProcess | None = None
         self._thread: threading.Thread | None = None
+        self._stoppable = _StoppableImport()
         self._look_again = QTimer(self, singleShot=True, interval=LOOK_MS)
         self._look_again.timeout.connect(self._look)
         self._importing: tuple[Kind, list[Exception]] = ("none", [])
@@ -98,7 +104,8 @@ class Readiness(QObject):
         self.known.emit()
 
     def stop(self) -> None:
-        """The program ends: do not wait for a trial that is under way."""
+        """The program ends: do not wait for a trial or an import that is under way."""
+        self._stoppable.stopped = True
         if self._trial is not None:
             self._trial.blockSignals(True)
             self._trial.kill()
@@ -120,7 +127,7 @@ class Readiness(QObject):
     def _import(self, kind: Kind) -> None:
         """Import the libraries on a thread that knows nothing of Qt."""
         failed: list[Exception] = []
-        self._thread = threading.Thread(target=_import_surfaces, args=(failed,), name="pyvista import")
+        self._thread = threading.Thread(target=self._stoppable.run, args=(failed,), name="pyvista import")
         self._thread.start()
         self._importing = kind, failed
         self._look()
@@ -138,11 +145,35 @@ class Readiness(QObject):
         self.known.emit()
 
 
-def _import_surfaces(failed: list[Exception]) -> None:
-    try:
-        importlib.import_module(SURFACES)
-    except Exception as error:  # noqa: BLE001  whatever is wrong with the libraries, the program goes on without them
-        failed.append(error)
+class _Stopped(BaseException):
+    """Ends an import; no library takes it for a module that is missing."""
+
+
+class _StoppableImport(MetaPathFinder):
+    """Imports SURFACES on a thread, and can be told to stop before the next of the modules this takes."""
+
+    def __init__(self) -> None:
+        self.stopped = False
+        self._thread = 0
+
+    def run(self, failed: list[Exception]) -> None:
+        """Import them; why they cannot be imported is added to `failed`."""
+        self._thread = threading.get_ident()
+        sys.meta_path.insert(0, self)
+        try:
+            importlib.import_module(SURFACES)
+        except _Stopped:
+            pass
+        except Exception as error:  # noqa: BLE001  whatever is wrong with them, the program goes on without 3D
+            failed.append(error)
+        finally:
+            sys.meta_path.remove(self)
+
+    def find_spec(self, name: str, path: Sequence[str] | None, target: ModuleType | None = None) -> ModuleSpec | None:
+        """Asked by Python before each module: leave it to the other finders, unless we are to stop."""
+        if self.stopped and threading.get_ident() == self._thread:
+            raise _Stopped
+        return None
 
 
 def reserve_opengl(view: QWidget) -> None:
