@@ -1,10 +1,11 @@
-"""Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--readme].
+"""Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--language de].
 
 With --readme only the four that the README shows, small (make pictures).
 """
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 import tempfile
@@ -25,9 +26,11 @@ from core.inspect.plan.feature_spec import Auto, Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.scan.surface.fused_surface import Mesh
 from core.simulate.scene.objects import gauge_block
+from core.translations import PSEUDO, language, languages
 from tests.study.grr_tables import AIAG
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
+from workbench.language import choose
 from workbench.main_window import MainWindow
 from workbench.pages.report.stage import Stage
 from workbench.settings import AppSettings
@@ -56,16 +59,22 @@ PLAN = InspectionPlan(
 
 def main() -> int:
     """Write welcome and all pages of the finished sample in both sizes and themes."""
-    folder = Path(sys.argv[1] if len(sys.argv) > 1 else "screenshots")
+    parser = argparse.ArgumentParser(prog="python -m tests.workbench.screenshots", description=__doc__)
+    parser.add_argument("folder", nargs="?", type=Path, default=Path("screenshots"))
+    parser.add_argument("--readme", action="store_true", help="only the four that the README shows")
+    parser.add_argument("--language", choices=(*languages(), PSEUDO), default="en")
+    given = parser.parse_args()
+    folder: Path = given.folder
     folder.mkdir(parents=True, exist_ok=True)
     app = Application(sys.argv[:1])
+    choose(language(given.language), app)
     with tempfile.TemporaryDirectory() as home:
         bench = make_bench(AppSettings(Path(home) / "settings.ini"))
         bench.settings.projects_folder = Path(home) / "projects"
         window = build_window(app, bench, "light")
         window.show()
         try:
-            (_readme if "--readme" in sys.argv else _all)(app, bench, window, folder)
+            (_readme if given.readme else _all)(app, bench, window, folder)
         finally:
             window.leave()
     return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 from PySide6.QtWidgets import QApplication, QToolButton, QWidget
 
-from core.translations import language
+from core.translations import PSEUDO, language
 from workbench.app import build_window
 from workbench.bench import Bench
 from workbench.language import choose
@@ -24,7 +24,7 @@ def laid_out(widget: QWidget) -> None:
 
 
 @pytest.mark.parametrize("styled", [False, True])
-@pytest.mark.parametrize("name", ["en", "de", "zh_CN"])
+@pytest.mark.parametrize("name", ["en", "de", "zh_CN", PSEUDO])
 def test_every_page_has_room_in_the_smallest_window(
     bench: Bench, qapp: QApplication, qtbot, name: str, styled: bool
 ) -> None:

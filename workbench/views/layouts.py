@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Final, TypeVar
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtGui import QAction
+from PySide6.QtGui import QAction, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QBoxLayout,
@@ -75,6 +75,34 @@ class UpAndDown(QScrollArea):
         if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
             self.updateGeometry()
         return super().eventFilter(watched, event)
+
+
+class Folding(QWidget):
+    """Parts side by side; one below the other where they have no room for that, as in a language of long words."""
+
+    def __init__(self, *parts: QLayout, spacing: int) -> None:
+        super().__init__()
+        self._parts = tuple(holding(part) for part in parts)
+        self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
+        self._box.setContentsMargins(*NO_MARGINS)
+        self._box.setSpacing(spacing)
+        for part in self._parts:
+            self._box.addWidget(part, 1)
+
+    def minimumSizeHint(self) -> QSize:
+        """As narrow as the widest part."""
+        return QSize(max(self._widths()), super().minimumSizeHint().height())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        side_by_side = sum(self._widths()) + self._box.spacing() * (len(self._parts) - 1)
+        folded = side_by_side > self.width()
+        direction = QBoxLayout.Direction.TopToBottom if folded else QBoxLayout.Direction.LeftToRight
+        if self._box.direction() != direction:
+            self._box.setDirection(direction)
+
+    def _widths(self) -> list[int]:
+        return [part.minimumSizeHint().width() for part in self._parts]
 
 
 def heading(text: str) -> QLabel:

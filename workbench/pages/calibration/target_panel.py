@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any, Protocol
 
-from PySide6.QtCore import QCoreApplication, Qt, SignalInstance
+from PySide6.QtCore import Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
@@ -165,8 +165,8 @@ class TargetPanel(QWidget):
 def kind_in_words(kind: str) -> str:
     """A kind of target as it is called on screen."""
     return {
-        "checkerboard": QCoreApplication.translate("TargetPanel", "Checkerboard"),
-        "charuco": QCoreApplication.translate("TargetPanel", "ChArUco board"),
-        "circle_grid": QCoreApplication.translate("TargetPanel", "Circle grid"),
-        "black_square": QCoreApplication.translate("TargetPanel", "Black square"),
+        "checkerboard": tr("Checkerboard"),
+        "charuco": tr("ChArUco board"),
+        "circle_grid": tr("Circle grid"),
+        "black_square": tr("Black square"),
     }[kind]

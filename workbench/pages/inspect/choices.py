@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 from core.inspect.shown.shown_scan import DEPTH
 from workbench.language import tr
 from workbench.views.common import SpinBox
-from workbench.views.layouts import in_row
+from workbench.views.layouts import Folding, in_row
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
@@ -43,12 +43,14 @@ class SurfaceChoices(QWidget):
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
         self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
-        bar = in_row(on=self, spacing=4)
-        self._make_shapes(bar)
-        bar.addSpacing(4)
-        self._make_colours(bar)
-        bar.addStretch(1)
-        self._make_limit(bar)
+        look, limit = in_row(spacing=4), in_row(spacing=4)
+        self._make_shapes(look)
+        look.addSpacing(4)
+        self._make_colours(look)
+        look.addStretch(1)
+        limit.addStretch(1)
+        self._make_limit(limit)
+        in_row(Folding(look, limit, spacing=4), on=self)
 
     @property
     def shape(self) -> Shape:

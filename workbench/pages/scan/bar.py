@@ -19,7 +19,7 @@ from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
 from workbench.theme import icon
-from workbench.views.layouts import in_column, muted
+from workbench.views.layouts import Folding, in_column, in_row, muted
 
 
 class FrameBar(QWidget):
@@ -78,16 +78,15 @@ class FrameBar(QWidget):
             View.CROSSINGS: tr("Crossings"),
             View.POINTS: tr("Points"),
         }
-        row = QHBoxLayout()
-        row.setSpacing(0)
-        for view, title in titles.items():
+        halves = in_row(spacing=0), in_row(spacing=0)
+        for number, (view, title) in enumerate(titles.items()):
             button = QPushButton(title)
             button.setCheckable(True)
             button.setToolTip(self._tips()[view])
             button.clicked.connect(lambda _=False, view=view: self.view_chosen.emit(view))
             self._group.addButton(button)
             self.stages[view] = button
-            row.addWidget(button, 1)
+            halves[2 * number // len(titles)].addWidget(button, 1)
         for tool, symbol, tip in (
             (self.back, "mdi6.chevron-left", tr("The frame before (←)")),
             (self.on, "mdi6.chevron-right", tr("The next frame (→)")),
@@ -106,7 +105,7 @@ class FrameBar(QWidget):
         along.setSpacing(4)
         for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.next_mark, 0), (self.used, 0)):
             along.addWidget(widget, stretch)
-        column = in_column(row, along, on=self, margins=(0, 4, 0, 0), spacing=4)
+        column = in_column(Folding(*halves, spacing=0), along, on=self, margins=(0, 4, 0, 0), spacing=4)
         self.said.setFixedHeight(2 * self.said.fontMetrics().lineSpacing())
         self.said.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(self.said)
