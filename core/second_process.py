@@ -32,6 +32,7 @@ Item = TypeVar("Item", contravariant=True)
 Result = TypeVar("Result", covariant=True)
 
 _TELL_EVERY_S = 0.1
+"""How often in s progress is told to the first process at most."""
 _LENGTH = 8
 """Bytes that say how long what follows is."""
 

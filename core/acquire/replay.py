@@ -12,7 +12,9 @@ from core.errors import InputError
 from core.messages import Message
 
 RATE_HZ = 10.0
+"""Frames per second at which a folder of pictures is played back until another rate is set."""
 ANY_RATE_HZ = (0.0, 10_000.0)
+"""Frames per second that can be set: a folder has no limit of its own. 0: as fast as they can be read."""
 
 FRAMES_HELD: dict[Step, int] = {"camera": 12, "planes": 25, "scan": 1, "check": 25}
 """For how many frames a picture of a recording is shown: in a recording of targets each one was held still."""

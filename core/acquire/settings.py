@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.messages import Message, label
 
 LARGEST_REGION_PX = 65_536
+"""Furthest column or row of a region in pixels: no sensor is larger, and a larger number is a slip of the pen."""
 
 FREE_RUNNING = "Off"
 """The trigger of a camera that takes pictures by itself."""

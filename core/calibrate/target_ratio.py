@@ -26,6 +26,7 @@ P_TOLD = 0.01
 NOT_FIXED = 0.001
 """Targets that are not fixed to each other by a larger probability than that say nothing."""
 _POSE = 6
+"""Unknowns of a pose: a rotation vector and a translation."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -36,6 +36,7 @@ from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
 _NAMES_SHOWN = 3
+"""So many frames left out for one reason are named in a line."""
 
 PIPE_WIDTH = 1000
 """Columns in a pipe, where nobody's screen wraps lines: whatever reads it gets them whole."""

@@ -26,6 +26,8 @@ SCENARIO = Scenario()
 """The defaults of a simulated recording."""
 _PART = "gauge block of the embedded sample"
 _QUICK_SCALE, _QUICK_FRAMES, _QUICK_CUT_MM = 0.25, 24, 0.3
+"""The quick demonstration: share of the paper's resolution, number of frames, and cut on σ in mm, which so coarse
+pictures need."""
 
 
 @commands.command()

@@ -36,6 +36,7 @@ _KIND_WORDS = {
 }  # fmt: skip
 _NUMBER = re.compile(r"_[0-9]+$")
 _LAST_CHARACTER = 0x10FFFF
+"""The largest code point of Unicode."""
 _HALVES = (0xD800, 0xDFFF)
 """Of Unicode: its last character, and the codes that are halves of one in UTF-16."""
 

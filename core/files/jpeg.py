@@ -18,12 +18,14 @@ from core.messages import Message
 
 START = b"\xff\xd8"
 _QUANTISATION, _SCAN = 0xDB, 0xDA
+"""Second bytes of the markers of a table of quantisation and of a scan's head (ITU-T T.81, table B.1)."""
 _FRAMES = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 """Markers of a frame's head; the three between them are tables and an extension."""
 _COARSE_TERMS = 10
 """Terms of a block's cosine series, in the order of the file, that make up a stripe: those of the 4 lowest orders."""
 
 _TERMS = 64
+"""Terms of a block's cosine series: 8 × 8."""
 _BLOCK_PX = 8.0
 """Side of a block."""
 _BEFORE_COMPONENTS = 6

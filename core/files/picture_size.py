@@ -19,7 +19,9 @@ from core.files import jpeg
 
 _TIFF = {b"II*\0": "<", b"MM\0*": ">"}
 _WIDTH, _LENGTH = 256, 257
+"""Tags of a TIFF: columns and rows of its picture (TIFF 6.0, section 8)."""
 _SHORT, _LONG = 3, 4
+"""Types of a TIFF's values: 16 and 32 bits without sign (TIFF 6.0, section 2)."""
 _CORE_HEAD = 12
 """Bytes of the oldest head of a BMP, whose sides have two bytes."""
 _TABLES = 1000

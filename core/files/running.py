@@ -11,7 +11,9 @@ from typing import Any, Protocol
 _ACCESS = 0x00100000 | 0x1000
 """Windows: SYNCHRONIZE, to look whether it has ended, and PROCESS_QUERY_LIMITED_INFORMATION, to ask when it began."""
 _WAIT_TIMEOUT = 0x102
+"""Windows: what WaitForSingleObject returns for a process that has not ended."""
 _ACCESS_DENIED = 5
+"""Windows: the error for a process that is there and belongs to somebody else."""
 _FILETIME_BEGAN = datetime(1601, 1, 1, tzinfo=UTC)
 _CLOCK_S = 2.0
 """What a file says and what the system says of one moment differ by less."""

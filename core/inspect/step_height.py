@@ -47,6 +47,7 @@ NOT_PLANE = Message(
     "profile.not_plane", "other lines lie on the part at other heights than those on its upper face: it is no plane"
 )
 _LEAST_SIGMA_MM = 1e-6
+"""Smallest σ of a step in mm: one of 0, of pictures without noise, would have an infinite weight."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,7 +22,9 @@ STOP = ".stop"
 
 STEP = label("measuring sets")
 _LOOK_EVERY_S = 0.5
+"""How often in s it is looked whether a set is done or the batch is to stop."""
 _LET_END_S = 30.0
+"""How long in s the sets under way may take to stop, once they are told to."""
 FAULT = "set.fault"
 """Code of what a set failed by when the program was at fault, not the set."""
 _LONGEST_REASON = 200

@@ -14,6 +14,7 @@ from core.progress import Progress, silent
 
 STEP = label("preparing")
 _LOOK_EVERY_S = 0.2
+"""How often in s it is looked whether the second process is done."""
 _EXPECTED_FUNCTIONS = 240
 """Functions that a measurement needs; for the bar alone."""
 

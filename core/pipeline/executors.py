@@ -19,6 +19,7 @@ INSTALL = Message(
     "options.install_cluster", "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'"
 )
 CONNECT_S = 10.0
+"""How long in s a cluster's scheduler may take to answer."""
 
 
 @contextmanager

@@ -39,6 +39,7 @@ PAPER_PIXEL_UM = 1.67
 _PAPER_FOCAL = math.sqrt(FULL_MATRIX[0][0] * FULL_MATRIX[1][1])
 _PAPER_AXIS, _AXIS_DIRECTION = fan_axis(pencil_fan())
 _FAN_FOCUS_MM, _HAND_FOCUS_MM = 240.0, 550.0
+"""Distance from laser to focus, as below."""
 _HAND_BASELINE_MM = 240.0
 """As in the twin: `core.simulate.rig.paper_rig` and `core.simulate.sweep.hand_course`."""
 _UNDER_FAN_MM = TABLE_DEPTH_MM - float(WORK_POINT[2])

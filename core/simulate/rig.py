@@ -18,6 +18,7 @@ from core.model.arrays import Array
 # Sun et al. 2023.
 FULL_SIZE = (3840, 2748)
 FULL_MATRIX = ((4990.2635, 0.77900164, 1929.2399), (0.0, 4993.9024, 1279.1607), (0.0, 0.0, 1.0))
+"""As below: the camera matrix in pixels, with skew."""
 DISTORTION = (0.0815, -0.3809, 0.0042, -0.0004)
 """The paper's camera, §5.1: (width, height) in px, A in px, and k1, k2, p1, p2."""
 PUBLISHED_COEFFICIENTS = ((0.922, -7.397, -1.429), (1.321, -9.319, -0.992), (1.986, -12.52, -0.263))

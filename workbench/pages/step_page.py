@@ -16,6 +16,7 @@ from workbench.theme import icon
 from workbench.views.layouts import UpAndDown, holding, in_column
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
+"""Pixels of the panel at the side: at first, and at least."""
 LIST_HEIGHT, LIST_SHARE = 240, 0.36
 """A list of pictures at the side is at least so many pixels high, and takes this share of a higher page."""
 

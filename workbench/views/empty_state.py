@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QLabel, QPushButton, QVBoxLayout, QWidget
 from workbench.views.layouts import say
 
 _WIDEST, _MARGIN = 440, 12
+"""Pixels: the widest that the sentence gets, and what is left free beside it at least."""
 
 
 class EmptyState(QWidget):

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 NO_MARGINS = (0, 0, 0, 0)
+"""Pixels left, above, right and below."""
 STRETCH: Final = None
 """A part that is nothing but room."""
 

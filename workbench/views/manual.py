@@ -13,8 +13,11 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayou
 from workbench.language import tr
 
 SIZE = (860, 900)
+"""Width and height of the manual's window at first, in pixels."""
 MARGIN_PX = 24
+"""Room around the text."""
 ABOVE_HEADING_PX = 18
+"""Room above a heading, so that it is seen to belong to what follows."""
 _DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphinx alone
 
 

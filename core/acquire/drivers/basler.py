@@ -22,6 +22,7 @@ INSTALL = Message(
 )
 
 READY_MS = 200
+"""How long in ms a trigger waits until the camera can take it; then it is sent all the same."""
 
 TICKS = "GevTimestampTickFrequency"
 """Ticks per second of an older camera's clock; newer ones count nanoseconds."""

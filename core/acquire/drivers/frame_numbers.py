@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 _MOST_16_BIT = 0xFFFF
+"""The largest frame number of cameras that count in 16 bits; 0 or 1 follows."""
 
 
 class FrameNumbers:

@@ -33,6 +33,7 @@ GONE_AFTER_S = 2.0
 """So long after the last frame the producer is asked whether the camera is still there, and again as often."""
 
 _LIST_MS = 1000
+"""How long in ms the producer may search for the cameras that are connected."""
 _SEPARATOR = "#"
 
 

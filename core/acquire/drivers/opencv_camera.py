@@ -35,7 +35,9 @@ WAITING = 3
 """Frames kept for a reader that is a little late; older ones are dropped and counted."""
 
 JOIN_S = 3.0
+"""How long in s a driver may take to return from its last picture, before its thread is left alone."""
 FILE_RATE_HZ = 25.0
+"""Frames per second of a film or camera that does not state its rate."""
 
 CAMERA = Capabilities(exposure_ms=(0.001, 60_000.0), gain_db=(-40.0, 80.0), rate_hz=(0.0, 10_000.0))
 FILE = Capabilities(rate_hz=(0.0, 10_000.0))

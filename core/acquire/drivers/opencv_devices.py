@@ -10,6 +10,7 @@ from typing import Any
 import cv2
 
 NETWORK_TIMEOUT_MS = 5000
+"""How long in ms a network camera may take to open, and to send a frame: OpenCV's own limit is 30 s."""
 
 Capture = Any
 """What cv2.VideoCapture makes, or what stands in for it: isOpened, read, get, set, getBackendName, release."""

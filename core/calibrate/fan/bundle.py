@@ -34,9 +34,11 @@ from core.model.robust import huber_weights
 PRIOR_FREEDOM = 6.0
 """Belief in the stated uncertainties, counted in residuals: few residuals cannot overthrow them."""
 ROUNDS = 12
+"""How often at most the standard deviations are improved and all is solved again; it mostly settles earlier."""
 HUBER = 2.0
 """Stripes further than this many standard deviations from their plane lose weight."""
 CORNER_SCALE_RANGE = (0.3, 30.0)
+"""How far the stated σ of the target's corners may be scaled down or up by what the residuals say."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -35,6 +35,7 @@ _NAME, _TEXT = 80, 255
 """Longest name and remark that the format takes, in characters."""
 
 _VALID, _INVALID = 0, 255
+"""K0002, the attribute of a value, by AQDEF: valid; not valid."""
 
 
 def write_dfq(path: Path, content: ReportContent) -> None:

@@ -23,6 +23,7 @@ from core.messages import Message
 from core.scan.surface.cloud import Cloud
 
 METRES = 1e-3
+"""Metres in a millimetre: E57 states coordinates in metres."""
 _GPS_EPOCH = datetime(1980, 1, 6, tzinfo=UTC)
 _LEAP_SECONDS = 18
 """GPS time − UTC since 2017."""

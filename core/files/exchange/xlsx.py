@@ -29,6 +29,7 @@ from core.files.exchange.records import (
 from core.report.content import ReportContent
 
 _WIDEST = 60
+"""The widest column in characters: longer texts run on."""
 _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 """Of every part within the file: a zip has no other way to say that it has no time."""
 

@@ -56,6 +56,7 @@ ENCLOSED = "enclosed"
 _LEFT_BEHIND = re.compile(rf"^({re.escape(AUTOSAVE)}|{re.escape(LOCK)}|\.new|.*\.part)$")
 _COMPRESSED = (".png", ".jpg", ".jpeg", ".npz", ".pdf", ".zip", ".xlsx", ".3mf")
 _BLOCK = 1 << 20
+"""Bytes that are copied at a time: progress is told and cancelling is possible between two of them."""
 _RESERVED = re.compile(r"^(con|prn|aux|nul|com\d|lpt\d)(\..*)?$", re.IGNORECASE)
 
 

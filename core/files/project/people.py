@@ -37,6 +37,7 @@ ROLE_NAMES: Mapping[str, str] = {
     "administrator": label("administrator"),
 }
 SHORTEST_PIN = 4
+"""Fewest characters of a PIN."""
 _SCRYPT = {"n": 1 << 14, "r": 8, "p": 1, "dklen": 32}
 _JUDGED = ("inspect", "features", "report")
 _CHECKED = ConfigDict(extra="forbid", strict=True)

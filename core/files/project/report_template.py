@@ -37,6 +37,7 @@ from core.report.template import LANGUAGES, PAPERS, SECTIONS, Paper, ReportTempl
 _LARGEST_LOGO = 4_000_000
 """Bytes of a logo: it is in every report."""
 _LOGO_PIXELS = 20_000_000
+"""Largest logo in pixels: it is a few centimetres wide on paper, and more would only need memory."""
 
 
 _Line = Annotated[str, Field(max_length=200)]

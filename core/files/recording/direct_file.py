@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from core.files.atomic import write_beside, write_bytes
 
 BLOCK = 4096
+"""Bytes: what is written past the system's cache must begin and end at a multiple of the disk's block, 512 or 4096."""
 WORTH_BYTES = 2**20
 """Smaller files are written plainly: the disk would be waited for longer than a copy takes."""
 

@@ -139,6 +139,7 @@ def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
 
 
 _NO_VIEW = -1
+"""Stands in place of the number of corners where the target was not found."""
 
 
 def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:

@@ -30,7 +30,9 @@ from core.messages import Message, plural_message
 _OFF = "_off"
 _REFERENCE = "reference"
 _EXIF_TABLE, _TAKEN_AT, _TAKEN_AT_PART, _WRITTEN_AT = 0x8769, 0x9003, 0x9291, 0x0132
+"""Tags of Exif: its own table, DateTimeOriginal, SubsecTimeOriginal, and DateTime of the file."""
 _NAMES_SHOWN = 3
+"""So many pictures are named in a note."""
 _SWAPPED = 1.5
 """Pairs whose light is so many times stronger in the off picture are told as exchanged. In 44 real pairs of three
 cameras the strongest light was 1.1 to 30 times stronger in the on picture."""

@@ -28,6 +28,7 @@ POINT_COLUMNS = {
 """Columns of a cloud, in the camera frame, and how their values are written: lengths to 1 nm."""
 
 _ROWS_AT_ONCE = 20_000
+"""Points that are made into text at a time: a few megabytes, however large the cloud is."""
 
 
 def write_points_csv(path: Path, cloud: Cloud, progress: Progress = silent) -> None:

@@ -29,6 +29,7 @@ from core.messages import Command, Message
 NAME = "inspection.json"
 """Among the results of a scan."""
 SCHEMA = 1
+"""Version of the file's layout."""
 MEMBERS = {
     "points_*": whole(None),
     "residuals_*": real(None),

@@ -45,6 +45,7 @@ _TODO = Message(
     "advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET --out DIR")
 )
 _NO_FRAME = -1
+"""Stands in place of a frame's number where there is none."""
 _COMMON = ("sources", "cameras", "fans", "sweeps")
 _OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
 """Files of earlier versions call them as budgets do."""

@@ -27,6 +27,7 @@ from core.study.type1 import Type1Study, type1_study
 Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck
 
 SCHEMA = 1
+"""Version of the file's layout."""
 NAME = "study.json"
 STUDIES = "studies"
 """The folder of studies in a project."""

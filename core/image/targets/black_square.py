@@ -26,6 +26,7 @@ _END = 0.06
 """Share of an edge left out at either end, where the other edge's blur reaches it."""
 
 UNSUSPICIOUS_PX = 0.4
+"""Scatter of an edge's points about its line in pixels that is never suspected, however straight the others are."""
 LARGEST_SCATTER_PX = 3.0
 """Scatter of an edge's points about its line in pixels, not suspected up to here, and always from here on."""
 

@@ -27,6 +27,7 @@ MOST_UNEVEN = 0.35
 """Share of a square by which its sides may differ from the next one's: perspective and lens stay below it."""
 
 SYSTEMATIC_PX = 0.025
+"""As below, of pictures as they were taken."""
 SYSTEMATIC_SMOOTHED_PX = 0.015
 """What the pixels' phase leaves on perfect, sharp pictures, RMS per coordinate in windows of 23 pixels: as taken, and
 smoothed by 1 px. It grows with the root of a smaller window."""

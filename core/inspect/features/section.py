@@ -25,6 +25,7 @@ NEAREST = 0.05
 """Share of the points, the nearest to a pixel, from which its ray is known; at least FEWEST, as the fit has
 three unknowns and points on one stripe hardly differ."""
 FEWEST = 100
+"""Points from which a pixel's ray is known at least."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -14,6 +14,7 @@ from core.pipeline.live.display import Display
 from core.pipeline.live.events import Detail, LiveAnswered, LiveAsk, LiveEvent, LiveNotice, LiveTaken
 
 THUMBNAIL_PX = 240
+"""Width in pixels at most of the small picture that the window lists."""
 DISCARDED = "discarded"
 """Folder within the recording for what was put aside."""
 

@@ -34,6 +34,7 @@ MOST_DAMAGED = 20
 """So many damaged frames in a row end the recording."""
 
 _RATE_OVER_S = 2.0
+"""Over how many of the last seconds the rate of frames is counted."""
 
 
 class LiveLoop:

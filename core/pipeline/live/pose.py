@@ -19,6 +19,7 @@ from core.model import Camera
 from core.model.arrays import Array
 
 NUMBERING_UNCLEAR = -1
+"""Stands in place of a stripe's number where it is not clear which line it is of."""
 
 _THIN = 3  # points of a stripe for display
 

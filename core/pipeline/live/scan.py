@@ -35,6 +35,7 @@ MOVED_FRAMES = 5
 """After so many frames in a row that do not suit the reference it is said."""
 
 SAY_EVERY_S = 0.2
+"""How often in s it is told how many frames still wait for the disk."""
 STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
 

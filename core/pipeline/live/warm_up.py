@@ -34,9 +34,11 @@ from core.scan.surface.normals import with_normals
 PixelType = type[np.uint8] | type[np.uint16]
 
 FOCAL_PX, SIZE = 400.0, (320, 240)
+"""A small camera: focal length in pixels, and columns and rows. What is compiled does not depend on them."""
 CAMERA = Camera(SIZE, np.array([[FOCAL_PX, 0.0, 160.0], [0.0, FOCAL_PX, 120.0], [0.0, 0.0, 1.0]]))
 
 _BESIDE_MM = 150.0
+"""How far the laser is beside the camera."""
 _FAN_ANGLES = (0.20, 0.29, 0.38)
 """The fan's planes against the view, in rad, for a laser so far beside the camera."""
 _SWEEPS = 8
@@ -81,7 +83,9 @@ def _stripe(pi: Array, rays: Array, inverse_depth: Array) -> Array:
 
 
 _FAN_PX = (70.0, 84.0, 170.0)
+"""Rows in which the fan's stripes begin in the picture, in pixels."""
 _SWEEPS_PX = (90.0, 150.0, 210.0)
+"""Columns in which the sweeps' stripes begin, in pixels, one a frame."""
 
 
 Stages = tuple[Callable[[], None], ...]

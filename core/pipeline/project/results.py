@@ -24,6 +24,7 @@ from core.scan.preview.shown import SettledScan
 T = TypeVar("T")
 
 _PARTS = 6
+"""Of how many results progress is told; the last of all is read within a moment."""
 
 
 def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:

@@ -26,6 +26,7 @@ from core.stage_times import stage
 from core.threads import ordered_map
 
 FEWEST_VIEWS = 3
+"""Views a camera is solved from at least: three determine all five entries of its matrix (Zhang, 2000)."""
 
 
 def camera_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:

@@ -61,6 +61,7 @@ RIG_ID = 12
 """Hex digits of a rig's hash that name it."""
 
 _SAME_POINT_PX = 0.01
+"""A point of a centreline and one of the cloud that are nearer than this in the picture are the same."""
 
 Said = Callable[[ReportContent], ReportContent]
 """Adds what people say to what was measured."""

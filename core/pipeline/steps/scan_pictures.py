@@ -29,6 +29,7 @@ from core.scan.features.reference import notes_on_compression, quantile_referenc
 from core.stage_times import StageTimes
 
 FEWEST_FOR_QUANTILE = 3
+"""Frames from which the picture of the fan alone can be made: of three, the darkest third is one."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -33,6 +33,7 @@ HEADS: Mapping[str, str] = {
     "acceptance": "quantity;position;measured_mm;calibrated_mm;u_mm",
 }
 _ID = 12
+"""Hex digits of a study's hash that name it."""
 
 
 def keep_study(

@@ -28,6 +28,7 @@ DPI = 200
 """Pixels per inch of every picture on paper."""
 
 MM_PER_INCH = 25.4
+"""Matplotlib measures figures in inches."""
 
 NO_DATA = "#E9EDEF"
 """Ground of maps: shows where there is no value."""

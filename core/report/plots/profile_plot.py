@@ -14,6 +14,7 @@ from core.report.plots.figures import mixed, new_figure, plot_style
 FORMS = ("o", "^", "s", "v", "D")
 """Marks of the lines: told apart without colour."""
 _LEFT_MM, _FOOT_MM, _HEAD_MM, _BESIDE_MM, _BETWEEN_MM = 13.0, 9.0, 2.0, 44.0, 17.0
+"""Room in mm for the numbers at the left and below, above the plot, for the plot beside it, and between the two."""
 _MOST_MARKS = 120
 """Points of a line that are drawn: more lie over each other."""
 

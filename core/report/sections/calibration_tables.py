@@ -20,6 +20,7 @@ UNITS = {"alpha": "px", "beta": "px", "gamma": "px", "u0": "px", "v0": "px"}
 KINDS = {"camera": label("Camera"), "fan": label("Fixed laser (fan)")}
 
 HOURS_A_DAY = 24
+"""An age is told in days from two days on, else in hours."""
 
 
 def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table:

@@ -17,6 +17,7 @@ if TYPE_CHECKING:  # a window that starts reads scenarios, and loads no compiled
 LASER_AT = (1.0, 0.12, 0.06)
 """Response of red, green and blue sites to light of 650 nm over that of the red ones."""
 FULL_GREY = 255.0
+"""Grey level of a full pixel of the simulated 8-bit sensor."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -33,7 +33,9 @@ from core.simulate.scene.targets import fan_centres, fan_light, room_shade, spec
 from core.simulate.sweep import sweep_range
 
 CAMERA_RESTS, CAMERA_REST_S, CAMERA_MOVE_S = 16, 1.2, 1.3
+"""Of the camera target: poses, time in s of a rest at least, and of a move between two."""
 PLANE_RESTS, PLANE_REST_S, PLANE_MOVE_S = 10, 2.5, 1.3
+"""The same of the plane target."""
 CHECK_RESTS = 5
 """Poses at which a plate rests, more than a calibration asks for; times in s of a rest, at least, and of a move."""
 

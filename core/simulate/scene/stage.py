@@ -17,6 +17,7 @@ from core.simulate.scene.scene import Material, Mesh, Scene, Sphere
 WORK_POINT = np.array([0.0, 54.0, 510.0])
 """Point (3,) in mm on the fan's middle line before the camera: objects are put under it."""
 TABLE_DEPTH_MM = 560.0
+"""Depth of the table before the camera, on its axis."""
 TABLE_TILT_DEG = (3.0, -2.0, 5.0)
 """Depth of the table in mm, and how it is tilted and turned about x, y and z: no table is quite straight."""
 STEP_HEIGHTS_MM = (40.0, 50.0, 60.0, 70.0)

@@ -26,6 +26,7 @@ from workbench.views.lists.view_list import ListRow, ViewList
 from workbench.views.plots.bars import Bar, BarsWithThreshold
 
 BARS_HEIGHT = 150
+"""Pixels of the bars; the picture takes the rest."""
 
 
 class CalibrationPage(StepPage):

@@ -16,6 +16,7 @@ from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views.colours import CORNER_LEFT_OUT
 
 FACTORS = (1, 30, 100, 300, 1000)
+"""How many times longer than true the residuals can be drawn: they are tenths and hundredths of a pixel."""
 
 
 class ViewTab(PictureTab):

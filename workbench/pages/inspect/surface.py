@@ -39,6 +39,7 @@ PROPOSALS = ("proposed 1", "proposed 2")
 """Names of the highlights of faces that were clicked."""
 
 DRAW_WITHIN_MS = 60
+"""How long in ms a change may wait to be drawn together with those that follow it, as of a slider that is moved."""
 
 TOGETHER = "\u2060"
 """Between characters that no line may be broken between (the word joiner)."""

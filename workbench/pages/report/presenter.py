@@ -19,6 +19,7 @@ from workbench.work import jobs
 from workbench.work.tasks import Task
 
 PAGE_WIDTH_PX = 1400
+"""Pixels across a page as it is drawn for the window, which scales it to the zoom."""
 
 EXPORT_FOLDER = "export folder"
 

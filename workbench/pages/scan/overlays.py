@@ -34,6 +34,7 @@ GAP_PX = 4.0
 """Points farther apart than this are not joined."""
 
 _UNKNOWN = -1
+"""Stands in place of a line's number where it is not known."""
 _CROSSINGS = ("good", "weak", "left out")
 
 

@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QLineEdit, QPlainTextEdit
 from workbench.views.common import SpinBox
 
 _STEPPING_MS = 400
+"""How long in ms after the last step of its arrows or the wheel a number is told: one edit, not one a step."""
 
 
 def _is_for_the_window(event: QEvent, typing: bool) -> bool:

@@ -20,6 +20,7 @@ from workbench.views.forms.editors import (
 )
 
 _EDITOR_WIDTH = 132
+"""Pixels of a field at least."""
 
 
 class SettingsForm(QWidget):

@@ -201,6 +201,7 @@ CHECK_WIDTH = 30
 """A click so near to the left edge means the check box."""
 
 _PAD, _BAR = 4, 4
+"""Pixels: room beside a text, and height of the bar that shows a value."""
 
 
 class RowDelegate(QStyledItemDelegate):

@@ -27,10 +27,12 @@ WIDEST_PX, NARROWEST_PX = 1000, 300
 """A page that fits is never wider or narrower than this."""
 
 ZOOM_STEP, LEAST_ZOOM, MOST_ZOOM = 1.2, 0.5, 3.0
+"""Factor of one step of the zoom, and its bounds; 1 is a page that fits the width of the view."""
 SHARPEN_AFTER_MS = 80
 """While the size changes pages are drawn quickly; they get sharp when it has stood still for so long."""
 
 GAP_PX = 14
+"""Pixels between pages and around them."""
 
 
 class PageScroll(QWidget):

@@ -16,6 +16,7 @@ from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import in_column
 
 _TICK_PIXELS = 11
+"""Size in pixels of the letters at the axes."""
 
 
 class Axis(pg.AxisItem):  # type: ignore[misc]

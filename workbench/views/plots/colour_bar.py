@@ -13,6 +13,7 @@ from workbench.views.plots.base import small_font
 from workbench.views.scene.colours import ticks
 
 _BAR = 14
+"""Width of the bar in pixels."""
 
 
 class ColourBar(QWidget):

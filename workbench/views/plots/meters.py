@@ -22,7 +22,9 @@ STAYS_MS = 1000
 """Shortest time a hint stays."""
 
 _BAR = 8
+"""Height of the bar in pixels."""
 _NEEDLE = 5
+"""Half the width of the needle's tip in pixels."""
 
 
 class Meter(QWidget):

@@ -15,7 +15,9 @@ from workbench.views.plots.base import Plot, written
 from workbench.views.scene.colours import nice_step
 
 FACTORS = (5, 10, 20, 50, 100, 200, 500, 1000, 2000, 5000)
+"""How many times longer than true the vectors can be drawn."""
 _SHARE = 0.05
+"""Share of the picture's width that a long vector (90 % are shorter) gets where the factor is chosen by itself."""
 
 
 class ResidualPlot(Plot):

@@ -17,6 +17,7 @@ from workbench.views.plots.base import Plot, tinted, written
 
 _DASH = Qt.PenStyle.DashLine
 _MOST_BINS = 60
+"""Bars of a histogram at most."""
 _WORDS = 128
 """Screen pixels at the right of a run chart for what its lines mean."""
 

@@ -11,6 +11,7 @@ from workbench.views.scene.colours import Rgb, nice_step
 from workbench.views.scene.contents import Labels, Lines
 
 GREY: Rgb = (128, 134, 142)
+"""Red, green and blue of the grid: seen on light and dark ground."""
 PYRAMID: Rgb = (74, 134, 220)
 """Of the grid and of the camera: seen on the light and on the dark ground."""
 

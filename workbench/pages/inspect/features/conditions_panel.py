@@ -21,6 +21,7 @@ from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import in_column, muted, say
 
 LONGEST = 5000.0
+"""The longest master in mm that can be entered."""
 
 
 class ConditionsPanel(QWidget):

@@ -13,6 +13,7 @@ from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 
 MOST_PX = 100_000.0
+"""Furthest place in a picture in pixels that can be entered, to either side."""
 
 _LINE = tuple(
     NumberField(f"line {place} {axis}", title, help, "px", -MOST_PX, MOST_PX, 1, 10.0)

@@ -15,6 +15,7 @@ from workbench.work import jobs
 
 RECENT = "inspection templates"
 MOST_RECENT = 6
+"""So many templates that were used are offered again."""
 
 
 class InspectTemplates:

@@ -16,7 +16,9 @@ from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, in_row, muted, say
 
 FORM_WIDTH = 300
+"""Pixels of the fields; the table beside them takes the rest."""
 LONGEST = 5000.0
+"""The largest value in mm that can be entered."""
 
 
 class StudyEditor(QWidget):

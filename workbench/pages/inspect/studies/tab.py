@@ -28,6 +28,7 @@ from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 
 LIST_HEIGHT = 150
+"""Pixels of the list of studies; what does not fit is scrolled to."""
 
 
 class StudiesTab(QWidget):

@@ -1,0 +1,77 @@
+"""Rules of the house that the syntax tree shows: numbers say what they are."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[1]
+
+
+def modules(*folders: str) -> Iterator[tuple[str, str, ast.Module]]:
+    """Path, text and syntax tree of every module in some folders."""
+    for folder in folders:
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            text = path.read_text(encoding="utf-8")
+            yield path.relative_to(ROOT).as_posix(), text, ast.parse(text)
+
+
+def is_number(value: ast.expr | None) -> bool:
+    """Whether it is a number, or several in a row."""
+    match value:
+        case ast.Constant():
+            return type(value.value) in (int, float)
+        case ast.UnaryOp():
+            return is_number(value.operand)
+        case ast.BinOp():
+            return is_number(value.left) and is_number(value.right)
+        case ast.Tuple():
+            return bool(value.elts) and all(map(is_number, value.elts))
+    return False
+
+
+def names_of(statement: ast.stmt) -> list[str]:
+    """The constants that a statement makes."""
+    targets = statement.targets if isinstance(statement, ast.Assign) else [getattr(statement, "target", None)]
+    names = [node.id for target in targets if target for node in ast.walk(target) if isinstance(node, ast.Name)]
+    return [name for name in names if name.strip("_").isupper()]
+
+
+def unexplained(text: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Line and name of every constant of numbers with neither a docstring below it nor a comment at or above it."""
+    lines = ["", *text.splitlines()]
+    for statement, following in zip(tree.body, [*tree.body[1:], None], strict=True):
+        if not isinstance(statement, ast.Assign | ast.AnnAssign) or not is_number(statement.value):
+            continue
+        said = isinstance(following, ast.Expr) and isinstance(getattr(following.value, "value", None), str)
+        first, last = statement.lineno - 1, statement.end_lineno or statement.lineno
+        if not said and not any("#" in line for line in lines[first : last + 1]):
+            yield from ((statement.lineno, name) for name in names_of(statement)[:1])
+
+
+def test_every_number_at_the_top_of_a_module_says_what_it_is():
+    found = [
+        f"{path}:{line} {name}"
+        for path, text, tree in modules("core", "workbench")
+        for line, name in unexplained(text, tree)
+    ]
+    assert found == [], "say its unit and its reason beside it"
+
+
+@pytest.mark.parametrize(
+    ("source", "named"),
+    [
+        ("A_MM = 3.0", ["A_MM"]),
+        ("_A, _B = 1, -2", ["_A"]),
+        ("A: float = 2 * 3\nB = 'text'", ["A"]),
+        ('A = 3\n"""Why."""', []),
+        ("A = 3  # why", []),
+        ("# why\nA = 3", []),
+        ("a = 3\nA = f(3)", []),
+    ],
+)
+def test_a_number_is_explained_by_a_docstring_below_or_a_comment(source, named):
+    assert [name for _, name in unexplained(source, ast.parse(source))] == named
