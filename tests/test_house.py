@@ -1,4 +1,4 @@
-"""Rules of the house that the syntax tree shows: numbers say what they are."""
+"""Rules of the house that the syntax tree shows: numbers say what they are, functions have few arguments."""
 
 from __future__ import annotations
 
@@ -9,6 +9,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[1]
+MOST_PARAMETERS = 8
+COMMANDS = ("command", "callback")
+"""Decorators of typer's: the parameters of such a function are the options of a command line."""
 
 
 def modules(*folders: str) -> Iterator[tuple[str, str, ast.Module]]:
@@ -75,3 +78,20 @@ def test_every_number_at_the_top_of_a_module_says_what_it_is():
 )
 def test_a_number_is_explained_by_a_docstring_below_or_a_comment(source, named):
     assert [name for _, name in unexplained(source, ast.parse(source))] == named
+
+
+def is_command(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
+    called = [one.func for one in function.decorator_list if isinstance(one, ast.Call)]
+    return any(isinstance(one, ast.Attribute) and one.attr in COMMANDS for one in called)
+
+
+def test_no_function_has_more_than_eight_parameters():
+    found = []
+    for path, _, tree in modules("core", "workbench", "tests"):
+        for node in ast.walk(tree):
+            if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_command(node):
+                all_of_them = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
+                taken = [one for one in all_of_them if one.arg not in ("self", "cls")]
+                if len(taken) > MOST_PARAMETERS:
+                    found.append(f"{path}:{node.lineno} {node.name} has {len(taken)}")
+    assert found == [], "put together what belongs together"

@@ -73,17 +73,15 @@ def options(
     *,
     camera: CameraOptions = CameraOptions(),
     part: str = "",
-    stripe_width: float = 0.0,
-    contrast: float = 0.0,
+    stripe: StripeSettings | None = None,
     adjust_camera: bool = False,
     accept_few_poses: bool = False,
     channel: ChannelName | None = None,
 ) -> Options:
     """The pipeline's options from the command line's; InputError if one is absurd.
 
-    Width and contrast are those of all stripes, in the scan and on the plane target.
+    `stripe` is that of all stripes, in the scan and on the plane target.
     """
-    stripe = _stripe(stripe_width, contrast)
     return Options(
         method,
         sigma_cut,
@@ -102,7 +100,7 @@ def camera_options(skew: bool | None, k3: bool) -> CameraOptions:
     return CameraOptions(skew=skew, k3=k3)
 
 
-def _stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
+def stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
     """Width and contrast of stripes, None where they are to be chosen; InputError where only one is given."""
     if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
         raise InputError(

@@ -64,8 +64,7 @@ def run(
             sigma_cut,
             camera=measuring.camera_options(skew, k3),
             part=part,
-            stripe_width=stripe_width,
-            contrast=contrast,
+            stripe=measuring.stripe(stripe_width, contrast),
             adjust_camera=adjust_camera,
             accept_few_poses=accept_few_poses,
             channel=channel,
@@ -97,7 +96,7 @@ def batch(
     """Measure many recording sets side by side, each into a folder of its name in DIR."""
     from core.cli import measuring
 
-    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
+    options = measuring.options(method, sigma_cut, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
     with bar() as progress:
         results = measuring.run_sets(sets, out, executor, workers, options, progress)
     measuring.show_sets(results, as_json=json)
@@ -133,8 +132,7 @@ def planes(
     from core.cli import measuring
 
     chosen = measuring.options(
-        stripe_width=stripe_width,
-        contrast=contrast,
+        stripe=measuring.stripe(stripe_width, contrast),
         adjust_camera=adjust_camera,
         accept_few_poses=accept_few_poses,
         channel=channel,
@@ -172,7 +170,7 @@ def check(
         measuring.undo_adjusting(folder, out).show(as_json=json)
         return
     if adjust:
-        options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
+        options = measuring.options(stripe=measuring.stripe(stripe_width, contrast), channel=channel)
         with bar() as progress:
             shown = measuring.run_adjusting(folder, out, options, progress)
         shown.show(as_json=json)
@@ -181,7 +179,7 @@ def check(
         past, shown = measuring.rig_history(folder, out)
         shown.show(as_json=json)
         raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
-    options = measuring.options(stripe_width=stripe_width, contrast=contrast, channel=channel)
+    options = measuring.options(stripe=measuring.stripe(stripe_width, contrast), channel=channel)
     with bar() as progress:
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
@@ -220,7 +218,7 @@ def scan(
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import measuring
 
-    options = measuring.options(method, sigma_cut, stripe_width=stripe_width, contrast=contrast, channel=channel)
+    options = measuring.options(method, sigma_cut, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
     with bar("scan") as progress:
         watched = measuring.timed(progress, profile)
@@ -258,7 +256,7 @@ def profile(
     """Measure a thickness with the fixed lines alone, no hand-held laser: by the step in each picture of SET/scan."""
     from core.cli import measuring
 
-    options = measuring.options(part=part, stripe_width=stripe_width, contrast=contrast, channel=channel)
+    options = measuring.options(part=part, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
     options = measuring.leaving_out(options, folder, exclude)
     with bar() as progress:
         result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)

@@ -31,6 +31,10 @@ class Noise:
     corner_px: float = 0.02
     stripe_px: float = 0.06
     grain_px: float = 2.0
+    flatness_mm: float = 0.0
+    """How far each stripe's place on the plate is off its plane."""
+    scatter_mm: float = 0.0
+    """How far the plate itself is from where its points say, in the middle and by either tilt at its edges."""
 
 
 QUIET = Noise(1e-6, 1e-6, 0.0)
@@ -116,15 +120,12 @@ def features(
     *,
     pis: np.ndarray = PAPER,
     points: np.ndarray = SQUARE,
-    flatness_mm: float = 0.0,
     shape: BoardShape | None = None,
-    scatter_mm: float = 0.0,
     bow: float = 0.0,
 ) -> list[PoseFeatures]:
     """What pictures of the poses would show; the stripes in an order that tells nothing.
 
-    `flatness_mm` is how far each stripe's place on the plate is off its plane, `scatter_mm` how far the plate itself is
-    from where its points say, in the middle and by either tilt at its edges. `bow` is the light's, as of `stripe`.
+    `bow` is the light's, as of `stripe`.
     """
     rng = np.random.default_rng(seed)
     found = []
@@ -133,9 +134,9 @@ def features(
         uv = CAMERA.project_pose(pose, seen) + rng.normal(0, noise.corner_px, (len(points), 2))
         view = TargetView(points, uv, np.full(len(points), noise.corner_px), f"p{number}")
         lines = []
-        truly = displaced(pose, *rng.normal(0, scatter_mm, 3)) if scatter_mm else pose
+        truly = displaced(pose, *rng.normal(0, noise.scatter_mm, 3)) if noise.scatter_mm else pose
         for pi in pis:
-            bent = Pose(truly.rotation, truly.translation + truly.rotation[:, 2] * rng.normal(0, flatness_mm))
+            bent = Pose(truly.rotation, truly.translation + truly.rotation[:, 2] * rng.normal(0, noise.flatness_mm))
             lines.append(stripe(pi, bent, noise, rng, shape=shape, bow=bow))
         rng.shuffle(lines)
         found.append(PoseFeatures(f"p{number}", view, tuple(lines)))

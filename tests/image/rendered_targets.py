@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from functools import lru_cache
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -9,6 +10,16 @@ import numpy as np
 from core.model import Camera, Pose
 
 Pattern = Callable[[np.ndarray, np.ndarray], np.ndarray]
+
+
+class Noise(NamedTuple):
+    """Of a sensor: standard deviation in grey levels, and what it is drawn from."""
+
+    grey: float
+    seed: int = 0
+
+
+NO_NOISE = Noise(0)
 
 
 def rig(factor: float = 0.25) -> Camera:
@@ -39,16 +50,14 @@ def render(
     pattern: Pattern,
     *,
     blur: float = 0.7,
-    dark: float = 30,
-    light: float = 200,
-    noise: float = 0,
+    grey: tuple[float, float] = (30, 200),
+    noise: Noise = NO_NOISE,
     stripes=(),
-    dtype=np.uint8,
-    seed: int = 0,
     samples: int = 6,
 ) -> np.ndarray:
     """The picture of `pattern` (1 light, 0 dark, of target x, y in mm) at pose `where`.
 
+    `grey` are the levels of dark and light.
     `stripes` are (a, b, c, width, height): Gaussian lines a·u + b·v = c of light added in the picture.
     """
     u, v, xy, jacobian = _pixels(camera.image_size, camera.matrix.tobytes(), camera.distortion.tobytes())
@@ -67,12 +76,12 @@ def render(
     offsets = spread - spread.mean(axis=0)
     share[edge] = np.mean([seen(xy[edge] + jacobian[edge] @ offset) for offset in offsets], axis=0)
     share = share.reshape(u.shape)
-    scale = 1 if dtype is np.uint8 else 256
+    dark, light = grey
     picture = cv2.GaussianBlur(dark + (light - dark) * share, (0, 0), blur)
     for a, b, c, sigma, peak in stripes:
         picture = picture + peak * np.exp(-0.5 * ((a * u + b * v - c) / sigma) ** 2)
-    picture = picture * scale + np.random.default_rng(seed).normal(0, noise * scale, picture.shape)
-    return np.rint(np.clip(picture, 0, np.iinfo(dtype).max)).astype(dtype)
+    picture = picture + np.random.default_rng(noise.seed).normal(0, noise.grey, picture.shape)
+    return np.rint(np.clip(picture, 0, 255)).astype(np.uint8)
 
 
 def checkers(columns: int, rows: int, square: float) -> Pattern:

@@ -86,7 +86,7 @@ def test_covariance_is_that_of_repeated_calibrations(flatness_mm, corner_px, see
     tied, free = [], []
     for number in range(10):
         where = poses(8, seed + number)
-        noisy = features(where, Noise(corner_px), seed + number, flatness_mm=flatness_mm)
+        noisy = features(where, Noise(corner_px, flatness_mm=flatness_mm), seed + number)
         result = fit_fan(noisy, CAMERA, FanOptions(3, ALPHA, "always"))
         tied.append(normalised(result))
         error = (result.free.pis - PAPER).ravel()

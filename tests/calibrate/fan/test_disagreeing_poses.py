@@ -16,7 +16,7 @@ from tests.calibrate.fan_scenes import CAMERA, GRID, PAPER, Noise, bowed, featur
 
 
 def scattered(seed: int, scatter_mm: float, lines: int = 3, count: int = 14) -> FanCalibration:
-    seen = features(poses(count, seed), Noise(), seed, points=GRID, pis=PAPER[:lines], scatter_mm=scatter_mm)
+    seen = features(poses(count, seed), Noise(scatter_mm=scatter_mm), seed, points=GRID, pis=PAPER[:lines])
     return fit_fan(seen, CAMERA, THREE if lines == 3 else FanOptions(lines))
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.image.targets import BlackSquare, TargetNotFound, detect
-from tests.image.rendered_targets import checkers, circles, pose, render, rig, square
+from tests.image.rendered_targets import Noise, checkers, circles, pose, render, rig, square
 
 SQUARE = BlackSquare(60.0)
 CAMERA = rig(1 / 6)
@@ -33,7 +33,7 @@ def test_corners_of_a_noise_free_square_are_true_to_two_hundredths_of_a_pixel(na
 def test_corners_are_unbiased_under_noise_and_sigma_is_the_size_of_the_errors():
     errors, sigmas = [], []
     for seed in range(8):
-        picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, noise=4, samples=3, seed=seed)
+        picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, noise=Noise(4, seed), samples=3)
         view = detect(SQUARE, picture, camera=CAMERA)
         errors.append(view.uv - corners(POSES["tilted"]))
         sigmas.append(view.sigma)
@@ -46,7 +46,7 @@ def test_covariance_knows_the_middles_of_the_edges_better_than_their_ends():
     """A straight edge fitted to points all along it: its turn moves the two corners against each other."""
     middles, turns = [], []
     for seed in range(8):
-        picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, noise=4, samples=3, seed=seed)
+        picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, noise=Noise(4, seed), samples=3)
         view = detect(SQUARE, picture, camera=CAMERA)
         errors, blocks = view.uv - corners(POSES["tilted"]), view.covariance.reshape(4, 2, 4, 2)
         for a, b in ((k, (k + 1) % 4) for k in range(4)):
@@ -64,7 +64,7 @@ def test_covariance_knows_the_middles_of_the_edges_better_than_their_ends():
 
 
 def test_laser_stripes_across_the_square_hardly_move_its_corners():
-    picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, stripes=STRIPES, noise=1)
+    picture = render(CAMERA, POSES["tilted"], square(60.0), blur=0.9, stripes=STRIPES, noise=Noise(1))
     view = detect(SQUARE, picture, camera=CAMERA)
     assert np.abs(view.uv - corners(POSES["tilted"])).max() < 0.05
 
@@ -87,7 +87,7 @@ def test_corners_run_clockwise_from_the_top_left_however_the_square_is_turned():
 
 
 def test_sixteen_bit_and_dim_pictures_are_measured_alike():
-    picture = render(CAMERA, POSES["tilted"], square(60.0), noise=1)
+    picture = render(CAMERA, POSES["tilted"], square(60.0), noise=Noise(1))
     uv = detect(SQUARE, picture, camera=CAMERA).uv
     assert np.abs(detect(SQUARE, picture.astype(np.uint16) * 16, camera=CAMERA).uv - uv).max() < 0.002
     assert np.abs(detect(SQUARE, picture // 8, camera=CAMERA).uv - uv).max() < 0.05
@@ -95,7 +95,7 @@ def test_sixteen_bit_and_dim_pictures_are_measured_alike():
 
 def test_an_over_exposed_plate_raises_sigma_by_the_shift_it_may_cause():
     good = detect(SQUARE, render(CAMERA, POSES["tilted"], square(60.0), blur=1.5), camera=CAMERA)
-    picture = render(CAMERA, POSES["tilted"], square(60.0), blur=1.5, light=340)
+    picture = render(CAMERA, POSES["tilted"], square(60.0), blur=1.5, grey=(30, 340))
     view = detect(SQUARE, picture, camera=CAMERA)
     errors = np.linalg.norm(view.uv - corners(POSES["tilted"]), axis=1)
     assert view.sigma.min() > 5 * good.sigma.max()
@@ -125,13 +125,13 @@ def test_an_edge_under_a_stripe_along_it_is_refused_not_measured_wrong():
     ],
 )
 def test_another_target_is_not_taken_for_a_square(pattern, sentence):
-    picture = render(CAMERA, POSES["tilted"], pattern, samples=3, noise=1)
+    picture = render(CAMERA, POSES["tilted"], pattern, samples=3, noise=Noise(1))
     with pytest.raises(TargetNotFound, match=sentence):
         detect(SQUARE, picture, "pose3.png")
 
 
 def test_a_square_cut_off_by_the_picture_is_told_from_no_square():
-    picture = render(CAMERA, POSES["tilted"], square(60.0), samples=3, noise=1)
+    picture = render(CAMERA, POSES["tilted"], square(60.0), samples=3, noise=Noise(1))
     middle = int(corners(POSES["tilted"])[:, 0].mean())
     with pytest.raises(TargetNotFound, match="only a part of the black square is in the picture"):
         detect(SQUARE, np.ascontiguousarray(picture[:, :middle]))

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from core.image.targets import Charuco, TargetNotFound, detect
-from tests.image.rendered_targets import board_picture, pose, render, rig
+from tests.image.rendered_targets import Noise, board_picture, pose, render, rig
 
 BOARD = Charuco(9, 7, 10.0, 7.0, "4X4_50")
 CAMERA = rig(1 / 4)
@@ -21,7 +21,7 @@ def printed(legacy=False, rows=7):
 
 @pytest.fixture(scope="module")
 def picture():
-    return render(CAMERA, WHERE, printed(), noise=1, samples=4)
+    return render(CAMERA, WHERE, printed(), noise=Noise(1), samples=4)
 
 
 def errors(view):

@@ -6,7 +6,7 @@ import pytest
 
 from core.image.targets import Checkerboard, TargetNotFound, checkerboard, detect
 from core.model import Camera
-from tests.image.rendered_targets import checkers, pose, render, rig
+from tests.image.rendered_targets import Noise, checkers, pose, render, rig
 from tests.shared import REAL_SETS
 
 BOARD = Checkerboard(9, 6, 10.0)
@@ -21,7 +21,7 @@ LEFT13 = REAL_SETS / "opencv-left13"
 
 @pytest.fixture(scope="module")
 def tilted():
-    return render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), noise=2, samples=3)
+    return render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), noise=Noise(2), samples=3)
 
 
 @pytest.mark.parametrize("name", POSES)
@@ -42,7 +42,7 @@ def test_large_squares_are_smoothed_and_twice_as_true():
 
 def test_windows_grow_with_the_squares_and_bring_truer_corners(monkeypatch):
     where = pose(20, -10, 5, (40, 25), 200)
-    picture = render(CAMERA, where, checkers(9, 6, 10.0), blur=0.9, noise=4, samples=3, seed=1)
+    picture = render(CAMERA, where, checkers(9, 6, 10.0), blur=0.9, noise=Noise(4, 1), samples=3)
     errors = []
     for largest in (checkerboard.HALF_WINDOW, checkerboard.LARGEST_HALF_WINDOW):
         monkeypatch.setattr(checkerboard, "LARGEST_HALF_WINDOW", largest)
@@ -66,7 +66,7 @@ def test_windows_stay_small_where_the_lens_bends_edges():
 def test_sigma_is_the_size_of_the_errors_under_noise():
     ratios = []
     for seed in range(3):
-        picture = render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), blur=0.9, noise=5, samples=3, seed=seed)
+        picture = render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), blur=0.9, noise=Noise(5, seed), samples=3)
         view = detect(BOARD, picture)
         errors = view.uv - CAMERA.project_pose(POSES["tilted"], BOARD.points)
         ratios.append(np.mean(errors**2 / view.sigma[:, None] ** 2))
@@ -89,7 +89,7 @@ def test_sixteen_bit_and_dim_pictures_give_the_same_corners(tilted):
 
 def test_laser_stripes_across_the_board_do_not_hide_it():
     stripes = [(0.2, 1, c, 1.2, 120) for c in (390, 440, 490)]
-    picture = render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), stripes=stripes, noise=1, samples=3)
+    picture = render(CAMERA, POSES["tilted"], checkers(9, 6, 10.0), stripes=stripes, noise=Noise(1), samples=3)
     errors = np.linalg.norm(detect(BOARD, picture).uv - CAMERA.project_pose(POSES["tilted"], BOARD.points), axis=1)
     assert np.median(errors) < 0.3  # most windows hold a piece of stripe
     assert np.max(errors) < 6

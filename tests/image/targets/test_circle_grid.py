@@ -6,7 +6,7 @@ import pytest
 
 from core.image.targets import CircleGrid, TargetNotFound, camera_shift, detect
 from core.image.targets.ellipses import centre_shift
-from tests.image.rendered_targets import circles, pose, render, rig
+from tests.image.rendered_targets import Noise, circles, pose, render, rig
 from tests.shared import REAL_SETS
 
 GRID = CircleGrid(7, 7, 12.0)
@@ -25,7 +25,7 @@ def nearest(view, true):
 @pytest.mark.parametrize("camera", [CAMERA, None], ids=["rays", "pixels"])
 def test_centres_are_true_although_perspective_shifts_the_ellipses(camera):
     errors = nearest(
-        detect(GRID, render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=0.5), camera=camera),
+        detect(GRID, render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=Noise(0.5)), camera=camera),
         CAMERA.project_pose(STEEP, GRID.points),
     )
     assert np.sqrt(np.mean(errors**2)) < 0.015
@@ -47,12 +47,12 @@ def test_the_shift_of_an_ellipse_is_that_of_the_middle_of_its_widest_chord():
 def test_an_asymmetric_grid_is_found_in_its_order():
     grid = CircleGrid(4, 11, 8.0, asymmetric=True)
     where = pose(10, -15, 92, (28, 40), 420)
-    view = detect(grid, render(CAMERA, where, circles(grid.points, 3.0), noise=1))
+    view = detect(grid, render(CAMERA, where, circles(grid.points, 3.0), noise=Noise(1)))
     assert np.abs(view.uv - CAMERA.project_pose(where, grid.points)).max() < 0.06
 
 
 def test_a_circle_under_a_stripe_is_kept_true_or_left_out():
-    picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=0.5, stripes=[(0.3, 1, 330, 1.5, 150)])
+    picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=Noise(0.5), stripes=[(0.3, 1, 330, 1.5, 150)])
     view = detect(GRID, picture)
     assert len(view.uv) >= 40
     assert np.abs(nearest(view, CAMERA.project_pose(STEEP, GRID.points))).max() < 0.15

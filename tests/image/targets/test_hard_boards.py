@@ -6,7 +6,7 @@ import pytest
 from core.image.targets import Checkerboard, TargetNotFound, detect
 from core.image.targets.checkerboard import detect_checkerboard
 from core.model import Camera
-from tests.image.rendered_targets import checkers, pose, render
+from tests.image.rendered_targets import Noise, checkers, pose, render
 from tests.shared import REAL_SETS
 
 BOARD = Checkerboard(9, 6, 10.0)
@@ -16,8 +16,8 @@ LEFT13 = REAL_SETS / "opencv-left13"
 
 
 def seen(where, board=BOARD, seed=1, **how):
-    how = {"noise": 2.0, "samples": 2} | how
-    return render(CAMERA, where, checkers(board.columns, board.rows, board.square_mm), seed=seed, **how)
+    how = {"noise": Noise(2.0, seed), "samples": 2} | how
+    return render(CAMERA, where, checkers(board.columns, board.rows, board.square_mm), **how)
 
 
 def cluttered(picture, keep, seed=2, amplitude=120, size=6):
@@ -46,7 +46,7 @@ def test_a_small_board_far_away():
 
 def test_a_small_board_among_clutter_with_more_saddles_than_the_quick_search_looks_at():
     where = pose(20, -10, 14, MIDDLE, 1000)
-    picture = cluttered(seen(where, dark=90, light=150), box_of(where))
+    picture = cluttered(seen(where, grey=(90, 150)), box_of(where))
     with pytest.raises(TargetNotFound):
         detect(BOARD, picture, thorough=False)
     assert errors(detect(BOARD, picture), where).max() < 0.5
