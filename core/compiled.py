@@ -45,7 +45,7 @@ _IMPORT = b"from core.compiled import"
 """What a file with compiled functions says."""
 _IMPORTED = re.compile(rb"^from (core[\w.]*) import", re.MULTILINE)
 _SWEPT_AFTER_S = 14 * 24 * 3600.0
-"""Saved code of other versions is removed once nobody has used it for so long, in s."""
+"""Saved code of other versions is removed once it has not been used for so long, in s."""
 
 os.environ["NUMBA_DISABLE_ERROR_MESSAGE_HIGHLIGHTING"] = "1"  # it colours what it only tries: a twentieth of the time
 
@@ -128,7 +128,7 @@ def _folder(name: str) -> Path:
 
 
 def _sweep(base: Path) -> None:
-    """Remove the saved code that nobody has used for long."""
+    """Remove the saved code that has not been used for long."""
     for old in base.iterdir():
         if time.time() - old.stat().st_mtime > _SWEPT_AFTER_S:
             shutil.rmtree(old, ignore_errors=True)

@@ -118,7 +118,7 @@ def plural_message(code: str, one: str, many: str, /, *, n: int, **values: Any) 
 
 
 def plain(text: str) -> Message:
-    """A text that is no message of this program's: somebody's words, another program's, an older file's."""
+    """A text that is no message of this program's: what a person typed, another program's words, an older file's."""
     return Message("", text.replace("{", "{{").replace("}", "}}"))
 
 

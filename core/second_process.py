@@ -179,7 +179,7 @@ def _receive(pipe: BinaryIO | Any) -> bytes:
 
 
 def _serve(modules: Sequence[str]) -> None:
-    """The second process: do one call after another, until nobody is there to ask for one."""
+    """The second process: do one call after another, until the first process has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches both; the first one ends this one
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # a library that prints must not be taken for an answer

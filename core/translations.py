@@ -23,7 +23,7 @@ if TYPE_CHECKING:  # costs 0.05 s, and English needs none of it
     from babel import Locale
 
 PSEUDO = "en-XA"
-"""A language nobody speaks: English with accents, longer, in brackets. It shows texts that are in no catalogue, and
+"""A pseudo-language: English with accents, longer, in brackets. It shows texts that are in no catalogue, and
 texts that have no room to be longer."""
 
 _FOLDER = files("resources") / "translations"

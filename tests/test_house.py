@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -95,3 +96,27 @@ def test_no_function_has_more_than_eight_parameters():
                 if len(taken) > MOST_PARAMETERS:
                     found.append(f"{path}:{node.lineno} {node.name} has {len(taken)}")
     assert found == [], "put together what belongs together"
+
+
+RIDDLES = re.compile(r"\b(whoever|nobody|somebody)\b|\b(is|are) asked of\b|\bIt is over\b", re.IGNORECASE)
+"""Ways of saying who or what is meant without naming it."""
+
+
+def first_sentences(tree: ast.Module) -> Iterator[tuple[int, str]]:
+    """Line and first sentence of every docstring in a module, those below fields and constants included."""
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        for line in body if isinstance(body, list) else ():
+            said = line.value.value if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant) else None
+            if isinstance(said, str):
+                yield line.lineno, re.split(r"(?<=\.)\s|\n\n", said.strip())[0]
+
+
+def test_the_first_sentence_of_a_docstring_names_who_and_what_is_meant():
+    found = [
+        f"{path}:{line} {sentence}"
+        for path, _, tree in modules("core", "workbench")
+        for line, sentence in first_sentences(tree)
+        if RIDDLES.search(sentence)
+    ]
+    assert found == [], "say plainly what it does or is"

@@ -21,7 +21,7 @@ WRITING = frozenset(
         *(jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY, jobs.KEEP_TYPE1, jobs.ADD_RECORDING),
     }
 )
-"""Jobs that put something into the folder of the open project: none is done where somebody else has it."""
+"""Jobs that put something into the folder of the open project: none is done where another program has it open."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -173,7 +173,7 @@ class Menus(QObject):
         return action
 
     def _languages(self) -> QMenu:
-        """Each language by its own name, so that whoever was given the wrong one finds back."""
+        """Each language by its own name, so that it is found in any language."""
         menu, group = QMenu(tr("&Language"), self._window), QActionGroup(self)
         for name in languages():
             action = QAction(own_name(name), group)

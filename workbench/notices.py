@@ -86,7 +86,7 @@ class Notices(QObject):
         self.error(text_of(problem), problem.details if isinstance(problem, Failure) else "")
 
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
-        """An exception nobody caught, on whatever thread: one notice, and the program goes on."""
+        """Tell an exception that was not caught, of any thread, in one notice; the program goes on."""
         details = "".join(traceback.format_exception(kind, value, trace))
         text = tr("Something went wrong in the program; your work is kept. Details: {details}", details=kind.__name__)
         self._raised.emit(Level.ERROR, text, details)

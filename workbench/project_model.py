@@ -40,7 +40,7 @@ KEEP_S = 600.0
 
 
 class Access(StrEnum):
-    """How a project is opened: to change it, alone; the same, taken from whoever has it; or only to look at it."""
+    """How a project is opened: to change it, alone; the same, taken over from another; or only to look at it."""
 
     ALONE = "alone"
     TAKE_OVER = "take over"
@@ -168,7 +168,7 @@ class ProjectModel(QObject):
 
     @property
     def is_read_only(self) -> bool:
-        """Whether the open project cannot be changed on the disk: it is somebody else's, gone, or write-protected."""
+        """Whether the open project cannot be changed on the disk: it is open elsewhere, gone, or write-protected."""
         return self.folder is not None and (not can_be_saved(self.folder) or self.why_read_only() is not None)
 
     def why_read_only(self) -> InputError | None:
@@ -271,7 +271,7 @@ class ProjectModel(QObject):
         self.undo_stack.clear()
 
     def sign_out(self) -> None:
-        """From now on nobody in particular."""
+        """Sign out: what follows is recorded without a person's name."""
         self.signed_in = None
         self.undo_stack.clear()
 

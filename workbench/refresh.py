@@ -33,7 +33,7 @@ class Refresh(QObject):
         self._timer.start()
 
     def at_once(self) -> None:
-        """Do what was asked for now, if anything was: for whoever is about to look at it, outside any signal."""
+        """Do the refresh that is waiting now, if there is one; not to be called within a signal."""
         if self._timer.isActive():
             self._timer.stop()
             self._show()

@@ -1,4 +1,4 @@
-"""Frames from files: in order, decoded a few ahead of whoever measures them."""
+"""Frames from files: in order, a few decoded ahead of the one that is measured."""
 
 from __future__ import annotations
 

@@ -15,7 +15,7 @@ LARGEST_REGION_PX = 65_536
 FREE_RUNNING = "Off"
 """The trigger of a camera that takes pictures by itself."""
 SOFTWARE = "Software"
-"""The trigger by which whoever reads a picture also asks for it."""
+"""The trigger with which reading a picture also requests it."""
 
 TITLES = {
     "exposure_ms": (label("exposure time"), "ms"),

@@ -104,7 +104,7 @@ def _run(words: list[str]) -> None:
 
 
 def _fault(words: Sequence[str], error: Exception) -> InputError:
-    """What nobody foresaw, as a sentence; the rest stands in a report."""
+    """An unexpected error as a sentence; its details are written to a report."""
     from core.files.fault_report import write_fault_report
 
     path = write_fault_report(words, error)

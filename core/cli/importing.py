@@ -1,4 +1,4 @@
-"""`trisect import`: what was understood of somebody's folders, and what was made of it."""
+"""`trisect import`: how the given folders were read, and the recording set made of them."""
 
 from __future__ import annotations
 

@@ -249,7 +249,7 @@ def run_profile(
 
 @contextmanager
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
-    """A recording set, lasers looked at in this channel, and the folder of its results, which nobody else writes to."""
+    """A recording set, lasers looked at in this channel, and the folder of its results, locked."""
     work = Workspace.open(open_set(folder).seen_in(channel), out, part)
     with alone_in(work.out):
         yield work

@@ -39,7 +39,7 @@ _NAMES_SHOWN = 3
 """So many frames left out for one reason are named in a line."""
 
 PIPE_WIDTH = 1000
-"""Columns in a pipe, where nobody's screen wraps lines: whatever reads it gets them whole."""
+"""Columns in a pipe: lines are not wrapped there."""
 
 
 def notes_json(notes: Sequence[Message]) -> list[dict[str, Any]]:

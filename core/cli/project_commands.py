@@ -182,7 +182,7 @@ def _told(entry: Entry) -> str:
 
 
 def _pin(name: str) -> str:
-    """The PIN of somebody: asked for on a terminal without showing it, else a line of standard input."""
+    """Read a person's PIN: from the terminal without showing it, else as a line of standard input."""
     import getpass
     import sys
 

@@ -138,7 +138,7 @@ def cannot_write(path: Path, error: OSError) -> InputError:
 
 
 QUIET_S = 15 * 60.0
-"""Nobody works any longer on a folder in which nothing has happened for so long."""
+"""A hidden folder unchanged for so long is taken for a leftover of a program that was killed."""
 
 
 def remove_leftovers(folder: Path, quiet_s: float = QUIET_S) -> None:

@@ -83,7 +83,7 @@ def wait_for(handle: int) -> None:
 
 
 def sweep_leftovers(folder: Path) -> None:
-    """Remove what a killed program left half written in `folder`; whoever calls it has the folder alone."""
+    """Remove what a killed program left half written in `folder`; call it with the folder locked."""
     for path in folder.iterdir():
         if LEFTOVER.match(path.name):
             with contextlib.suppress(OSError):

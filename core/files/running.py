@@ -13,14 +13,14 @@ _ACCESS = 0x00100000 | 0x1000
 _WAIT_TIMEOUT = 0x102
 """Windows: what WaitForSingleObject returns for a process that has not ended."""
 _ACCESS_DENIED = 5
-"""Windows: the error for a process that is there and belongs to somebody else."""
+"""Windows: the error for a process that is there and belongs to another user."""
 _FILETIME_BEGAN = datetime(1601, 1, 1, tzinfo=UTC)
 _CLOCK_S = 2.0
 """What a file says and what the system says of one moment differ by less."""
 
 
 class Kernel(Protocol):
-    """What is asked of Windows: functions of kernel32, and the error of the last one."""
+    """The functions of Windows that are used: those of kernel32, and the error of the last one."""
 
     def OpenProcess(self, access: int, inherit: bool, pid: int, /) -> int | None: ...
     def WaitForSingleObject(self, handle: int, ms: int, /) -> int: ...

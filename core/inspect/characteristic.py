@@ -15,7 +15,7 @@ Quantity: TypeAlias = Literal["length", "angle"]
 
 @dataclass(frozen=True, slots=True)
 class Limits:
-    """What is asked of a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
+    """The requirement on a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
 
     Values in mm or rad; −inf or inf where a side has no limit. A deviation of form has the nominal value 0, no lower
     limit and its tolerance as the upper one: it cannot be too small.

@@ -149,5 +149,5 @@ def _less_margin(position: Array) -> Stretch:
 
 
 def _rounded(first: float, last: float) -> Stretch:
-    """To a tenth of a millimetre, as somebody would type it."""
+    """Rounded to a tenth of a millimetre, as one would type it."""
     return round(first, 1), round(last, 1)

@@ -13,7 +13,7 @@ from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent, steps
 
 WORTHWHILE_SHARE = 0.97
-"""A change that leaves more than this share of U helps nobody."""
+"""A change that leaves more than this share of U is not proposed."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -49,7 +49,7 @@ class Words:
         return self.numeral(f"{rounded:+f}" if signed and rounded != 0 else f"{rounded:f}")
 
     def general(self, value: float) -> str:
-        """A value as somebody stated it: no more digits than it has, a power of ten for very small and large ones."""
+        """A value as it was stated: no more digits than it has, a power of ten for very small and large ones."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
 
@@ -231,7 +231,7 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
 
 
 def limits_of_thickness(gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
-    """What no thickness of this instrument covers; `temperatures`: whether somebody stated them."""
+    """What no thickness of this instrument covers; `temperatures`: whether they are stated."""
     rule = words(gauge.rule or label("distance of two parallel planes fitted to the points of both faces"))
     return (
         words(
@@ -270,7 +270,7 @@ def limits_of_inspection(
 
 
 def limits_of_cloud(words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
-    """What no cloud of this instrument covers; `temperatures`: whether somebody stated them."""
+    """What no cloud of this instrument covers; `temperatures`: whether they are stated."""
     return (
         words(
             "The σ of a point is the standard uncertainty of its depth within this scan. What is common to all points "

@@ -270,7 +270,7 @@ def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict[str, Po
 
 
 def _put_in_place(made: Path, hidden: Path, folder: Path) -> None:
-    """Move set and truth to their places; the set last, so that whoever sees it has its truth."""
+    """Move set and truth to their places; the set last, so that a set that is there always has its truth."""
     beside = truth_folder(folder)
     if beside.exists():
         shutil.rmtree(beside)

@@ -27,7 +27,7 @@ CAMERA_TARGETS = ("checkerboard", "charuco", "circle_grid")
 PLANE_TARGETS = ("black_square", *CAMERA_TARGETS)
 
 YAW_DEG = 4.0
-"""Degrees by which the object is turned on the table: nobody puts a part down quite straight."""
+"""Degrees by which the object is turned on the table: no part is put down quite straight."""
 
 
 GAUGE_TOLERANCE_MM = 0.2

@@ -189,7 +189,7 @@ class RepeatStudy:
 
 @dataclass(frozen=True, slots=True)
 class Requirement:
-    """What is asked of the mean of repeats.
+    """The requirement on the mean of repeats: its nominal value and the deviations permitted from it.
 
     Parameters
     ----------

@@ -82,7 +82,7 @@ class WorkerProcess(QObject):
         self._folder.cleanup()
 
     def _read(self) -> None:
-        """Tell of every whole message; whoever hears of one may ask a question, in which this is called again."""
+        """Tell of every whole message; its receiver may open a dialog, in which this is called again."""
         while not self._ended:
             if self._head is None and self._process.bytesAvailable() >= HEAD.size:
                 self._head = HEAD.unpack(self._process.read(HEAD.size).data())

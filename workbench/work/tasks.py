@@ -226,7 +226,7 @@ class Lane(QObject):
             self._conclude_soon(task, Kind.FAILED, Failure.of(error))
 
     def _conclude_soon(self, task: Task, kind: Kind, value: Any) -> None:
-        """A job that could not even begin: told a moment later, when whoever asked for it has its task."""
+        """A job that could not even begin: told a moment later, when the caller has its task."""
 
         def conclude() -> None:
             if task is self._current:

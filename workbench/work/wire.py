@@ -81,14 +81,14 @@ def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None
 
 
 def value_of(body: bytes) -> Any:
-    """The value of a frame; its large arrays may be written to, and are freed when nobody holds them."""
+    """The value of a frame; its large arrays may be written to, and are freed when they are no longer held."""
     stream = io.BytesIO(body)
     large = [_mapped(path) for path in pickle.load(stream)]
     return pickle.load(stream, buffers=large)
 
 
 def forget(body: bytes) -> None:
-    """Free what a frame holds that nobody waits for any more."""
+    """Free what a frame holds that is not waited for any more."""
     for path in pickle.loads(body):
         Path(path).unlink(missing_ok=True)
 

@@ -105,7 +105,7 @@ def _kind(one: Characteristic) -> str:
 
 
 def _characteristics(parent: Element, rows: list[tuple[Characteristic, list[int]]], device: int) -> None:
-    """What is asked of each (definition), its target (nominal), and that it is asked of this part (item)."""
+    """Three elements for each: its requirement (definition), its nominal value, and its place on this part (item)."""
     definitions = _put(parent, "CharacteristicDefinitions", n=f"{len(rows)}")
     nominals = _put(parent, "CharacteristicNominals", n=f"{len(rows)}")
     items = _put(parent, "CharacteristicItems", n=f"{len(rows)}")

@@ -66,7 +66,7 @@ class FiltersTable(Table):
 
 
 class LimitsTable(Table):
-    """What is asked of a result: a nominal value with ± a tolerance, or with a lower and an upper deviation."""
+    """The requirement on a result: a nominal value with ± a tolerance, or with a lower and an upper deviation."""
 
     nominal_mm: _Number | None = Field(None, description=_A_NUMBER)
     tolerance_mm: _NotNegative | None = Field(None, description=_NOT_BELOW_0)

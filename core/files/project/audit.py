@@ -42,7 +42,7 @@ _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digit
 
 
 class Signed(Protocol):
-    """Somebody who has signed in."""
+    """A person who has signed in."""
 
     @property
     def name(self) -> str: ...

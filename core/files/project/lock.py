@@ -52,7 +52,7 @@ class _LockFile(RootModel[LockOwner]):
 
 
 class ProjectInUse(InputError):
-    """Somebody has the project open."""
+    """The project is open in another program."""
 
     def __init__(self, holder: LockOwner, folder: Path) -> None:
         self.holder = holder
@@ -73,13 +73,13 @@ class ProjectInUse(InputError):
 
 
 class ProjectLock:
-    """A project that is ours to change, until `release`, or until somebody takes it over."""
+    """The lock of a project that only this program may change, until `release` or until another takes it over."""
 
     def __init__(self, folder: Path, holder: LockOwner, handle: int) -> None:
         self.folder, self.holder, self._handle = folder, holder, handle
 
     def check(self) -> None:
-        """InputError if the project is no longer ours: somebody has taken it over, or its folder is gone."""
+        """InputError if this program no longer has the lock: another has taken it over, or the folder is gone."""
         holder = read_holder(self.folder)
         if holder is None:
             raise vanished(self.folder)
@@ -124,7 +124,7 @@ def read_holder(folder: Path) -> LockOwner | None:
 
 
 def held_by(folder: Path) -> LockOwner | None:
-    """Who has the project open; None if nobody has, as far as can be told."""
+    """The owner of the lock; None if the project is not open, as far as can be told."""
     holder = read_holder(folder)
     if holder is None or (holder.host == platform.node() and _is_left_behind(folder / LOCK, holder)):
         return None
@@ -132,7 +132,7 @@ def held_by(folder: Path) -> LockOwner | None:
 
 
 def take_lock(folder: Path, *, take_over: bool = False) -> ProjectLock:
-    """Make a project ours to change, whoever has it with `take_over`.
+    """Lock a project for this program; with `take_over` also if another program has it open.
 
     Raises
     ------
@@ -181,7 +181,7 @@ def _take(folder: Path, *, take_over: bool) -> ProjectLock:
 
 @contextmanager
 def _one_at_a_time(folder: Path) -> Iterator[None]:
-    """Programs of this computer look and take one after another: between looking and taking nobody else takes it."""
+    """Programs of this computer look and take one after another: none takes the lock between the two."""
     if sys.platform == "win32" or not folder.is_dir():
         yield
         return
@@ -225,7 +225,7 @@ def _put_if_none(beside: Path, path: Path) -> None:
 
 
 def _is_left_behind(path: Path, holder: LockOwner) -> bool:
-    """Whether nobody on this computer holds the file any longer."""
+    """Whether no program on this computer holds the file any longer."""
     if sys.platform == "win32":
         return not is_running(holder.pid, holder.since)
     import fcntl

@@ -45,7 +45,7 @@ _CHECKED = ConfigDict(extra="forbid", strict=True)
 
 @dataclass(frozen=True, slots=True)
 class Person:
-    """Somebody with a role; of the PIN there is a salt and what scrypt makes of both (RFC 7914), in hex."""
+    """A person with a role; of the PIN there is a salt and what scrypt makes of both (RFC 7914), in hex."""
 
     name: Annotated[str, Field(min_length=1, max_length=100, description="a name")]
     role: Annotated[Role, Field(description=" or ".join(f'"{one}"' for one in ROLES))]
@@ -56,7 +56,10 @@ class Person:
 
 @dataclass(frozen=True, slots=True)
 class Rules:
-    """The people of a project, and whether limits that change after a result want a reason; nobody: all may do all."""
+    """The people of a project, and whether limits that change after a result want a reason.
+
+    Without people everything is permitted.
+    """
 
     people: Annotated[tuple[Person, ...], Field(max_length=500, description="a list of people")] = ()
     reasons: bool = False
@@ -120,7 +123,7 @@ def write_rules(folder: Path, rules: Rules, by: Person | None = None) -> None:
 
 
 def reset_rules(folder: Path, why: str) -> None:
-    """Let everybody do everything again, whoever asks: the way back if PINs are lost; the reason stays in the trail.
+    """Remove all people and rules, without a PIN: the way back if PINs are lost; the reason stays in the trail.
 
     Raises
     ------
@@ -136,7 +139,7 @@ def reset_rules(folder: Path, why: str) -> None:
 
 
 def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
-    """Sign the project as it is: an entry of the audit trail by somebody who has just shown the PIN, with the meaning.
+    """Sign the project as it is, by name and PIN: adds an entry with the meaning to the audit trail.
 
     Raises
     ------
@@ -147,7 +150,7 @@ def sign(folder: Path, name: str, pin: str, meaning: str) -> Entry:
 
 
 def refused(rules: Rules, by: Person | None, before: Project, after: Project) -> InputError | None:
-    """Why somebody may not change a project so; None if it may be. Who has not signed in is an operator."""
+    """Why a person may not change a project in this way; None if allowed. Who has not signed in is an operator."""
     role: Role = "operator" if by is None else by.role
     needed = needed_role(before, after)
     if not rules.people or ROLES.index(role) >= ROLES.index(needed):

@@ -162,7 +162,7 @@ def _notes(target: Path, ways: Mapping[Way, int]) -> tuple[Message, ...]:
 
 
 def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...]) -> dict[str, Any]:
-    """One import as the log keeps it; every file with its place, so that nobody needs to guess later."""
+    """One import as the log keeps it; every file with its place, so that its origin stays known."""
     taken = {name: one.taken_at for one in plan.pictures for name, _ in one.files()[:1]}
     request = plan.request
     asked = {"camera": request.camera, "planes": request.planes, "planes_off": request.planes_off, "scan": request.scan}

@@ -1,4 +1,4 @@
-"""Pictures of somebody else's folders as a recording set: what lies where, in which order, and which belong together.
+"""Pictures in any folders as a recording set: what lies where, in which order, and which belong together.
 
 Nothing is written here; `core.files.recording.import_pictures` does that, once a person has seen the plan.
 """

@@ -1,4 +1,4 @@
-"""Which channel of colour pictures shows the light of a laser best, where nobody has said it.
+"""Which channel of colour pictures shows the light of a laser best, where none is stated.
 
 Grey mixes all channels: of a red laser's light a third is left, and the noise of the other two is added. A difference
 of two channels is free of what is grey or white, like marks and room light that changes, but has the noise of both, and

@@ -1,4 +1,4 @@
-"""Frames that somebody marked while they were recorded: marks.csv beside them, one name a line.
+"""Frames that were marked while they were recorded: marks.csv beside them, one name a line.
 
 A line is appended in one piece when the key is pressed; one that is torn was never acknowledged, and is not counted.
 """
@@ -25,7 +25,7 @@ def mark_frame(folder: Path, name: str) -> None:
 
 
 def marked_frames(folder: Path) -> frozenset[str]:
-    """File names of the marked frames of a recording; none where nobody marked any. InputError if it cannot be read."""
+    """File names of the marked frames of a recording; none if none was marked. InputError if it cannot be read."""
     path = folder / MARKS
     if not path.is_file():
         return frozenset()

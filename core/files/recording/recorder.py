@@ -84,7 +84,7 @@ class Recorder:
             return len(self._queue)
 
     def write(self, name: str, picture: Picture, frame: Frame | None = None) -> bool:
-        """Take a picture, which nobody may change any more, to be written as `name` (the ending is added if missing).
+        """Take a picture, which must not be changed any more, to be written as `name` (the ending is added if missing).
 
         Parameters
         ----------

@@ -205,7 +205,7 @@ class FeatureSpec:
         return placed or framed or any(map(_is_placed, self.regions))
 
     def limits_of(self, result: str) -> Limits | None:
-        """What is asked of one of its results, as "diameter" or "height 2"; None: nothing."""
+        """The limits of one of its results, as "diameter" or "height 2"; None: nothing."""
         asked = dict(self.limits)
         name, _, number = result.rpartition(" ")
         if not self.nominal_heights or name not in asked or not number.isdigit():

@@ -36,7 +36,7 @@ class ShownProfile:
 
     @property
     def mean_line(self) -> tuple[Array, Array]:
-        """Positions and heights of the mean, with NaN between its pieces: nobody knows how the surface runs there."""
+        """Positions and heights of the mean, with NaN between its pieces, where the surface is not known."""
         ends = np.flatnonzero(np.diff(self.mean_piece)) + 1
         return np.insert(self.mean_position, ends, np.nan), np.insert(self.mean_height, ends, np.nan)
 

@@ -131,7 +131,7 @@ class LiveCamera:
 
 
 def nothing_taken(why: Message) -> Message:
-    """What to tell somebody who pressed Capture in vain."""
+    """The notice after Capture was pressed and no view was taken."""
     return Message("live.nothing_taken", "Nothing was taken. {why}", why=why)
 
 

@@ -49,7 +49,7 @@ class LiveStep(Protocol):
 
 
 class Worker:
-    """Does one thing at a time on a thread of its own; whoever comes while it is busy is turned away."""
+    """Does one thing at a time on a thread of its own; jobs that come while it is busy are refused."""
 
     def __init__(self) -> None:
         self._pool = ThreadPoolExecutor(1, thread_name_prefix="live")
@@ -83,7 +83,7 @@ class Worker:
                 self._job = None
 
     def close(self) -> None:
-        """Take no more jobs; one that runs ends by itself, nobody waits for it."""
+        """Take no more jobs; one that runs ends by itself and is not waited for."""
         self._pool.shutdown(wait=False, cancel_futures=True)
 
 

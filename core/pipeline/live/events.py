@@ -223,7 +223,7 @@ class LiveSaving:
 
 @dataclass(frozen=True, slots=True)
 class LiveEnded:
-    """It is over: where the pictures are, how many, how many were lost; `error` says why if it ended by itself."""
+    """The recording has ended: its folder, its pictures and how many were lost; `error` if it ended by itself."""
 
     folder: Path
     recorded: int

@@ -30,7 +30,7 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
 
 
 def part_name(project: Project) -> str:
-    """The part's name: what the project is of, if nobody says more."""
+    """The part's name; the project's name where none is given."""
     return project.info.part or project.options.part or project.info.name
 
 

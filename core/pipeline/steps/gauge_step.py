@@ -116,7 +116,7 @@ _ADVICE = {
 
 
 def in_a_project(error: InputError) -> InputError:
-    """The same complaint in the words of a project, where nobody edits rig.toml; others are returned as they are."""
+    """The same complaint in the words of a project, which has no rig.toml to edit; others are returned as they are."""
     where, todo = error.where, error.todo
     if isinstance(where, Message) and where.code == "gauge.where_region":
         where = _REGIONS[where.values["face"]]

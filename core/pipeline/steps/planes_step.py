@@ -69,7 +69,7 @@ def planes_step(
 
 
 def check_agreement(calibration: FanCalibration, decided: bool) -> None:
-    """InputError if a minority of the poses stands for all and nobody has `decided` that it may."""
+    """InputError if the planes rest on a minority of the poses, unless it was `decided` that they may."""
     if calibration.minority is not None and not decided:
         raise InputError(
             calibration.minority,

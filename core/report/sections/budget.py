@@ -27,7 +27,7 @@ SMALL = 1e-3
 """Below it a power of ten says more than zeros."""
 
 MANY = 1000
-"""Of more degrees of freedom nobody need know how many: the factor k is that of infinitely many."""
+"""More degrees of freedom are written as infinitely many: the factor k is the same."""
 
 
 def budget_table(look: ReportLook, one: Characteristic) -> Table:

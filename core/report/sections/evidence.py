@@ -74,7 +74,7 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
 
 
 def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
-    """Warnings and remarks of the software, which nobody can switch off."""
+    """Warnings and remarks of the software; they cannot be left out."""
     notes = tuple(look.words.known(note) for note in content.all_notes)
     if not notes:
         return []

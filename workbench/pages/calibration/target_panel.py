@@ -92,7 +92,7 @@ class TargetPanel(QWidget):
         self._put_before_the_paper(old)
 
     def _add_truth(self, form: SettingsForm) -> None:
-        """How true it is: nobody need state it, but then it is assumed, and said to be."""
+        """Fields for how true the target is; what is left empty is assumed, and the report says so."""
         made = [
             ("", tr("Not stated")),
             ("laser printer", tr("Printed here")),

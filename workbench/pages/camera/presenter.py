@@ -106,7 +106,7 @@ class CameraPresenter(CalibrationPresenter):
         self.changed.emit()
 
     def corners_of(self, name: str) -> Array | None:
-        """Where the target's corners (N, 2) were found in a view; None if they were not, or nobody has looked."""
+        """Where the target's corners (N, 2) were found in a view; None if they were not (yet)."""
         if self.work.seen is None:
             return None
         return next((view.uv for view in self.work.seen.found if view.name == name), None)

@@ -29,7 +29,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
 
     @property
     def seen(self) -> SeenViews | None:
-        """What the pictures show; None as long as nobody has looked."""
+        """What the pictures show; None until they have been searched."""
         return self.found
 
     def left_out(self) -> dict[str, Message]:

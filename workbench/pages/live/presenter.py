@@ -162,7 +162,7 @@ class LivePresenter(QObject):
 
     @property
     def live(self) -> bool:
-        """Whether pictures are coming: the first one is there and nobody has pressed stop."""
+        """Whether pictures are coming: the first one is there, and stop has not been pressed."""
         return self.running and self.name != "" and not self.stopping
 
     @property

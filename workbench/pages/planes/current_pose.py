@@ -24,7 +24,7 @@ class CurrentPose(CurrentPicture):
         return super().names() or [pose.name for pose in self._work.poses or ()]
 
     def features_of(self, name: str) -> PoseFeatures | None:
-        """What the pictures of a pose show; None if nobody has looked."""
+        """What the pictures of a pose show; None if they have not been searched."""
         return next((pose for pose in self._work.poses or () if pose.name == name), None)
 
     def refresh(self) -> None:

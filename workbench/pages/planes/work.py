@@ -32,7 +32,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
 
     @property
     def poses(self) -> Poses | None:
-        """What the pictures show; None as long as nobody has looked."""
+        """What the pictures show; None until they have been searched."""
         return self.found
 
     def left_out(self) -> dict[str, Message]:

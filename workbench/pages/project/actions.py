@@ -166,7 +166,7 @@ class ProjectActions(QObject):
             AuditWindow(self.bench, self.model.folder, self._window).exec()
 
     def sign_in(self) -> None:
-        """Sign in by name and PIN, or out if somebody has; what was changed before is saved by whom it was changed."""
+        """Sign in by name and PIN, or out if a person is signed in; earlier changes are saved first."""
         names = [one.name for one in self.model.rules.people]
         if not names:
             text = tr(

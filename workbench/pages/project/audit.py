@@ -59,7 +59,7 @@ class AuditWindow(QDialog):
         self._show()
 
     def add_remark(self, text: str) -> None:
-        """Add an entry with somebody's words: why something was done."""
+        """Add an entry with a remark: why something was done."""
         if text.strip():
             try:
                 append(self._folder, "remark", why=text.strip())

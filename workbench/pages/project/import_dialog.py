@@ -38,7 +38,7 @@ _QUIET_MS = 300
 _PREVIEW_PX = 900
 """Pictures are shown so wide at most."""
 _NO_RIG = "import.no_rig"
-"""In the window targets and laser are fields of the pages; nobody misses rig.toml there."""
+"""A note of the import that is not shown here: the pages of the window have fields for targets and laser."""
 
 
 class ImportDialog(QDialog):

@@ -291,7 +291,7 @@ class ReportPresenter(StepPresenter):
         )
 
     def _refresh_preview(self) -> None:
-        """Draw the pages anew if something in them has changed and somebody looks; one drawing at a time."""
+        """Draw the pages anew if something in them has changed and the page is shown; one drawing at a time."""
         if not self._visible or self.model.folder is None or self.drawing:
             return
         if not self.ready():

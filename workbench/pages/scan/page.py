@@ -35,7 +35,7 @@ STAGES_BEFORE = ("reference", "ready")
 
 
 def unchecked(check: Check) -> bool:
-    """Whether it is that nobody has checked camera and laser today: that is told as long as it is so."""
+    """Whether the note is that camera and laser have not been checked today: it stays as long as that is so."""
     return check.name == "check" and check.state == "unknown"
 
 

@@ -146,7 +146,7 @@ class ScanRun(QObject):
         )
 
     def _seen(self, detail: ScanDetail, picture: Any, scale: int) -> None:
-        """The picture is there: with it go all points that nobody has been given."""
+        """The picture has come: tell it with all points that were not yet told."""
         points, renewed = PreviewCloud.joined(self._points), self._renewed
         self._points, self._renewed = [], False
         self.frame_seen.emit(replace(detail, points=points, renewed=renewed), picture, scale)

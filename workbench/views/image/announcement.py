@@ -1,4 +1,4 @@
-"""A sentence large in a picture, for somebody who stands at the rig and not at the screen."""
+"""A sentence in large letters over a picture, to be read from the rig."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ from workbench.views.scene.camera import CAMERA_FRAME, VIEW_ANGLE, Orientation, 
 from workbench.views.scene.contents import Scene
 
 GROWN = 1.15
-"""A scene that has grown by this factor is fitted again, as long as nobody has turned the view."""
+"""A scene that has grown by this factor is fitted again, as long as the view has not been turned by hand."""
 
 ROOM, OUTSIDE = 1.12, 0.01
 """How much farther away a growing scene is looked at from, and which part of it may be out of sight."""
@@ -77,7 +77,7 @@ class Navigator(QObject):
         self.moved.emit()
 
     def follow(self, *, afresh: bool = False) -> bool:
-        """Fit a scene that is new or has grown, unless somebody has turned the view. Whether the camera moved."""
+        """Fit a scene that is new or has grown, unless the view was turned by hand. Whether the camera moved."""
         box = self._scene.box()
         before, self._box = self._box, box
         if not afresh and self._extent > 0 and (self._touched or np.array_equal(box, before)):
@@ -99,7 +99,7 @@ class Navigator(QObject):
         return bool(((screen < 0) | (screen > np.array(self._size()))).any(axis=1).mean() > OUTSIDE)
 
     def resized(self) -> None:
-        """Fit again to another size, unless somebody has turned the view."""
+        """Fit again to another size, unless the view was turned by hand."""
         if not self._touched and self._extent > 0:
             self._fit_or_view()
 

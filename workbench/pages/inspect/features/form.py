@@ -1,4 +1,4 @@
-"""The chosen feature in a form: its name, where its points are, what is asked of it, how it is measured."""
+"""The chosen feature in a form: its name, where its points are, its limits, how it is measured."""
 
 from __future__ import annotations
 

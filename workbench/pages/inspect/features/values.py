@@ -111,7 +111,7 @@ def with_region(spec: FeatureSpec, place: int, region: Region) -> FeatureSpec:
 
 
 def limits_values(spec: FeatureSpec, result: str) -> dict[str, float | None]:
-    """What is asked of a result: nominal value and permitted deviations in mm or degrees, None where nothing is."""
+    """The limits of a result: nominal value and permitted deviations in mm or degrees, None where there is none."""
     limits = dict(spec.limits).get(result)
     keys = [f"limits {side} {result}" for side in SIDES]
     if limits is None:

@@ -25,7 +25,7 @@ def title(kind: FeatureKind) -> str:
 
 
 def source_of_none(spec: FeatureSpec) -> str:
-    """What stands for a region that nobody has drawn."""
+    """What stands for a region that was not drawn."""
     kind = kind_of(spec)
     if kind.automatic == "all points":
         return tr("the whole scan")
