@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
@@ -174,8 +175,8 @@ def since_calibration(
     found = fresh_check(found, calibration.fan)
     apart = _days_apart(found)
     if apart <= SAME_DAY:
-        return judged(found, calibration, options, progress, of_measured, poses)[-1]
-    change = judged(replace(found, check=()), calibration, options, progress, of_measured)[-1]
+        return judged(found, calibration, options, progress, of_measured, poses).change
+    change = judged(replace(found, check=()), calibration, options, progress, of_measured).change
     other_day = Message(
         "check.another_day",
         "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
@@ -205,6 +206,18 @@ def _stability(found: RecordingSet, calibration: Calibration) -> Stability | Non
     return STABLE if apart <= SAME_DAY else found.rig.stability
 
 
+class Judged(NamedTuple):
+    """What the pictures of a set prove of the rig since its calibration."""
+
+    deviations: tuple[Deviation, ...]
+    """Those that are reckoned with."""
+    evidence: Evidence
+    """What all pictures say of them."""
+    poses: tuple[CheckedPose, ...]
+    """Those of the interim check."""
+    change: Change
+
+
 def judged(
     found: RecordingSet,
     calibration: Calibration,
@@ -212,8 +225,8 @@ def judged(
     progress: Progress,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
     poses: Sequence[PoseFeatures] | None = None,
-) -> tuple[tuple[Deviation, ...], Evidence, tuple[CheckedPose, ...], Change]:
-    """The deviations reckoned with, what all pictures say of them, the check's poses, and what that proves."""
+) -> Judged:
+    """What the pictures of a set, and those of its interim check if there are any, prove of the rig."""
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
@@ -232,7 +245,7 @@ def judged(
         Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)
         for pose, reason in reasons
     )
-    return deviations, evidence, checked, replace(change, left_out=tuple(left_out))
+    return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
 def assumed_stability(found: RecordingSet) -> tuple[Message, ...]:

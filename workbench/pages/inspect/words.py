@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from pathlib import PurePosixPath
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from core.files.csv_text import harmless
 from core.files.project.data import Repeat
@@ -131,11 +131,27 @@ def type1_rows(study: Type1Study) -> list[ValueRow]:
     ]
 
 
-def repeat_row(repeat: Repeat) -> tuple[str, str, str, str, str]:
-    """Scan, thickness, U, calibration, time."""
+class RepeatRow(NamedTuple):
+    """A repeat in the list, in words."""
+
+    scan: str
+    thickness: str
+    expanded: str
+    """U."""
+    calibration: str
+    measured_at: str
+
+
+def repeat_row(repeat: Repeat) -> RepeatRow:
+    """A repeat as the list shows it."""
     value, expanded = with_uncertainty(repeat.thickness_mm, repeat.U_mm, wording())
-    time = time_of(repeat.measured_at)
-    return scan_name(repeat.scan), value, f"± {expanded}", short_id(repeat.calibration_id), time
+    return RepeatRow(
+        scan=scan_name(repeat.scan),
+        thickness=value,
+        expanded=f"± {expanded}",
+        calibration=short_id(repeat.calibration_id),
+        measured_at=time_of(repeat.measured_at),
+    )
 
 
 def repeats_tsv(
