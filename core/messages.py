@@ -104,10 +104,6 @@ class Message:
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self.code, self.text, self.many, dict(self.values))
 
-    def with_values(self, **values: Any) -> Message:
-        """The same message with some other values."""
-        return _restored(self.code, self.text, self.many, {**self.values, **values})
-
     def _parts(self) -> tuple[Any, ...]:
         return self.code, str(self), dict(self.values)
 

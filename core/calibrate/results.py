@@ -176,8 +176,7 @@ class FanCalibration:
     its own; their covariances take the camera as known. `rms_mm` per line. `angles` (rad) between neighbouring planes
     of the constrained and the free fit. `pencil_gap_mm` is the largest distance of the free planes from those of one
     pencil, its angles free, within the work volume; `constraint_suits` None where there is no constraint (one line).
-    `constraint_p` is the probability of a constrained fit this much worse than the free one if the constraint were
-    true. `stripe_sd_mm` is the standard deviation of a whole stripe from its plane beyond the stripe's own noise
+    `stripe_sd_mm` is the standard deviation of a whole stripe from its plane beyond the stripe's own noise
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
     same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
@@ -199,7 +198,6 @@ class FanCalibration:
     verdict: Message | None
     poses: tuple[PlanePose, ...]
     notes: tuple[Message, ...] = ()
-    constraint_p: float = math.nan
     stripe_sd_mm: float = math.nan
     corner_scale: float = math.nan
     by_camera: Array | None = None

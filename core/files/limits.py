@@ -90,17 +90,6 @@ def check_toml(text: str, path: Path | str) -> None:
     _check_text(bare, path)
 
 
-def check_depth(value: object, path: Path | str) -> None:
-    """The same for lists and tables that have been read."""
-    layer = [value]
-    for _ in range(DEPTH + 1):
-        inner = [one for one in layer if isinstance(one, list | dict)]
-        layer = [item for one in inner for item in (one.values() if isinstance(one, dict) else one)]
-        if not layer:
-            return
-    raise _too_deep(path)
-
-
 def check_pixels(width: int, height: int, path: Path, most: int = PIXELS) -> None:
     """InputError if a picture declares no pixels, or more than `most`."""
     if width < 1 or height < 1:

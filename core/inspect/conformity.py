@@ -6,9 +6,6 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
-from functools import partial
-
-from scipy.special import ndtr, stdtr
 
 
 class Verdict(StrEnum):
@@ -152,30 +149,3 @@ class Zones:
             return Verdict.CONFORMING
         low, high = self.nonconformance
         return Verdict.NOT_CONFORMING if value < low or value > high else Verdict.NOT_PROVEN
-
-
-def probability_of_conformity(value: float, u: float, lower: float, upper: float, dof: float = math.inf) -> float:
-    """How probable it is that the true value lies within the limits, given what was measured and no more.
-
-    Parameters
-    ----------
-    value, u
-        Measured value and its standard uncertainty, above 0.
-    lower, upper
-        Limits, in the same unit; −inf or inf where a side has none.
-    dof
-        Degrees of freedom of u: Student's t with them, scaled by u; inf: the normal distribution.
-
-    References
-    ----------
-    JCGM 106:2012, clause 7: p_c = Φ((T_U − y)/u) − Φ((T_L − y)/u).
-
-    Examples
-    --------
-    >>> round(probability_of_conformity(13.6, 1.8, 12.5, 16.3), 2)
-    0.66
-    """
-    if not u > 0 or not lower <= upper:
-        raise ValueError(f"no probability of conformity from u {u} and limits {lower} to {upper}")
-    below = ndtr if math.isinf(dof) else partial(stdtr, dof)
-    return float(below((upper - value) / u) - below((lower - value) / u))

@@ -143,10 +143,6 @@ class ScanStage:
         light += self._still if fan else self._room_light
         return light
 
-    def fan_light(self, aim: Array) -> Map:
-        """Light of the fan's sheets (h, w) before lens and speckle, in grey levels."""
-        return self._sheets_light(fan_sheets(self.rig, aim))
-
     def _fan(self, rig: Rig) -> Map:
         light = self._image(self._sheets_light(fan_sheets(rig, self._aim)))
         return self._with_speckle(light, generator(self.seed, "fan"))

@@ -1,8 +1,7 @@
-"""The uncertainty budget of a measured value: its rows, u_c, ν_eff, k and U; correlated inputs kept correlated.
+"""The uncertainty budget of a measured value: its independent rows, u_c, ν_eff, k and U.
 
 What camera, fan, network and points contribute comes from the fits as rows (`Contribution`); temperature, master and
-repeatability join as further rows. A model of one's own gives `Input`s: estimates with signed sensitivities, which may
-be correlated.
+repeatability join as further rows.
 
 In the budget of the mean of repeated scans (`from_budgets`, `from_stated`) what scatters between scans shrinks with
 their number, the rest stays.
@@ -20,7 +19,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 
 from core.errors import WrongValue
 from core.inspect.results import Contribution
@@ -33,82 +31,7 @@ from core.inspect.uncertainty.causes import (
     SWEEP_PLANES,
 )
 from core.inspect.uncertainty.coverage import COVERAGE, coverage_factor, effective_dof
-from core.messages import Message, plain
-from core.model.arrays import Array
-
-HALF_WIDTHS = {"rectangular": math.sqrt(3), "triangular": math.sqrt(6), "arcsine": math.sqrt(2)}
-"""Half-width of a distribution over its standard deviation (JCGM 100:2008, 4.3.7, 4.3.9; arcsine: H.1.3.4)."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Input:
-    """An input quantity of a measurement model.
-
-    Parameters
-    ----------
-    name
-        What it is.
-    value, u
-        Estimate and its standard uncertainty, in `unit`.
-    sensitivity
-        ∂f/∂x with its sign, in the result's unit per `unit`.
-    distribution
-        As in `Contribution`.
-    dof
-        Degrees of freedom of u; inf if it is known.
-    unit
-        Of value and u.
-    """
-
-    name: str
-    value: float
-    u: float
-    sensitivity: float = 1.0
-    distribution: str = "normal"
-    dof: float = math.inf
-    unit: str = "mm"
-
-    @property
-    def contribution(self) -> float:
-        """Signed c·u in the result's unit."""
-        return self.sensitivity * self.u
-
-    def row(self) -> Contribution:
-        """As a row of a budget."""
-        u = abs(self.contribution)
-        return Contribution(plain(self.name), u, self.u, self.distribution, self.dof, self.value, self.unit)
-
-
-def of_observations(name: str, values: Sequence[float], sensitivity: float = 1.0, unit: str = "mm") -> Input:
-    """The mean of n ≥ 2 independent observations, u = s/√n with n − 1 degrees of freedom (JCGM 100:2008, 4.2.3)."""
-    observed = np.asarray(values, dtype=np.float64)
-    if observed.ndim != 1 or len(observed) < 2 or not np.isfinite(observed).all():
-        raise ValueError("a type A evaluation needs two finite observations or more")
-    u = float(observed.std(ddof=1)) / math.sqrt(len(observed))
-    return Input(name, float(observed.mean()), u, sensitivity, "t", float(len(observed) - 1), unit)
-
-
-def within(
-    name: str, value: float, half_width: float, distribution: str = "rectangular", *, sensitivity: float = 1.0,
-    dof: float = math.inf, unit: str = "mm",
-) -> Input:  # fmt: skip
-    """An input known to lie within value ± half_width, by one of HALF_WIDTHS (JCGM 100:2008, 4.3.7 and 4.3.9)."""
-    return Input(name, value, half_width / HALF_WIDTHS[distribution], sensitivity, distribution, dof, unit)
-
-
-def dof_of_doubt(relative: float) -> float:
-    """Degrees of freedom of a u that is itself uncertain by the fraction `relative`: ν = ½ (Δu/u)⁻².
-
-    References
-    ----------
-    JCGM 100:2008, G.4.2, equation (G.3).
-
-    Examples
-    --------
-    >>> dof_of_doubt(0.25), dof_of_doubt(0.5)
-    (8.0, 2.0)
-    """
-    return 0.5 / relative**2 if relative else math.inf
+from core.messages import Message
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -129,8 +52,6 @@ class UncertaintyBudget:
         Coverage factor t_p(ν_eff).
     value
         The result, if it is known here.
-    correlation
-        (n, n) of the rows; None: independent.
     unit
         Of u and the value.
     """
@@ -141,7 +62,6 @@ class UncertaintyBudget:
     coverage: float
     k: float
     value: float | None = None
-    correlation: Array | None = None
     unit: str = "mm"
 
     @property
@@ -150,7 +70,7 @@ class UncertaintyBudget:
         return self.k * self.u
 
     def share(self, row: Contribution) -> float:
-        """Part of u² a row makes up by itself, 0 … 1 (and above, where a correlation takes some of it away again)."""
+        """Part of u² a row makes up, 0 … 1."""
         return row.u_mm**2 / self.u**2 if self.u else 0.0
 
 
@@ -173,85 +93,6 @@ def add_up(
         value,
         unit=unit,
     )
-
-
-def combine(
-    inputs: Sequence[Input],
-    *,
-    correlation: Array | None = None,
-    value: float | None = None,
-    coverage: float = COVERAGE,
-    unit: str = "mm",
-) -> UncertaintyBudget:
-    """The budget of a linearised model with inputs that may be correlated: u_c² = Σ_ij c_i u_i r_ij c_j u_j.
-
-    Welch–Satterthwaite holds for independent contributions only. So inputs that hang together are combined first and
-    have the freedom of the least known among them: exact where they come from the same n observations each (ν = n − 1,
-    as in H.2), careful elsewhere.
-
-    Parameters
-    ----------
-    inputs
-        n of them.
-    correlation
-        (n, n) symmetric with ones on its diagonal; None: independent.
-    value
-        The result.
-    coverage
-        Probability of coverage of U.
-    unit
-        Of the result.
-
-    Raises
-    ------
-    ValueError
-        If the correlation is no correlation matrix of the inputs.
-
-    References
-    ----------
-    JCGM 100:2008, 5.2.2, equation (16); G.4.1; H.2.
-    """
-    rows = tuple(one.row() for one in inputs)
-    if correlation is None:
-        return add_up(rows, value=value, coverage=coverage, unit=unit)
-    r = _checked(np.asarray(correlation, dtype=np.float64), len(inputs))
-    signed = np.array([one.contribution for one in inputs])
-    covariance = signed[:, None] * r * signed
-    count, group = connected_components(r != 0, directed=False)
-    joined = []
-    for number in range(count):
-        mine = group == number
-        together = math.sqrt(max(float(covariance[np.ix_(mine, mine)].sum()), 0.0))
-        dof = min(one.dof for one, is_in in zip(inputs, mine, strict=True) if is_in)
-        joined.append(Contribution(plain(""), together, dof=dof))
-    whole = add_up(joined, value=value, coverage=coverage, unit=unit)
-    return replace(whole, rows=rows, correlation=r)
-
-
-def covariance_of(inputs: Sequence[Input], sensitivities: Array, correlation: Array) -> Array:
-    """Covariance (m, m) of m results of the same inputs, J V Jᵀ with J (m, n) = `sensitivities`.
-
-    References
-    ----------
-    JCGM 100:2008, H.2.3.
-    """
-    u = np.array([one.u for one in inputs])
-    jacobian = np.asarray(sensitivities, dtype=np.float64)
-    v = u[:, None] * _checked(np.asarray(correlation, dtype=np.float64), len(inputs)) * u
-    return np.asarray(jacobian @ v @ jacobian.T)
-
-
-def _checked(r: Array, n: int) -> Array:
-    if (
-        r.shape != (n, n)
-        or not np.allclose(r, r.T)
-        or not np.allclose(np.diag(r), 1)
-        or np.linalg.eigvalsh(r)[0] < -1e-6
-    ):
-        raise ValueError(
-            f"no correlation matrix of {n} inputs: it must be symmetric, with ones on its diagonal, and positive"
-        )
-    return r
 
 
 OF_EACH_SCAN = (POINT_NOISE, SWEEP_PLANES)

@@ -8,7 +8,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.arrays_file import read_arrays, real, texts, truth, whole, write_arrays
-from core.files.limits import DEPTH, PIXELS, check_depth
+from core.files.limits import PIXELS
 from core.files.pictures import read_picture
 from core.files.reading import csv_rows, json_of, read_bytes, read_text, toml_of
 from core.messages import plain
@@ -72,15 +72,6 @@ def test_toml_beyond_all_bounds_is_told(text, said):
 def test_toml_within_them_is_read():
     text = f'a.b = "{"x." * 100}" # {"[" * 100}\nc = """\n{"[" * 100}"""\nd = 0.123'
     assert toml_of(text, "a.toml")["d"] == 0.123
-
-
-def test_depth_of_what_has_been_read():
-    value = []
-    for _ in range(DEPTH - 1):
-        value = [value]
-    check_depth(value, "here")
-    with pytest.raises(InputError, match="more than 60 deep"):
-        check_depth([[value]], "here")
 
 
 def test_a_cell_longer_than_any_is_told(tmp_path):

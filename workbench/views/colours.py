@@ -11,7 +11,7 @@ from functools import cache, lru_cache
 from typing import Literal
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 from PySide6.QtGui import QColor
 
 Symbol = Literal["o", ".", "t", "x", "+", "s", "d"]
@@ -107,13 +107,3 @@ def sigma_table() -> NDArray[np.uint8]:
     rounded: NDArray[np.uint8] = np.round(np.column_stack([*columns, np.full(256, 255.0)])).astype(np.uint8)
     rounded.flags.writeable = False
     return rounded
-
-
-def sigma_colours(sigma_mm: ArrayLike, limit_mm: float) -> NDArray[np.uint8]:
-    """Colours (N, 4) of standard uncertainties (N,): blue is good, yellow at the limit, grey beyond it or unknown."""
-    sigma = np.asarray(sigma_mm, dtype=np.float64).reshape(-1)
-    known = np.isfinite(sigma) & (sigma <= limit_mm)
-    scaled = np.clip(np.where(known, sigma, 0.0) * (255.0 / limit_mm), 0, 255)
-    colours = sigma_table()[scaled.astype(np.uint8)]
-    colours[~known] = to_rgba(EXCLUDED)
-    return colours

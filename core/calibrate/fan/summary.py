@@ -90,7 +90,6 @@ def summarise(
             *_notes_on_predictions(poses),
             *_notes_on_bow(used.shape),
         ),
-        constraint_p=verdict.p,
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
         by_camera=used.by_camera,

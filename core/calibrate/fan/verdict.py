@@ -38,7 +38,6 @@ class Verdict:
     start: PlaneSet
     constrained_angles: tuple[float, ...]
     suits: bool | None
-    p: float
     pencil_gap_mm: float
     sentence: Message
 
@@ -74,7 +73,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
             sentence = Message(
                 "fan.two_planes", "two planes at an unknown angle always are a pencil: nothing constrains them"
             )
-        return Verdict(FreePlanes(pis), free_angles, None, np.nan, 0.0, sentence)
+        return Verdict(FreePlanes(pis), free_angles, None, 0.0, sentence)
     axis_only = _trial(free, None)
     gap = max(
         float(np.abs(LightPlane(pi).distances(_onto(own, points))).max())
@@ -89,7 +88,6 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
         start,
         fan_of(tied.pencil).angles,
         suits,
-        tied.p,
         gap,
         _sentence(start, tied, axis_only, free, angle, gap, constrained != "auto"),
     )

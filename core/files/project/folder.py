@@ -171,12 +171,6 @@ def write_autosave(folder: Path, file: ProjectFile) -> None:
         raise _unsaved(path, error) from error
 
 
-def read_autosave(folder: Path) -> ProjectFile | None:
-    """The autosaved state; None if there is none, InputError if it is damaged."""
-    path = folder / AUTOSAVE
-    return read_project_text(path) if path.exists() else None
-
-
 def remove_autosave(folder: Path) -> None:
     """Remove the autosaved state, if there is one; InputError if it cannot be removed."""
     path = folder / AUTOSAVE

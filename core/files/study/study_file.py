@@ -95,7 +95,7 @@ def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
         "k": budget.k,
         "U": budget.U,
         "unit": budget.unit,
-        "correlation": budget.correlation,
+        "correlation": None,  # the rows are independent
     }
 
 

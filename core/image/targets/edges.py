@@ -97,7 +97,7 @@ class Line:
     """normal · (X − middle) = 0, with the uncertainty of its place and direction.
 
     `sigma` is the points' spread about it, `variance_middle` that of the line's place at `middle`, `variance_angle`
-    of its direction; `inliers` tells the points used.
+    of its direction.
     """
 
     middle: Array
@@ -105,7 +105,6 @@ class Line:
     sigma: float
     variance_middle: float
     variance_angle: float
-    inliers: NDArray[np.bool_]
 
     @property
     def tangent(self) -> Array:
@@ -148,9 +147,7 @@ def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line
     along = ((xy - middle) @ np.array([-normal[1], normal[0]]))[used]
     sigma = float(np.sqrt((distance**2).sum() / (len(distance) - 2)))
     variance = sigma**2 * _correlation(distance)
-    inliers = np.zeros(len(points), dtype=np.bool_)
-    inliers[chosen[used]] = True
-    return Line(middle, normal, sigma, variance / len(distance), variance / float((along**2).sum()), inliers)
+    return Line(middle, normal, sigma, variance / len(distance), variance / float((along**2).sum()))
 
 
 def meet(a: Line, b: Line) -> Array:

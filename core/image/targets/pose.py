@@ -42,8 +42,6 @@ class PoseEstimate:
         (N,) False for points left out as outliers.
     rms_px
         Root mean square length of the residuals of the points used.
-    ambiguity
-        Misfit of the second pose a plane allows over that of `pose`, ≥ 1; infinite if there is no second one.
     ambiguous
         True if the view does not tell `pose` from `alternative`.
     alternative
@@ -55,7 +53,6 @@ class PoseEstimate:
     residuals: Array
     used: NDArray[np.bool_]
     rms_px: float
-    ambiguity: float
     ambiguous: bool
     alternative: Pose | None
 
@@ -67,8 +64,8 @@ class PoseEstimate:
 def estimate_pose(view: TargetView, camera: Camera) -> PoseEstimate:
     """The target's pose from `view`, by weighted least squares over the pixel residuals of the full camera model.
 
-    Both solutions that a plane allows (IPPE) are refined; the better one is the pose, and how much better it is, is
-    reported. With twelve points or more outliers lose their weight (Tukey).
+    Both solutions that a plane allows (IPPE) are refined; the better one is the pose, and whether the view tells
+    them apart is reported. With twelve points or more outliers lose their weight (Tukey).
 
     Raises
     ------
@@ -105,7 +102,6 @@ def estimate_pose(view: TargetView, camera: Camera) -> PoseEstimate:
         residuals=best.residuals,
         used=best.weight > 0,
         rms_px=float(np.sqrt(np.mean((best.residuals[best.weight > 0] ** 2).sum(axis=1)))),
-        ambiguity=float(np.sqrt(second / max(least, 1e-12))),
         ambiguous=bool(second - least < LIKELIHOOD_STEP),
         alternative=other.pose if other else None,
     )

@@ -27,8 +27,6 @@ class DeviationMap:
         (N, 3) in mm in the camera frame: the mesh's vertices, or points of the cloud.
     vertices
         (N,) which vertices of the mesh they are, or which points of the cloud.
-    on_mesh
-        Whether they are vertices of the mesh.
     deviation
         (N,) in mm.
     sigma
@@ -41,7 +39,6 @@ class DeviationMap:
 
     points: Array
     vertices: NDArray[np.int64]
-    on_mesh: bool
     deviation: Array
     sigma: Array
     tolerance_mm: float

@@ -198,7 +198,6 @@ class Preview:
             marks.uv,
             marks.status,
             marks.reason,
-            marks.with_fan,
             condition,
             speed,
             np.asarray(points.points, dtype=np.float64),

@@ -73,8 +73,6 @@ class FramePreview:
         (M,) `CrossingStatus`.
     crossing_reason
         One sentence for each crossing.
-    crossing_with_fan
-        (M,) False for crossings with other sweeps.
     condition
         Of the crossings with the fan: ratio of singular values, infinite when they are collinear or too few.
     speed_px
@@ -103,7 +101,6 @@ class FramePreview:
     crossing_uv: Array
     crossing_status: NDArray[np.int8]
     crossing_reason: tuple[Message, ...]
-    crossing_with_fan: NDArray[np.bool_]
     condition: float
     speed_px: float
     points: Array
@@ -138,7 +135,6 @@ def empty_preview(index: int, name: str, reason: Message | None) -> FramePreview
         empty,
         np.zeros(0, np.int8),
         (),
-        np.zeros(0, np.bool_),
         float("inf"),
         float("nan"),
         np.zeros((0, 3)),

@@ -18,7 +18,6 @@ from core.files.project.folder import (
     create_project,
     is_project,
     project_from_set,
-    read_autosave,
     read_project,
     recoverable,
     remove_autosave,
@@ -153,7 +152,7 @@ def test_killed_between_writing_and_renaming_the_old_state_is_whole(tmp_path, ca
         write_autosave(tmp_path, named(version))
     program = textwrap.dedent(KILLED).format(name=name, call=call, folder=str(tmp_path))
     assert subprocess.run([sys.executable, "-c", program], check=False).returncode == -9
-    assert read_project(tmp_path) == read_autosave(tmp_path) == named("old")
+    assert read_project(tmp_path) == read_project(tmp_path / ".autosave.json") == named("old")
     create_project(tmp_path, named("new"))  # and it can be saved afterwards
     assert read_project(tmp_path) == named("new")
     assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["old", "older"]
@@ -214,11 +213,10 @@ def test_a_file_where_the_folder_should_be_is_named(tmp_path):
 def test_autosaved_changes_can_be_recovered_until_they_are_saved(tmp_path):
     results = {"camera": Done("key", {"views": "1"})}
     create_project(tmp_path, named("saved"))
-    assert read_autosave(tmp_path) is None
     assert recoverable(tmp_path) is None
     changed = ProjectFile(new_project("saved"), results)
     write_autosave(tmp_path, changed)
-    assert recoverable(tmp_path) == read_autosave(tmp_path) == changed
+    assert recoverable(tmp_path) == changed
     create_project(tmp_path, changed)
     assert recoverable(tmp_path) is None  # also when the program died before it could remove the autosaved state
     remove_autosave(tmp_path)
@@ -230,7 +228,7 @@ def test_an_autosave_older_than_the_project_is_none(tmp_path):
     create_project(tmp_path, named("saved"))
     write_autosave(tmp_path, named("stale"))
     create_project(tmp_path, named("saved later"))
-    assert read_autosave(tmp_path) == named("stale")
+    assert read_project(tmp_path / ".autosave.json") == named("stale")
     assert recoverable(tmp_path) is None
 
 
@@ -238,8 +236,6 @@ def test_a_damaged_autosave_is_none_and_a_damaged_project_leaves_the_autosave(tm
     create_project(tmp_path, named("saved"))
     (tmp_path / ".autosave.json").write_bytes(b'{"schema')
     assert recoverable(tmp_path) is None
-    with pytest.raises(InputError, match=r"\.autosave\.json"):
-        read_autosave(tmp_path)
     write_autosave(tmp_path, named("rescued"))
     (tmp_path / "project.json").write_bytes(b"")
     assert recoverable(tmp_path) == named("rescued")

@@ -95,7 +95,7 @@ def test_sigma_is_given_for_every_point_of_the_stripe(block):
 def test_every_crossing_has_a_status_and_a_sentence(block):
     for frame in block.frames:
         count = len(frame.crossing_uv)
-        assert len(frame.crossing_status) == len(frame.crossing_reason) == len(frame.crossing_with_fan) == count
+        assert len(frame.crossing_status) == len(frame.crossing_reason) == count
         assert set(frame.crossing_status) <= set(CrossingStatus)
         assert all(reason.endswith(".") and reason[0].isupper() for reason in map(str, frame.crossing_reason))
     good = [

@@ -80,7 +80,6 @@ def preview(number: int, *, condition: float = 120.0, hints: tuple[str, ...] = (
         crossing_reason=tuple(
             map(plain, ("Good: it crosses line 1 of the fan at 80°.", WEAK, "Left out: the lines bend too much here."))
         ),
-        crossing_with_fan=np.ones(3, bool),
         condition=condition,
         speed_px=1.0,
         points=points,

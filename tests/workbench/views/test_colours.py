@@ -8,18 +8,17 @@ from workbench.views.colours import (
     EXCLUDED,
     FAN,
     fan_colour,
-    sigma_colours,
+    sigma_table,
     to_rgba,
 )
 
 
-def test_small_sigma_is_blue_the_limit_yellow_and_beyond_it_grey():
-    colours = sigma_colours([0.0, 0.05, 0.0501, np.nan, np.inf], 0.05)
-    assert colours.shape == (5, 4)
+def test_small_sigma_is_blue_and_the_limit_yellow():
+    colours = sigma_table()
+    assert colours.shape == (256, 4)
     assert colours.dtype == np.uint8
     assert colours[0, 2] > colours[0, 0]
-    assert colours[1, 0] > 200 > colours[1, 2]
-    assert (colours[2:] == to_rgba(EXCLUDED)).all()
+    assert colours[-1, 0] > 200 > colours[-1, 2]
 
 
 def test_crossings_differ_by_symbol_as_well_as_by_colour():

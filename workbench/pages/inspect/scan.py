@@ -105,11 +105,6 @@ class InspectScan(QObject):
             replace_waiting=True,
         )
 
-    def read_again(self) -> None:
-        """Read the scan once more."""
-        self._asked, self.problem = (), ""
-        self.look(seen=True)
-
     def forget(self) -> None:
         """Show none."""
         self.view, self.problem, self.is_new = None, "", True

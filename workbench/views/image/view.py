@@ -274,14 +274,6 @@ class ImageView(QWidget):
         """Take a layer away; none of that name is no error."""
         self._layers.remove(name)
 
-    def set_layer_visible(self, name: str, visible: bool) -> None:
-        """Show or hide a layer; remembered for the name, also while there is no such layer."""
-        self._layers.set_visible(name, visible)
-
-    def is_layer_visible(self, name: str) -> bool:
-        """Whether a layer of that name is to be shown."""
-        return self._layers.is_visible(name)
-
     def clear_layers(self) -> None:
         """Take all layers away."""
         self._layers.clear()

@@ -7,14 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from workbench.theme import shades
 from workbench.views.colours import FAN, ColourLike, to_colour
 from workbench.views.plots.base import Plot
-
-_DASH = Qt.PenStyle.DashLine
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -27,11 +24,10 @@ class _Curve:
 
 
 class LineChart(Plot):
-    """Curves over one axis, with limits."""
+    """Curves over one axis."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._curves: dict[str, _Curve] = {}
-        self._lines: dict[str, tuple[float, str]] = {}
         self._names = ("", "", "", "")
         self._from_zero = False
         super().__init__(parent)
@@ -51,21 +47,8 @@ class LineChart(Plot):
         self._curves[name] = _Curve(across, up, colour, title, points)
         self._redraw()
 
-    def remove_curve(self, name: str) -> None:
-        """Take a curve away; none of that name is no error."""
-        self._curves.pop(name, None)
-        self._redraw()
-
-    def set_limit(self, name: str, y: float | None, text: str = "") -> None:
-        """A line across at a value; None takes it away."""
-        if y is None:
-            self._lines.pop(name, None)
-        else:
-            self._lines[name] = (y, text)
-        self._redraw()
-
     def clear(self, message: str = "") -> None:
-        self._curves, self._lines = {}, {}
+        self._curves = {}
         super().clear(message)
 
     def _has_data(self) -> bool:
@@ -95,15 +78,10 @@ class LineChart(Plot):
                 self._legend.addItem(item, curve.title)
         self._legend.setVisible(any(curve.title for curve in self._curves.values()))
         self._set_range()
-        for y, text in self._lines.values():
-            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(s.bad, 1.2, _DASH)))
-            words = self._words(text, s.bad, (1, 1))
-            words.setPos(self._box.viewRange()[0][1], y)
-            self._item.addItem(words, ignoreBounds=True)
 
     def _set_range(self) -> None:
         x = np.concatenate([curve.x for curve in self._curves.values()])
-        y = np.concatenate([*(curve.y for curve in self._curves.values()), [y for y, _ in self._lines.values()]])
+        y = np.concatenate([curve.y for curve in self._curves.values()])
         x, y = x[np.isfinite(x)], y[np.isfinite(y)]
         if len(x) and len(y):
             margin = 0.08 * float(y.max() - y.min()) or 0.05 * abs(float(y.max())) or 1.0

@@ -278,10 +278,6 @@ class SceneView(QWidget):
         self._axes = shown
         self._canvas.update()
 
-    def set_grid(self, shown: bool) -> None:
-        """Show or hide a millimetre grid under the scene."""
-        self._buttons.grid.setChecked(shown)
-
     def remove(self, name: str) -> None:
         """Take away planes, lines, labels, measures or highlights of that name; none is no error."""
         self._scene.remove(name)

@@ -19,12 +19,10 @@ from __future__ import annotations
 
 import math
 from functools import lru_cache
-from typing import NamedTuple
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
-from core.compiled import compiled
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.speckle import Speckle
 from core.model.arrays import Array
@@ -39,36 +37,16 @@ _CLASS_STEP = 1.08
 cache lives on."""
 
 
-class Influence(NamedTuple):
-    """The weight as `weight_at` takes it, (DEGREE + 1,), and the share of speckle in the variance."""
-
-    weight: Array
-    speckle_share: float
-
-
-def influence(height: float, background: float, width_px: float, noise: NoiseModel, speckle: Speckle) -> Influence:
-    """Compute the weight for a section of this height and background in grey levels and this σ in px.
-
-    All figures are rounded to steps of 8 %, which costs nothing noticeable, so that few different ones are computed.
-    """
-    return _influence(_coarse(height), *_figures(background, width_px, noise, speckle))
-
-
 def influences(
     heights: tuple[float, ...], background: float, width_px: float, noise: NoiseModel, speckle: Speckle
 ) -> tuple[Array, Array]:
-    """Compute weights (K, DEGREE + 1) and shares of speckle (K,) for sections that differ in their height alone."""
+    """Compute weights (K, DEGREE + 1) and shares of speckle in the variance (K,) for sections of these heights.
+
+    At x stripe σ from the middle ψ per pixel is x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1, and 0 beyond REACH. Heights
+    and background are in grey levels, the width is a σ in px. All figures are rounded to steps of 8 %, which costs
+    nothing noticeable, so that few different ones are computed.
+    """
     return _stacked(heights, _figures(background, width_px, noise, speckle))
-
-
-@compiled(fastmath=True)
-def weight_at(x: float, weight: Array) -> float:
-    """ψ per pixel at `x` stripe σ from the middle, 0 beyond REACH: x·Σ weight_k·τ^k with τ = 2 (x/REACH)² − 1."""
-    tau = 2 * (x / REACH) ** 2 - 1
-    total = 0.0
-    for k in range(DEGREE, -1, -1):
-        total = total * tau + weight[k]
-    return x * total if tau <= 1 else 0.0
 
 
 def _figures(background: float, width_px: float, noise: NoiseModel, speckle: Speckle) -> tuple[float, ...]:
@@ -79,7 +57,7 @@ def _figures(background: float, width_px: float, noise: NoiseModel, speckle: Spe
 @lru_cache(maxsize=1024)
 def _stacked(heights: tuple[float, ...], figures: tuple[float, ...]) -> tuple[Array, Array]:
     found = [_influence(_coarse(height), *figures) for height in heights]
-    weights, shares = np.array([f.weight for f in found]), np.array([f.speckle_share for f in found])
+    weights, shares = np.array([weight for weight, _ in found]), np.array([share for _, share in found])
     weights.flags.writeable = shares.flags.writeable = False
     return weights, shares
 
@@ -89,7 +67,9 @@ def _coarse(value: float) -> float:
 
 
 @lru_cache(maxsize=4096)
-def _influence(height: float, floor: float, width: float, shot: float, contrast: float, grain: float) -> Influence:
+def _influence(
+    height: float, floor: float, width: float, shot: float, contrast: float, grain: float
+) -> tuple[Array, float]:
     # All functions are odd, so one half of the section does: node i stands for a strip around x[i] and its mirror.
     strip = REACH * width / _NODES
     x = (np.arange(_NODES) + 0.5) * strip
@@ -110,4 +90,4 @@ def _influence(height: float, floor: float, width: float, shot: float, contrast:
     share = 1 - float(np.sum((shapes @ best) ** 2 * white) / (best @ unknowns[:, 0]))
     weight = np.asarray(chebyshev.cheb2poly(best))
     weight.flags.writeable = False
-    return Influence(weight, share)
+    return weight, share

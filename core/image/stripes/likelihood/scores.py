@@ -187,7 +187,7 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, weight: Float32, r
 
     With r what the model leaves of a pixel and e = exp(−x²/2s²): Σ r·ψ, Σ x·e·ψ, Σ e·ψ, Σ r·e, Σ x·e², Σ e², and how
     many pixels near enough cannot be used: those not `seen`, and those that show other light. The exponential is that
-    of `core.image.stripes.section_fit`, ψ/x that of `core.image.stripes.likelihood.influence.weight_at`.
+    of `core.image.stripes.section_fit`, ψ/x that of `core.image.stripes.likelihood.influence.influences`.
     """
     w0, w1, w2, w3, w4, w5 = weight[0], weight[1], weight[2], weight[3], weight[4], weight[5]
     w6, w7, w8, w9, w10 = weight[6], weight[7], weight[8], weight[9], weight[DEGREE]

@@ -7,10 +7,11 @@ from functools import cache
 
 import numpy as np
 import pytest
+from numpy.polynomial.polynomial import polyval
 
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, extract_centrelines
-from core.image.stripes.likelihood.influence import REACH, influence, weight_at
+from core.image.stripes.likelihood.influence import REACH, influences
 from core.image.stripes.likelihood.refinement import cuts_of, residuals
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.profile import Sections
@@ -179,8 +180,8 @@ ACROSS = np.linspace(-REACH, REACH, 73)
 
 
 def weights(height: float, background: float, width: float, grains: Speckle) -> np.ndarray:
-    found = influence(height, background, width, NOISE, grains).weight
-    return np.array([weight_at(x, found) for x in ACROSS])
+    (found,), _ = influences((height,), background, width, NOISE, grains)
+    return np.asarray(ACROSS * polyval(2 * (ACROSS / REACH) ** 2 - 1, found))
 
 
 def test_without_speckle_the_weights_are_the_plain_ones() -> None:
@@ -189,7 +190,7 @@ def test_without_speckle_the_weights_are_the_plain_ones() -> None:
     variance = NOISE.variance(10.0 + section)
     plain = section * x / 4.0 / variance
     plain -= np.sum(plain * x) / np.sum(x**2 / variance) * x / variance
-    assert influence(120.0, 10.0, 2.0, NOISE, NO_SPECKLE).speckle_share == pytest.approx(0.0, abs=1e-9)
+    assert influences((120.0,), 10.0, 2.0, NOISE, NO_SPECKLE)[1] == pytest.approx(0.0, abs=1e-9)
     assert np.abs(weights(120.0, 10.0, 2.0, NO_SPECKLE) - plain).max() < 0.05 * np.abs(plain).max()
 
 
@@ -197,7 +198,7 @@ def test_speckle_moves_the_weight_to_the_flanks() -> None:
     grains = Speckle(0.2, 2.0)
     plain, speckled = (np.abs(weights(150.0, 0.0, 2.5, g)) for g in (NO_SPECKLE, grains))
     assert np.average(np.abs(ACROSS), weights=speckled) > np.average(np.abs(ACROSS), weights=plain) + 0.12
-    assert 0.5 < influence(150.0, 0.0, 2.5, NOISE, grains).speckle_share < 1
+    assert 0.5 < influences((150.0,), 0.0, 2.5, NOISE, grains)[1][0] < 1
 
 
 @pytest.mark.parametrize("grains", [Speckle(0.1, 2.0), Speckle(0.2, 1.41), Speckle(0.2, 2.24)])

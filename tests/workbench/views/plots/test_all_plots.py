@@ -41,7 +41,6 @@ def filled(kind):
     else:
         plot.set_axes("time", "s", "speed", "mm/s")
         plot.set_curve("speed", [0, 1, 2], [3, np.nan, 5], title="Speed")
-        plot.set_limit("limit", 4, "too fast above 4 mm/s")
     return plot
 
 

@@ -19,6 +19,7 @@ from tests.workbench.views.scene.test_view_numbers import crossing_number
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.views.scene import drawing
 from workbench.views.scene import ready as ready_module
+from workbench.views.scene.buttons import SceneButtons
 from workbench.views.scene.contents import Scene
 from workbench.views.scene.ready import Readiness, readiness
 from workbench.views.scene.view import Colouring, SceneView
@@ -292,10 +293,10 @@ def test_the_grid_lies_under_the_scene(view, qtbot):
     view.set_cloud(FLAT, colours=RED)
     complete(view, qtbot)
     before = view.picture()
-    view.set_grid(True)
+    view.findChild(SceneButtons).action("grid").setChecked(True)
     complete(view, qtbot)
     assert (view.picture() != before).any(axis=2).sum() > 1000
-    view.set_grid(False)
+    view.findChild(SceneButtons).action("grid").setChecked(False)
     complete(view, qtbot)
     assert_array_equal(view.picture(), before)
 
