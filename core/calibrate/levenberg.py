@@ -66,13 +66,15 @@ class Solution(Generic[State, Model]):
     converged: bool
 
 
+MOST_STEPS = 50
+LEAST_GAIN = 1e-9
+"""It has converged when a step lowers the sum by no more than this share of it."""
+
+
 def minimise(
     state: State,
     linearise: Callable[[State], Model],
     move: Callable[[State, Array], State],
-    *,
-    iterations: int = 50,
-    tolerance: float = 1e-9,
 ) -> Solution[State, Model]:
     """Minimise the sum of squared residuals.
 
@@ -84,12 +86,10 @@ def minimise(
         Gives the residuals near a state.
     move
         Takes a local step (P,) from a state.
-    iterations, tolerance
-        Stops when a step lowers the sum by less than `tolerance` of itself.
     """
     linear = linearise(state)
     damping: float = FIRST_DAMPING
-    for _ in range(iterations):
+    for _ in range(MOST_STEPS):
         while True:
             trial = move(state, linear.step(damping))
             trial_linear = linearise(trial)
@@ -101,6 +101,6 @@ def minimise(
         gain = linear.cost - trial_linear.cost
         state, linear = trial, trial_linear
         damping = max(damping / DAMPING_FACTOR, LEAST_DAMPING)
-        if gain <= tolerance * linear.cost:
+        if gain <= LEAST_GAIN * linear.cost:
             return Solution(state, linear, converged=True)
     return Solution(state, linear, converged=False)

@@ -20,7 +20,7 @@ MODELS = ("plumb_bob", "rational_polynomial")
 """Models that can be read; of the second only what the first could say."""
 
 
-def write_camera_info(path: Path, calibration: CameraCalibration, name: str = "camera") -> None:
+def write_camera_info(path: Path, calibration: CameraCalibration) -> None:
     """Write camera_info.yaml.
 
     Raises
@@ -46,7 +46,7 @@ def write_camera_info(path: Path, calibration: CameraCalibration, name: str = "c
     lines = [
         f"image_width: {camera.image_size[0]}",
         f"image_height: {camera.image_size[1]}",
-        f"camera_name: {name}",
+        "camera_name: camera",
         *_matrix("camera_matrix", matrix.tolist()),
         "distortion_model: plumb_bob",
         *_matrix("distortion_coefficients", [camera.distortion.tolist()]),

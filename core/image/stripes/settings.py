@@ -16,7 +16,7 @@ from core.image.stripes.profile import measure_profiles
 from core.image.stripes.runs import arc_length, cut_ends
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
-from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
+from core.image.stripes.tracing.pixel_state import SATURATED
 from core.image.stripes.tracing.seeds import coarse_crests
 from core.model.arrays import Array
 
@@ -41,9 +41,7 @@ _SHARE_OF_STRONGEST = 0.12  # a run starts from this share of the strong stripes
 _LOW_SHARE = 0.4  # and goes on down to this share of that
 
 
-def choose_settings(
-    picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None = None
-) -> StripeSettings | None:
+def choose_settings(picture: NDArray[np.float32], full_scale: float) -> StripeSettings | None:
     """Choose width and contrast of the stripes in a picture; None when it shows no stripe.
 
     Parameters
@@ -52,8 +50,6 @@ def choose_settings(
         (H, W) float32, a picture or a difference of two pictures.
     full_scale
         Largest grey value the pictures can hold (255, 65535); values from there on count as saturated.
-    mask
-        (H, W) True where nothing must be looked at.
 
     Notes
     -----
@@ -69,7 +65,7 @@ def choose_settings(
     Lindeberg, T., Edge detection and ridge detection with automatic scale selection, IJCV 30 (1998),
     doi:10.1023/A:1008097225773.
     """
-    found = _chosen(picture, full_scale, mask, 1)
+    found = _chosen(picture, full_scale, 1)
     if found is not None and found.longest > _NO_GRAIN * found.settings.width_px:
         return found.settings
     for factor in _REDUCED:
@@ -77,8 +73,7 @@ def choose_settings(
         if min(size) < _SMALLEST_REDUCED:
             break
         small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
-        covered = None if mask is None else cv2.resize(mask.astype(np.uint8), size, interpolation=cv2.INTER_AREA) > 0
-        wider = _chosen(small, full_scale, covered, factor)
+        wider = _chosen(small, full_scale, factor)
         if wider is not None and (found is None or wider.is_made_of(found)):
             found = wider
     return None if found is None else found.settings
@@ -106,15 +101,10 @@ class _Stripes:
         return float(np.mean(distance < self.settings.width_px)) > _MOSTLY
 
 
-def _chosen(
-    picture: NDArray[np.float32], full_scale: float, mask: NDArray[np.bool_] | None, factor: int
-) -> _Stripes | None:
+def _chosen(picture: NDArray[np.float32], full_scale: float, factor: int) -> _Stripes | None:
     """Choose settings in a picture reduced by a factor; None when it shows no stripe there."""
     state = np.where(picture >= full_scale, np.uint8(SATURATED), np.uint8(0))
-    if mask is not None:
-        state[mask] |= IGNORED
-        picture = np.where(mask, np.float32(np.median(picture[~mask])) if not mask.all() else 0, picture)
-    noise = estimate_noise(picture, mask).read_grey
+    noise = estimate_noise(picture).read_grey
     stripe_px, height = _first_guess(picture, noise)
     for _ in range(_ROUNDS):
         filter_px = filter_for(stripe_px)

@@ -158,9 +158,7 @@ def _on_sphere(points: Array, normals: Array, centre: Array, radius: float, tole
 def find_cylinder(
     cloud: Cloud,
     *,
-    radius_range_mm: tuple[float, float] = CYLINDER_RADII_MM,
     on_table: bool = True,
-    seed: int = 0,
     progress: Progress = silent,
 ) -> tuple[NDArray[np.int64], Cylinder]:
     """Indices (ascending) of the points on the cylinder that explains most of a cloud, and about where it lies.
@@ -172,12 +170,8 @@ def find_cylinder(
     ----------
     cloud
         With normals.
-    radius_range_mm
-        Cylinders outside are not taken.
     on_table
         Whether the largest plane is a table, and the cylinder in front of it.
-    seed
-        Of the random search.
     progress
         Called with how far it is.
 
@@ -187,12 +181,12 @@ def find_cylinder(
         If there is no cylinder.
     """
     tolerance = search_tolerance(cloud)
-    mine = above_table(cloud, tolerance, seed, progress) if on_table else np.arange(len(cloud))
+    mine = above_table(cloud, tolerance, 0, progress) if on_table else np.arange(len(cloud))
     mine = mine[cloud.normals[mine].any(axis=1)]
     points, normals = cloud.points[mine], cloud.normals[mine]
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     sample = rng.permutation(len(points))[:SEARCH_POINTS]
-    cylinder = _best_cylinder(points[sample], normals[sample], tolerance, radius_range_mm, rng)
+    cylinder = _best_cylinder(points[sample], normals[sample], tolerance, CYLINDER_RADII_MM, rng)
     if cylinder is None:
         raise InputError(
             Message("surface.no_cylinder", "none of its {n} points lie on a cylinder", n=len(mine)),

@@ -156,11 +156,14 @@ def add_color_bar(
     axes.tick_params(labelsize=6.5)
 
 
-def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappable, cells: int = 110) -> None:
+_CELLS = 110  # of a map along its longer side, at most
+
+
+def paint_map(axes: Axes, positions: Array, values: Array, colors: ScalarMappable) -> None:
     """Mean of `values` (N,) per square cell at `positions` (N, 2) growing right and up; empty cells stay blank."""
     low, size = positions.min(axis=0), np.maximum(np.ptp(positions, axis=0), 1e-9)
     # few points: larger cells, about three points in each
-    cell = float(size.max()) / min(cells, max(8, int(np.sqrt(len(values) / 3))))
+    cell = float(size.max()) / min(_CELLS, max(8, int(np.sqrt(len(values) / 3))))
     shape = np.floor(size / cell).astype(int) + 1
     index = np.minimum(((positions - low) / cell).astype(int), shape - 1)
     flat = index[:, 1] * shape[0] + index[:, 0]

@@ -29,16 +29,18 @@ from core.scan.features.room_light import RoomLight
 
 SAMPLE = 15
 """At most this many frames, spread over the scan, make a quantile reference: memory does not grow with the scan."""
+QUANTILE = 0.35
+"""Of the grey values of a pixel over the scan: below all that the sweep lights."""
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 
-def sample_indices(count: int, at_most: int = SAMPLE) -> list[int]:
-    """Indices of at most `at_most` frames spread evenly over `count`."""
-    return sorted({round(i) for i in np.linspace(0, count - 1, min(count, at_most))}) if count else []
+def sample_indices(count: int) -> list[int]:
+    """Indices of at most `SAMPLE` frames spread evenly over `count`."""
+    return sorted({round(i) for i in np.linspace(0, count - 1, min(count, SAMPLE))}) if count else []
 
 
-def quantile_reference(pictures: Sequence[Picture], quantile: float = 0.35) -> Picture:
+def quantile_reference(pictures: Sequence[Picture]) -> Picture:
     """The per-pixel low quantile of `pictures` (each height × width), by order statistics.
 
     Raises
@@ -48,7 +50,7 @@ def quantile_reference(pictures: Sequence[Picture], quantile: float = 0.35) -> P
     """
     if len(pictures) < 3:
         raise ValueError(f"{len(pictures)} pictures cannot tell the background from the sweep")
-    rank = int(quantile * (len(pictures) - 1))
+    rank = int(QUANTILE * (len(pictures) - 1))
     rows = [
         np.partition(np.stack([picture[row] for picture in pictures]), rank, axis=0)[rank]
         for row in range(len(pictures[0]))

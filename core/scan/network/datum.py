@@ -131,15 +131,13 @@ def _relief(rays: Array, inverse_depths: Array) -> float:
     return float(high - low)
 
 
-def main_plane(
-    rays: Array, inverse_depths: Array, tolerance_mm: float = MAIN_PLANE_MM
-) -> tuple[Array, NDArray[np.bool_]]:
+def main_plane(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Find the plane π (3,) that holds most points at `inverse_depths` (M,) on `rays` (M, 3), and the points on it.
 
-    The best of many through three of the points, then fitted to all within `tolerance_mm` of depth.
+    The best of many through three of the points, then fitted to all within `MAIN_PLANE_MM` of depth.
     """
     rng = np.random.default_rng(0)
-    tolerance = tolerance_mm * inverse_depths**2
+    tolerance = MAIN_PLANE_MM * inverse_depths**2
     best = np.zeros(len(rays), dtype=np.bool_)
     for _ in range(_TRIALS):
         chosen = rng.choice(len(rays), 3, replace=False)

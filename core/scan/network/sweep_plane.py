@@ -35,11 +35,11 @@ class SweepPlane:
     condition: float
 
 
-def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array, limit: float = LEFT_OUT_AT) -> SweepPlane:
+def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array) -> SweepPlane:
     """Fit the plane through crossings at `rays` (M, 3) of known `inverse_depths` (M,) with `sigmas` (M,), in 1/mm.
 
     With four or more crossings the one whose residual from the plane of the others is largest is left out if it exceeds
-    `limit` standard deviations.
+    `LEFT_OUT_AT` standard deviations.
 
     Raises
     ------
@@ -51,7 +51,7 @@ def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array, limit: 
     used = np.ones(len(rays), dtype=np.bool_)
     if len(rays) > 3:
         worst, size = _worst_left_out(rays, inverse_depths, sigmas)
-        if size > limit:
+        if size > LEFT_OUT_AT:
             used[worst] = False
     pi, covariance = _solve(rays[used], inverse_depths[used], sigmas[used])
     return SweepPlane(pi, covariance, used, plane_condition(rays[used]))

@@ -40,8 +40,6 @@ def build_mesh(
     surface: Surface,
     *,
     max_edge_px: float | None = None,
-    steepest: float = STEEPEST_EDGE,
-    largest_kink: float = LARGEST_KINK,
     progress: Progress = silent,
 ) -> Mesh:
     """Triangulate a fused surface.
@@ -52,10 +50,6 @@ def build_mesh(
         With normals (`core.scan.surface.normals.with_normals`) steps between parallel faces are cut too.
     max_edge_px
         Longest edge in the picture; None: three times the longest edge of nine triangles in ten.
-    steepest
-        Angle in rad between an edge and the picture's plane above which it is a depth jump.
-    largest_kink
-        Angle in rad above which an edge that leaves the tangent planes of both its ends is a depth jump.
     progress
         Called with how far it is.
 
@@ -74,7 +68,7 @@ def build_mesh(
     triangles = delaunay(surface.uv)
     progress("mesh", 1, 3)
     if len(triangles):
-        triangles = _continuous(surface, triangles, max_edge_px, steepest, largest_kink)
+        triangles = _continuous(surface, triangles, max_edge_px)
     if not len(triangles):
         raise InputError(
             Message(
@@ -90,19 +84,17 @@ def build_mesh(
     return mesh
 
 
-def _continuous(
-    surface: Surface, triangles: NDArray[np.int64], max_edge_px: float | None, steepest: float, largest_kink: float
-) -> NDArray[np.int64]:
+def _continuous(surface: Surface, triangles: NDArray[np.int64], max_edge_px: float | None) -> NDArray[np.int64]:
     """The triangles that lie on one continuous surface, turned so that the camera sees their front."""
     limit = (
         LONGEST_EDGE * float(np.quantile(_longest(surface.uv, triangles), 0.9)) if max_edge_px is None else max_edge_px
     )
     known = (surface.normals != 0).any(axis=1)
     facing = np.where(known[:, None], surface.normals, [0.0, 0.0, -1.0])  # unknown: as if it faced the camera
-    steep = pixel_angle(surface.points, surface.uv) * np.tan(steepest)
+    steep = pixel_angle(surface.points, surface.uv) * np.tan(STEEPEST_EDGE)
     turned = triangles.copy()
     vertices = _Vertices(surface.points, surface.uv, surface.sigma, facing)
-    kept = _kept(vertices, turned, _Limits(limit, steep, float(np.sin(largest_kink))))
+    kept = _kept(vertices, turned, _Limits(limit, steep, float(np.sin(LARGEST_KINK))))
     return np.asarray(turned[kept], dtype=np.int64)
 
 

@@ -69,16 +69,16 @@ def pixel_angle(points: Array, uv: Array) -> float:
     return float(np.sqrt(np.var(rays, axis=0).sum() / spread))
 
 
-def with_normals(points: Points, radius_px: float | None = None, progress: Progress = silent) -> Points:
+def with_normals(points: Points, progress: Progress = silent) -> Points:
     """Estimate a unit normal towards the camera for each point of a cloud or surface.
+
+    Neighbours are taken within the smallest distance in the picture that reaches across several stripes for most
+    points.
 
     Parameters
     ----------
     points
         A cloud or a fused surface.
-    radius_px
-        Neighbours are taken within this distance in the picture; None: the smallest that reaches across several
-        stripes for most points.
     progress
         Called with how far it is.
 
@@ -91,7 +91,7 @@ def with_normals(points: Points, radius_px: float | None = None, progress: Progr
     normals = np.zeros((len(points), 3))
     if len(points) >= LEAST_NEIGHBOURS and np.var(points.uv, axis=0).sum() > 0:
         progress("normals", 0, 2)
-        radius = reach(points.uv) if radius_px is None else float(radius_px)
+        radius = reach(points.uv)
         progress("normals", 1, 2)
         normals = _estimate(points.points, points.uv, points.sigma, radius)
         progress("normals", 2, 2)

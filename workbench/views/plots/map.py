@@ -47,19 +47,15 @@ class HeatMap(Plot):
         size: tuple[int, int],
         label: str,
         unit: str,
-        limits: tuple[float, float] | None = None,
         colour_map: MapName = "viridis",
     ) -> None:
-        """Values (rows, columns) over a picture of `size` (width, height) in pixels; row 0 is at the top.
-
-        `limits` are the values at the ends of the colour bar, by default the smallest and largest.
-        """
+        """Values (rows, columns) over a picture of `size` (width, height) in pixels; row 0 is at the top."""
         self._values = np.asarray(values, dtype=np.float64)
         finite = self._values[np.isfinite(self._values)]
         if self._values.ndim != 2 or not finite.size:
             self.clear(self._empty.message)
             return
-        low, high = limits if limits is not None else (float(finite.min()), float(finite.max()))
+        low, high = float(finite.min()), float(finite.max())
         self._limits = (low, high if high > low else low + max(abs(low), 1e-3))
         self._size, self._label, self._unit, self._colour_map = size, label, unit, colour_map
         self._redraw()
