@@ -75,14 +75,12 @@ def show_target(image: ImageView, detail: PlanesDetail) -> None:
     _remove_others(image, "stripe ", names)
 
 
-def show_sweep(
-    image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[ArrayLike] = (), limit_mm: float = PREVIEW_SIGMA_MM
-) -> None:
+def show_sweep(image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[ArrayLike] = ()) -> None:
     """The hand-held laser's centrelines, coloured by σ where it is given."""
     lines = [piece.uv for piece in pieces]
     if len(sigma) == len(lines):
-        title = tr("sweep: σ 0 … {limit:g} mm, else grey", limit=limit_mm)
-        image.set_lines("sweep", lines, values=sigma, limits=(0.0, limit_mm), width=2.4, title=title)
+        title = tr("sweep: σ 0 … {limit:g} mm, else grey", limit=PREVIEW_SIGMA_MM)
+        image.set_lines("sweep", lines, values=sigma, limits=(0.0, PREVIEW_SIGMA_MM), width=2.4, title=title)
     else:
         image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=tr("sweep"))
 

@@ -171,19 +171,22 @@ class TextEditor(QLineEdit):
             self.committed.emit()
 
 
+_LINES = 4  # of a text of several, without scrolling
+
+
 class MultilineEditor(QPlainTextEdit):
     """Several lines of text; told when the focus leaves. Tab goes on to the next editor."""
 
     committed = Signal()
 
-    def __init__(self, lines: int) -> None:
+    def __init__(self) -> None:
         super().__init__()
         self._told = ""
         self.setTabChangesFocus(True)
         margins = (
             self.contentsMargins().top() + self.contentsMargins().bottom() + 2 * int(self.document().documentMargin())
         )
-        self.setFixedHeight(lines * self.fontMetrics().lineSpacing() + margins + 8)
+        self.setFixedHeight(_LINES * self.fontMetrics().lineSpacing() + margins + 8)
 
     def content(self) -> str:
         """The text."""

@@ -60,21 +60,19 @@ class SettingsForm(QWidget):
         """One line of text."""
         self._add(key, label, TextEditor(placeholder), help, tip, wide=True)
 
-    def add_multiline(self, key: str, label: str, help: str = "", *, lines: int = 4, tip: str = "") -> None:
+    def add_multiline(self, key: str, label: str, help: str = "") -> None:
         """Several lines of text."""
-        self._add(key, label, MultilineEditor(lines), help, tip, wide=True)
+        self._add(key, label, MultilineEditor(), help, wide=True)
 
-    def add_choice(
-        self, key: str, label: str, choices: Sequence[tuple[object, str]], help: str = "", *, tip: str = ""
-    ) -> None:
+    def add_choice(self, key: str, label: str, choices: Sequence[tuple[object, str]], help: str = "") -> None:
         """One of several (value, text)."""
         editor = ChoiceEditor(list(choices))
         editor.setMinimumWidth(_EDITOR_WIDTH)
-        self._add(key, label, editor, help, tip)
+        self._add(key, label, editor, help)
 
-    def add_check(self, key: str, label: str, help: str = "", *, tip: str = "") -> None:
+    def add_check(self, key: str, label: str, help: str = "") -> None:
         """Yes or no."""
-        self._add(key, "", CheckEditor(label), help, tip, wide=True)
+        self._add(key, "", CheckEditor(label), help, wide=True)
 
     # ---- using it
 
@@ -126,7 +124,7 @@ class SettingsForm(QWidget):
             for key in self._helps:
                 self._show_help(key)
 
-    def _add(self, key: str, label: str, editor: Editor, help: str, tip: str, *, wide: bool = False) -> None:
+    def _add(self, key: str, label: str, editor: Editor, help: str, tip: str = "", *, wide: bool = False) -> None:
         self._editors[key], self._tips[key] = editor, tip or help
         editor.setToolTip(tip or help)
         editor.setAccessibleDescription(help)

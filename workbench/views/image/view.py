@@ -254,11 +254,10 @@ class ImageView(QWidget):
         d_uv: ArrayLike,
         *,
         factor: float,
-        colour: ColourLike = RESIDUAL,
         title: str = "",
     ) -> None:
         """Arrows from uv (N, 2) to uv + factor · d_uv."""
-        self._layers.put(name, VectorsLayer(uv, d_uv, factor, colour, title))
+        self._layers.put(name, VectorsLayer(uv, d_uv, factor, RESIDUAL, title))
 
     def set_cells(self, name: str, grid: ArrayLike, colour: ColourLike = COVERED, *, title: str = "") -> None:
         """Tint the cells of a grid (rows, columns) over the whole picture where it is True."""

@@ -29,7 +29,7 @@ class ResidualPlot(Plot):
     def __init__(self, parent: QWidget | None = None) -> None:
         self._uv = self._residuals = np.zeros((0, 2))
         self._counted: NDArray[np.bool_] = np.zeros(0, dtype=bool)
-        self._size, self._unit = (1, 1), "px"
+        self._size = (1, 1)
         self._rms: float | None = None
         super().__init__(parent, least_height=220)
         self.kind = QComboBox()
@@ -55,9 +55,8 @@ class ResidualPlot(Plot):
         size: tuple[int, int],
         rms: float | None = None,
         counted: ArrayLike | None = None,
-        unit: str = "px",
     ) -> None:
-        """Residuals (N, 2) in `unit` at places uv (N, 2) of a picture of `size` (width, height).
+        """Residuals (N, 2) in px at places uv (N, 2) of a picture of `size` (width, height).
 
         `rms` is the radius of the circle in the scatter; `counted` (N,) is False for points left out.
         """
@@ -68,7 +67,7 @@ class ResidualPlot(Plot):
             chosen &= np.asarray(counted, dtype=np.bool_)
         finite = np.flatnonzero(np.isfinite(self._residuals).all(axis=1))
         self._uv, self._residuals, self._counted = self._uv[finite], self._residuals[finite], chosen[finite]
-        self._size, self._rms, self._unit = size, rms, unit
+        self._size, self._rms = size, rms
         if not len(self._uv):
             self.clear(self._empty.message)
         self._redraw()
@@ -113,7 +112,7 @@ class ResidualPlot(Plot):
             self._add_arrows(start, along, colour)
         length = nice_step(_SHARE * width / factor)
         self._add_arrows(np.array([[0.0, 1.07 * height]]), np.array([[length * factor, 0.0]]), s.text)
-        words = self._words(f"{written(length, length)} {self._unit}", s.text, (0, 0.5))
+        words = self._words(f"{written(length, length)} px", s.text, (0, 0.5))
         words.setPos(length * factor + 0.015 * width, 1.07 * height)
         self._item.addItem(words, ignoreBounds=True)
         self._box.setRange(QRectF(-0.5, -0.5, width, 1.13 * height), padding=0.03)
@@ -127,8 +126,8 @@ class ResidualPlot(Plot):
 
     def _draw_scatter(self) -> None:
         s = shades()
-        self._set_axis("bottom", tr("residual in u"), self._unit)
-        self._set_axis("left", tr("residual in v"), self._unit)
+        self._set_axis("bottom", tr("residual in u"), "px")
+        self._set_axis("left", tr("residual in v"), "px")
         for which, symbol, colour in ((self._counted, "o", s.accent), (~self._counted, "x", s.bad)):
             dots = self._residuals[which]
             size = 5 if symbol == "o" else 9
@@ -141,7 +140,7 @@ class ResidualPlot(Plot):
             circle = QGraphicsEllipseItem(QRectF(-self._rms, -self._rms, 2 * self._rms, 2 * self._rms))
             circle.setPen(self._pen(s.text, 1.5))
             self._item.addItem(circle, ignoreBounds=True)
-            words = self._words(f"RMS {written(self._rms, reach / 100)} {self._unit}", s.text, (0, 0))
+            words = self._words(f"RMS {written(self._rms, reach / 100)} px", s.text, (0, 0))
             words.setPos(-reach, -reach)
             self._item.addItem(words, ignoreBounds=True)
         self._box.setRange(QRectF(-reach, -reach, 2 * reach, 2 * reach), padding=0.02)

@@ -30,7 +30,6 @@ class _Runs:
     mean: float | None
     nominal: float | None
     tolerance: float | None
-    unit: str
     k: float
 
 
@@ -52,17 +51,16 @@ class RunChart(Plot):
         mean: float | None = None,
         nominal: float | None = None,
         tolerance: float | None = None,
-        unit: str = "mm",
         k: float = 2.0,
     ) -> None:
-        """Values (N,) with their U (N,); `tolerance` is the half width about `nominal`, `labels` name the scans."""
+        """Values (N,) and U (N,) in mm; `tolerance` is the half width about `nominal`, `labels` name the scans."""
         measured = np.asarray(values, dtype=np.float64).reshape(-1)
         names = tuple(labels) if labels is not None else tuple(str(i) for i in range(1, len(measured) + 1))
         if not len(measured):
             self.clear(self._empty.message)
             return
         spread = np.asarray(U, dtype=np.float64).reshape(-1)
-        self._runs = _Runs(measured, spread, names, mean, nominal, tolerance, unit, k)
+        self._runs = _Runs(measured, spread, names, mean, nominal, tolerance, k)
         self._redraw()
 
     def clear(self, message: str = "") -> None:
@@ -77,7 +75,7 @@ class RunChart(Plot):
         assert runs is not None
         count = len(runs.values)
         self._set_axis("bottom", tr("scan"))
-        self._set_axis("left", tr("thickness, U (k = {k:g})", k=runs.k), runs.unit)
+        self._set_axis("left", tr("thickness, U (k = {k:g})", k=runs.k), "mm")
         every = max(1, count // 12)
         self._item.getAxis("bottom").setTicks([[(i + 1, str(i + 1)) for i in range(0, count, every)]])
         at = np.arange(1, count + 1)
@@ -92,7 +90,7 @@ class RunChart(Plot):
             self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
             below = text == tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
             below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
-            words = self._words(f"{text} {written(y, (high - low) / 200)} {runs.unit}", colour, (1, 0 if below else 1))
+            words = self._words(f"{text} {written(y, (high - low) / 200)} mm", colour, (1, 0 if below else 1))
             self._words_shown.append((words, y))
             self._item.addItem(words, ignoreBounds=True)
         self._place_words()
@@ -127,7 +125,7 @@ class RunChart(Plot):
         if runs is None or not 0 <= place < len(runs.values):
             return ""
         value, U = (written(float(part[place]), 1e-4) for part in (runs.values, runs.U))
-        return f"{runs.labels[place]}: {value} ± {U} {runs.unit} (k = {number(runs.k, 'g')})"
+        return f"{runs.labels[place]}: {value} ± {U} mm (k = {number(runs.k, 'g')})"
 
 
 class Histogram(Plot):
