@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from datetime import datetime
 from pathlib import Path
 from typing import Literal
@@ -187,15 +187,7 @@ def write_check(path: Path, check: InterimCheck) -> None:
                 {
                     "name": pose.name,
                     "reason": kept(pose.reason),
-                    "lines": [
-                        {
-                            "line": one.line,
-                            "offset_mm": one.offset_mm,
-                            "offset_px": one.offset_px,
-                            "sd_mm": one.sd_mm,
-                        }
-                        for one in pose.lines
-                    ],
+                    "lines": [asdict(line) for line in pose.lines],
                 }
                 for pose in check.poses
             ],
@@ -207,25 +199,11 @@ def write_check(path: Path, check: InterimCheck) -> None:
 def read_check(path: Path) -> InterimCheck:
     """Read check.json; InputError if it is missing, no JSON, or a value is wrong."""
     file = checked(_CheckFile, read_json(path, todo=_TODO), path)
-    poses = (
-        CheckedPicture(
-            pose.name,
-            pose.reason,
-            tuple(CheckedLine(one.line, one.offset_mm, one.offset_px, one.sd_mm) for one in pose.lines),
-        )
+    poses = tuple(
+        CheckedPicture(pose.name, pose.reason, tuple(CheckedLine(**dict(line)) for line in pose.lines))
         for pose in file.poses
     )
-    return InterimCheck(
-        file.calibration_id,
-        file.pictures_id,
-        file.taken_at,
-        file.p,
-        tuple(poses),
-        file.step_mm,
-        file.error_mm,
-        file.unseen_mm,
-        file.stated_mm,
-    )
+    return InterimCheck(**{**dict(file), "poses": poses})
 
 
 def _rms(values: list[float]) -> float:
