@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
@@ -77,17 +77,7 @@ def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureSte
     InputError
         If it cannot be written.
     """
-    rows = [
-        {
-            "index": one.index,
-            "name": one.name,
-            "thickness_mm": one.thickness_mm,
-            "own_mm": one.own_mm,
-            "points": list(one.points),
-            "reason": kept(one.reason),
-        }
-        for one in pictures
-    ]
+    rows = [{**asdict(one), "reason": kept(one.reason)} for one in pictures]
     summary = gauge_summary(gauge)
     told = {"rule": kept(gauge.rule), "notes": [kept(note) for note in gauge.notes]}
     rest = {"pictures": rows, "shown": shown, "calibration_id": of, "version": __version__}
@@ -97,11 +87,8 @@ def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureSte
 def read_profiles_file(path: Path) -> ProfileFile:
     """Read profile.json; InputError if it is missing, no JSON, or a value is wrong."""
     file = checked(_ProfileFile, read_json(path, todo=_TODO), path)
-    pictures = tuple(
-        PictureStep(one.index, one.name, one.thickness_mm, one.own_mm, (one.points[0], one.points[1]), one.reason)
-        for one in file.pictures
-    )
-    return ProfileFile(file.thickness_mm, file.U_mm, pictures, file.shown, file.calibration_id)
+    pictures = tuple(PictureStep(**{**dict(one), "points": tuple(one.points)}) for one in file.pictures)
+    return ProfileFile(**{**dict(file), "pictures": pictures})
 
 
 _COLUMNS = {

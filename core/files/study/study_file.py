@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
@@ -20,7 +21,7 @@ from core.inspect.results import Contribution
 from core.messages import Command, Message
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, Reading, acceptance_check
 from core.study.budget import UncertaintyBudget, add_up
-from core.study.grr import AnovaRow, Component, GrrStudy, grr_study
+from core.study.grr import Component, GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
 from core.study.type1 import Type1Study, type1_study
 
@@ -159,8 +160,8 @@ def _grr(study: GrrStudy) -> dict[str, Any]:
         "operators": study.operators,
         "values": study.values,
         "tolerance_width": study.tolerance,
-        "anova": [_anova(row) for row in study.anova],
-        "anova_pooled": [_anova(row) for row in study.pooled_anova],
+        "anova": [asdict(row) for row in study.anova],
+        "anova_pooled": [asdict(row) for row in study.pooled_anova],
         "components": [_component(one) for one in study.components],
         "grr_of_total": {"value": study.component("gauge R&R").of_total, "interval": study.grr_interval},
         "grr_of_tolerance": {
@@ -169,10 +170,6 @@ def _grr(study: GrrStudy) -> dict[str, Any]:
         },
         "ndc": {"value": study.ndc, "categories": study.categories, "interval": study.ndc_interval},
     }
-
-
-def _anova(row: AnovaRow) -> dict[str, Any]:
-    return {"source": row.source, "ss": row.ss, "dof": row.dof, "ms": row.ms, "f": row.f, "p": row.p}
 
 
 def _component(one: Component) -> dict[str, Any]:
