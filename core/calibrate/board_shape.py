@@ -34,6 +34,9 @@ SUSPECTED_SCALE = 5e-4
 """Standard uncertainty of the size of a target of which nothing is known, as a share of it: an office laser printer's,
 whose feed rollers and drum grow with warmth and wear."""
 
+LARGEST_SCALE_SD = 0.1
+"""Larger standard uncertainties of a size, as a share of it, are absurd."""
+
 SURE = 1e-4
 """A board is bowed for sure if the probability that a flat one looks so is smaller; tests/calibrate/test_board_shape.py
 holds it."""
@@ -70,13 +73,13 @@ class BoardTolerance:
                     flatness_mm=self.flatness_mm,
                 )
             )
-        if self.scale_sd is not None and not 0 <= self.scale_sd <= 0.1:
+        if self.scale_sd is not None and not 0 <= self.scale_sd <= LARGEST_SCALE_SD:
             raise WrongValue(
                 Message(
                     "target.scale_absurd",
                     "a relative uncertainty of {scale_sd:g} of the size is not between 0 and {most:g}",
                     scale_sd=self.scale_sd,
-                    most=0.1,
+                    most=LARGEST_SCALE_SD,
                 )
             )
 
@@ -130,6 +133,17 @@ class BoardTolerance:
         """Indices of the parameters that are unknown."""
         return np.flatnonzero(self.sd)
 
+
+SIZE_ASSUMED = "target.size_assumed"
+"""Code of the note on a size that nobody has stated."""
+SIZE_UNCONFIRMED = Message(
+    "target.size_unconfirmed",
+    "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, so that "
+    "only what is compared with a master proves anything: state its standard uncertainty by its source, measure a "
+    "known artefact, or take a picture of it fixed to the camera's target whose own size is stated.",
+    field=Field("plane_target.scale_sd", whole=True),
+)
+"""Why no length proves anything where the size of the plane target is assumed and nothing measured holds it."""
 
 TRUE = BoardTolerance(0.0, 0.0)
 """Of a target that is as it should be."""

@@ -180,7 +180,8 @@ class FanCalibration:
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
     same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
-    no picture shows it, and all lengths have it in common; `scale_assumed` where nobody has stated it.
+    no picture shows it, and all lengths have it in common; `scale_assumed` where nobody has stated it, nor does a
+    comparison with another size confirm it.
     `cross_validation_mm` is the RMS of the poses' prediction errors. `camera` and `camera_covariance` are the camera
     that the target's poses have corrected, which belongs to this fan; None where it was left as it is. `board` is the
     shape of the plane target where its flatness is uncertain; else it is flat. `bends` (N, 3, 3) are how the light was

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.calibrate.board_shape import SIZE_UNCONFIRMED
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
@@ -18,11 +19,13 @@ from core.inspect.features.thickness import with_limits
 from core.inspect.fit.elements import Element
 from core.inspect.fit.plane_search import FoundPlane
 from core.inspect.plan.alignment import three_two_one
+from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import kind_of
-from core.inspect.plan.temperature import at_reference, compared
+from core.inspect.plan.temperature import COMPARED, at_reference, compared
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message
 from core.model import Pose
 from core.progress import Progress, silent
@@ -159,8 +162,18 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     if plan.temperature is not None:
         rows = tuple(at_reference(row, plan.temperature) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
-        rows = tuple(compared(row, plan.master) for row in rows)
+        rows = tuple(_by_master(row, plan.master, scene.errors) for row in rows)
     return replace(result, characteristics=rows)
+
+
+def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> Characteristic:
+    """A length by comparison with a master: the size of the plane target, if that is all the doubt, cancels in it."""
+    found = compared(length, master)
+    unsized = errors.doubt is not None and errors.doubt.code == SIZE_UNCONFIRMED.code
+    if not unsized or not master.same_calibration or COMPARED not in {note.code for note in found.notes}:
+        return found
+    proves = replace(errors, doubt=None).complete and doubt_of_light(found.budget) is None
+    return replace(found, complete=proves)
 
 
 def _with_limits_of(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
@@ -212,6 +225,7 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
     if errors is not None:
         lengths = [getattr(errors, one.name) for one in fields(errors)]
         arrays += [np.array([length for length in lengths if isinstance(length, float)])]
+        arrays += [] if errors.doubt is None else [np.frombuffer(str(errors.doubt).encode(), np.uint8)]
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]
         arrays += [] if errors.common is None else [errors.common.sweeps, errors.common.cameras, errors.common.fans]

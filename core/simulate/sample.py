@@ -10,6 +10,7 @@ from pathlib import Path
 import platformdirs
 
 import core
+from core.calibrate.board_shape import TRUE
 from core.errors import InputError
 from core.files.project.data import Project, new_project
 from core.files.recording.rig import GaugeSpec
@@ -25,9 +26,9 @@ def sample_scenario() -> Scenario:
 
 
 def simulated_project(name: str) -> Project:
-    """Make a project with nothing measured for the simulated rig: what its gauge block should be is stated."""
+    """Make a project with nothing measured for the simulated rig: its targets and its gauge block are stated."""
     project, gauge = new_project(name), GaugeSpec(float(sample_scenario().height_mm), GAUGE_TOLERANCE_MM)
-    return replace(project, rig=replace(project.rig, gauge=gauge))
+    return replace(project, rig=replace(project.rig, gauge=gauge, camera_board=TRUE, plane_board=TRUE))
 
 
 def sample_folder() -> Path:

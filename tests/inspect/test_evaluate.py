@@ -5,10 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import SIZE_UNCONFIRMED
 from core.errors import InputError
 from core.inspect.characteristic import Limits
+from core.inspect.conformity import Verdict
 from core.inspect.evaluate import evaluate
-from core.inspect.plan.conditions import Temperature
+from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
@@ -20,6 +22,7 @@ from core.inspect.plan.feature_spec import (
     Section,
 )
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.causes import POINT_NOISE
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
@@ -175,3 +178,30 @@ def test_flatness_scatters_as_much_as_its_uncertainty_says():
         found += [evaluate(plan, scan, errors=ERRORS).characteristics[0]]
     values, stated = np.array([row.value for row in found]), np.array([row.u for row in found])
     assert 0.4 < values.std(ddof=1) / np.sqrt(np.mean(stated**2)) < 1.8
+
+
+def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_the_target_is_assumed(cloud):
+    doubted = replace(ERRORS, doubt=SIZE_UNCONFIRMED)
+    master = Master("M", 40.0, 1e-3, 40.001, ((POINT_NOISE, 1e-3),), ("height",))
+    plan = InspectionPlan(
+        (
+            *PLANES,
+            replace(DERIVED[0], limits=(("distance", Limits(40.0, -0.5, 0.5)),)),
+            FeatureSpec("block", "thickness"),
+        ),
+        master=master,
+    )
+    sure, found = rows(evaluate(plan, cloud, errors=ERRORS)), rows(evaluate(plan, cloud, errors=doubted))
+    assert found["height distance"].verdict == sure["height distance"].verdict == Verdict.CONFORMING
+    assert not found["block thickness"].complete
+    for other in (replace(master, measured_mm=60.0), replace(master, same_calibration=False)):
+        of_other = rows(evaluate(replace(plan, master=other), cloud, errors=doubted))
+        assert of_other["height distance"].verdict == Verdict.NOT_PROVEN
+
+
+def test_a_doubt_that_comes_or_goes_has_all_measured_again(cloud):
+    plan = InspectionPlan(PLANES)
+    before = evaluate(plan, cloud, errors=ERRORS)
+    after = evaluate(plan, cloud, errors=replace(ERRORS, doubt=SIZE_UNCONFIRMED), previous=before)
+    assert [row.complete for row in before.characteristics] == [True] * len(after.characteristics)
+    assert [row.complete for row in after.characteristics] == [False] * len(after.characteristics)

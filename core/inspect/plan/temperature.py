@@ -38,6 +38,9 @@ from core.inspect.uncertainty.causes import (
 )
 from core.messages import Message
 
+COMPARED = "feature.compared_with_master"
+"""Code of the note on a length that was compared with a master."""
+
 ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
 

@@ -27,7 +27,7 @@ from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
-from core.pipeline.steps.validity import doubt_of_the_day
+from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
@@ -76,7 +76,7 @@ def profile_step(
     """
     options, found = options or Options(), work.found
     paths = _pictures(found, options)
-    calibration = work.calibration()
+    calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
     known, spec = _known(calibration, tilt), found.rig.gauge or GaugeSpec()
     if fan.lines == 1 and known is None:

@@ -21,7 +21,7 @@ from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
 from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan, require_frames
-from core.pipeline.steps.validity import doubt_of_the_day
+from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
@@ -90,7 +90,7 @@ def scan_step(
     found = work.found
     require_scan(found)
     require_frames(found, options)
-    calibration = work.calibration()
+    calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)

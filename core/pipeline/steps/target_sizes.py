@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import cv2
 import numpy as np
 
+from core.calibrate.board_shape import LARGEST_SCALE_SD, SIZE_ASSUMED
 from core.calibrate.results import FanCalibration
 from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
 from core.files.pictures import read_picture
@@ -74,6 +76,9 @@ def with_compared_sizes(
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
     """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
 
+    A plane target of which nothing is stated has the size that its pictures beside a camera's target of a stated one
+    give: uncertain by that one, by the pictures, and by all that they find, which nothing corrects.
+
     Raises
     ------
     InputError
@@ -82,7 +87,19 @@ def with_compared_sizes(
     ratio, notes = compare_targets(found, camera)
     if ratio is None:
         return fan, notes
-    stated = (found.rig.camera_board.size_sd**2 + found.rig.plane_board.size_sd**2) ** 0.5
-    if ratio.p(stated) < P_TOLD and ratio.fit_p >= NOT_FIXED:
-        fan = replace(fan, scale_sd=min(0.1, max(fan.scale_sd, abs(ratio.ratio - 1))))
-    return fan, (*notes, ratio.note(stated))
+    stated = math.hypot(found.rig.camera_board.size_sd, found.rig.plane_board.size_sd)
+    said = (*notes, ratio.note(stated))
+    if ratio.fit_p < NOT_FIXED:
+        return fan, said
+    known = found.rig.camera_board.scale_sd
+    if fan.scale_assumed and known is not None:
+        return with_known_size(fan, math.hypot(known, ratio.u, ratio.ratio - 1)), said
+    if ratio.p(stated) < P_TOLD:
+        fan = replace(fan, scale_sd=min(LARGEST_SCALE_SD, max(fan.scale_sd, abs(ratio.ratio - 1))))
+    return fan, said
+
+
+def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
+    """The fan whose target has this standard uncertainty of its size, as a share: it is assumed no more."""
+    notes = tuple(note for note in fan.notes if note.code != SIZE_ASSUMED)
+    return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False, notes=notes)

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
 from datetime import datetime, timedelta
 
+from core.calibrate.board_shape import SIZE_UNCONFIRMED
 from core.calibrate.results import Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
@@ -14,6 +16,7 @@ from core.files.recording.set_listing import taken_at
 from core.files.results.rig_history import PastCheck, RigHistory, read_history
 from core.files.results.run_file import RunRecord
 from core.messages import Message, plural_message
+from core.pipeline.steps.target_sizes import with_known_size
 from core.pipeline.steps.workspace import Calibration, Workspace
 
 _DAY_S = 86_400.0
@@ -33,7 +36,8 @@ def history_of(rig: Rig, calibration_id: str) -> RigHistory:
 def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | None:
     """Why nothing measured proves conformity on the day it was recorded; None if calibration and check held.
 
-    The check nearest in time counts, before the recording or after it. What is not stated has no limit.
+    The check nearest in time counts, before the recording or after it. What is not stated has no limit. A size of the
+    plane target that is assumed proves nothing on any day.
     """
     found = work.found
     when = taken_at(found.frames)
@@ -55,7 +59,36 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             "conformity; calibrate again.",
             date=nearest.taken_at.astimezone(),
         )
-    return _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
+    lapsed = _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
+    return lapsed or (SIZE_UNCONFIRMED if calibration.fan.scale_assumed else None)
+
+
+def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
+    """The calibration with a size of the plane target that nobody stated, as far as an artefact has confirmed it.
+
+    The artefact measured nearest in time counts, if it passed and that is no longer ago than `[validity]` lets a check
+    hold. The size is then uncertain by the error found, which nothing corrects, and by how sure that is, both as a
+    share of the artefact: a short one says less of a long part. A re-adjusted fan keeps the uncertainty it was
+    re-adjusted with, and is confirmed only by an artefact that says as much.
+    """
+    fan, rig = calibration.fan, work.found.rig
+    if not fan.scale_assumed:
+        return calibration
+    when = taken_at(work.found.frames)
+    try:
+        checks = history_of(rig, calibration.id).of_calibration(calibration.id)
+    except InputError:
+        return calibration  # doubt_of_the_day tells that it cannot be read
+    artefacts = [check for check in checks if check.artefact]
+    nearest = min(artefacts, key=lambda check: abs(check.taken_at - when), default=None)
+    if nearest is None or nearest.verdict != "passed":
+        return calibration
+    if rig.validity.check_days is not None and abs(_days(when, nearest.taken_at)) > rig.validity.check_days:
+        return calibration
+    shown = math.hypot(nearest.error_mm, nearest.unseen_mm / 2) / nearest.step_mm
+    if fan.readjusted is not None and shown > fan.scale_sd:
+        return calibration
+    return replace(calibration, fan=with_known_size(fan, shown))
 
 
 def _as_check(known: Readjustment, calibration_id: str) -> PastCheck:

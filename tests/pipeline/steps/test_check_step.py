@@ -217,6 +217,7 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_scale_assumed"]
     assert row.u_mm == pytest.approx(SUSPECTED_SCALE * gauge.thickness_mm, rel=0.05)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
+    assert gauge.verdict == Verdict.NOT_PROVEN and gauge.notes[0].code == "target.size_unconfirmed"
 
 
 @pytest.mark.parametrize(("stated", "said"), [(None, True), (0.0, False)])

@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.board_shape import TRUE
+from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.results import FanCalibration
 from core.files.pictures import write_picture
 from core.files.recording.recording_set import open_set
@@ -76,6 +76,29 @@ def test_a_square_stated_as_61_mm_in_place_of_60_is_found_out_and_in_u(tmp_path,
     assert {note.code for note in said} == {"target.sizes_disagree"}
     assert 2 * fan.scale_sd * 50 > 0.79, "U of a thickness of 50 mm holds it"
     assert fan.scale_sd == pytest.approx(1 / 61, rel=0.3)
+
+
+UNSTATED = replace(FAN, scale_assumed=True)
+
+
+@pytest.mark.parametrize(("side_mm", "off"), [(60.0, 0.0), (61.0, -1 / 61)])
+def test_a_camera_target_of_a_stated_size_confirms_the_plane_target(tmp_path, simulated, pictures, side_mm, off):
+    camera, shown = pictures
+    found = opened(tmp_path, simulated, shown, side_mm)
+    stated = BoardTolerance(scale_sd=3e-4)
+    found = replace(found, rig=replace(found.rig, camera_board=stated, plane_board=BoardTolerance()))
+    ratio, _ = compare_targets(found, camera)
+    fan, _ = with_compared_sizes(UNSTATED, found, camera)
+    assert not fan.scale_assumed
+    assert fan.scale_sd == pytest.approx(np.hypot(3e-4, np.hypot(ratio.u, ratio.ratio - 1)))
+    assert abs(ratio.ratio - 1 - off) < 3 * ratio.u
+
+
+def test_a_camera_target_of_which_nothing_is_stated_confirms_nothing(tmp_path, simulated, pictures):
+    camera, shown = pictures
+    found = opened(tmp_path, simulated, shown, 60.0)
+    found = replace(found, rig=replace(found.rig, camera_board=BoardTolerance(), plane_board=BoardTolerance()))
+    assert with_compared_sizes(UNSTATED, found, camera)[0].scale_assumed
 
 
 def test_targets_that_are_not_fixed_to_each_other_say_nothing(tmp_path, simulated, pictures):

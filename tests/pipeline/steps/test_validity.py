@@ -1,18 +1,21 @@
 """Calibrations and checks that lapse: what was recorded then proves nothing."""
 
 import os
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
+from core.calibrate.results import FanCalibration
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Validity, default_rig
 from core.files.recording.set_listing import PlanePair
 from core.files.results.rig_history import PastCheck, history_file, keep_check
 from core.files.results.run_file import RunRecord
-from core.pipeline.steps.validity import doubt_of_the_day
+from core.model import Fan, LightPlane
+from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from tests.check_cases import check
 
 NOON = datetime(2026, 5, 4, 12, tzinfo=UTC)
@@ -42,8 +45,73 @@ def checked(days, p=0.4):
 
 
 def doubt(work, readjusted=None):
-    told = doubt_of_the_day(work, SimpleNamespace(id=ID, fan=SimpleNamespace(readjusted=readjusted)))
+    fan = SimpleNamespace(readjusted=readjusted, scale_assumed=False)
+    told = doubt_of_the_day(work, SimpleNamespace(id=ID, fan=fan))
     return "" if told is None else told.code
+
+
+@dataclass(frozen=True)
+class _Calibration:
+    """A calibration by its id, with a fan."""
+
+    fan: FanCalibration
+    id: str = ID
+
+
+def calibrated(*, assumed):
+    plane = LightPlane(np.array([0.0, 0.001, 0.002]))
+    fan = FanCalibration(Fan((plane,)), Fan((plane,)), (0.0,), (), (), 0.0, None, None, ())
+    return _Calibration(replace(fan, scale_sd=5e-4, scale_assumed=assumed))
+
+
+def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed"):
+    """An artefact so many days before NOON, its error known to ±0.06 mm."""
+    past = PastCheck(
+        NOON - timedelta(days=days), ID, f"artefact {days}", verdict, 0.5, step_mm, error_mm=error_mm,
+        unseen_mm=0.06, stated_mm=0.0, artefact="GB 50", e_n=error_mm / 0.06,
+    )  # fmt: skip
+    keep_check(ID, past)
+
+
+def size_doubted(work, calibration):
+    told = doubt_of_the_day(work, with_size_by_artefact(work, calibration))
+    return told is not None and told.code == "target.size_unconfirmed"
+
+
+def test_a_size_of_the_plane_target_that_nobody_stated_proves_nothing(tmp_path):
+    assert size_doubted(recorded(tmp_path), calibrated(assumed=True))
+    assert not size_doubted(recorded(tmp_path), calibrated(assumed=False))
+
+
+def test_an_artefact_confirms_the_size_as_far_as_it_tells(tmp_path):
+    work = recorded(tmp_path, Validity(check_days=3))
+    checked(0.5)
+    assert size_doubted(work, calibrated(assumed=True)), "pictures of a check rest on the same size"
+    artefact_measured(5)
+    assert size_doubted(work, calibrated(assumed=True)), "too long ago"
+    artefact_measured(2)
+    assert not size_doubted(work, calibrated(assumed=True))
+    known = with_size_by_artefact(work, calibrated(assumed=True)).fan
+    assert known.scale_sd == pytest.approx(np.hypot(0.02, 0.03) / 50) and not known.scale_assumed
+    artefact_measured(1, step_mm=5.0)
+    assert with_size_by_artefact(work, calibrated(assumed=True)).fan.scale_sd == pytest.approx(10 * known.scale_sd)
+
+
+def test_an_artefact_that_failed_or_whose_certificate_has_lapsed_confirms_nothing(tmp_path):
+    work = recorded(tmp_path)
+    artefact_measured(3)
+    for days, verdict in ((2, "doubtful"), (1, "failed")):
+        artefact_measured(days, verdict=verdict)
+        assert with_size_by_artefact(work, calibrated(assumed=True)).fan.scale_assumed
+
+
+def test_a_readjusted_fan_is_confirmed_by_an_artefact_that_says_as_much_as_it_holds(tmp_path):
+    work, before = recorded(tmp_path), calibrated(assumed=True)
+    readjusted = replace(before, fan=replace(before.fan, readjusted=SimpleNamespace()))
+    artefact_measured(1)
+    assert with_size_by_artefact(work, readjusted).fan.scale_assumed, "7e-4 are more than 5e-4"
+    artefact_measured(0.5, step_mm=100.0)
+    assert not with_size_by_artefact(work, readjusted).fan.scale_assumed
 
 
 def test_what_is_not_stated_has_no_limit(tmp_path):
