@@ -23,6 +23,8 @@ _FIELDS = {
     "plane_target.scale_sd": label("u of its size"),
     "plane_target.flatness_mm": label("its flatness"),
     "camera_target.scale_sd": label("u of its size"),
+    "part.material": label("Material"),
+    "part.celsius": label("Temperature"),
     "target.inner_corners": label("columns and rows of the target"),
     "target.circles": label("columns and rows of the target"),
     "target.dictionary": label("markers of the target"),

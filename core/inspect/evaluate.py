@@ -23,7 +23,8 @@ from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import kind_of
-from core.inspect.plan.temperature import COMPARED, at_reference, compared
+from core.inspect.plan.temperature import COMPARED, at_reference, compared, temperature_of
+from core.inspect.uncertainty.part import TEMPERATURE_ASSUMED, Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message
@@ -142,6 +143,7 @@ def evaluate(
     results = tuple(scene.found[spec.name] for spec in plan.features)
     doubt = scene.errors.doubt
     notes = (*([doubt] if doubt else []), *([frame_problem] if frame_problem else []), *_missing(scene.errors))
+    notes += _of_part(plan, scene.errors.part)
     return Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
 
 
@@ -159,8 +161,10 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     except InputError as error:
         return FeatureResult(spec, problem=InputError(error.what, where=where, todo=error.todo).message)
     rows = result.characteristics
-    if plan.temperature is not None:
-        rows = tuple(at_reference(row, plan.temperature) for row in rows)
+    part = scene.errors.part
+    temperature = plan.temperature or (None if part is None else temperature_of(part))
+    if temperature is not None:
+        rows = tuple(at_reference(row, temperature) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
         rows = tuple(_by_master(row, plan.master, scene.errors) for row in rows)
     return replace(result, characteristics=rows)
@@ -226,6 +230,7 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
         lengths = [getattr(errors, one.name) for one in fields(errors)]
         arrays += [np.array([length for length in lengths if isinstance(length, float)])]
         arrays += [] if errors.doubt is None else [np.frombuffer(str(errors.doubt).encode(), np.uint8)]
+        arrays += [] if errors.part is None else [np.frombuffer(repr(errors.part).encode(), np.uint8)]
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]
         arrays += [] if errors.common is None else [errors.common.sweeps, errors.common.cameras, errors.common.fans]
@@ -239,6 +244,23 @@ def _sum_of(arrays: Iterable[NDArray[Any]]) -> str:
     for array in arrays:
         digest.update(np.ascontiguousarray(array).view(np.uint8).data if array.size else b"")
     return digest.hexdigest()
+
+
+def _of_part(plan: InspectionPlan, part: Part | None) -> tuple[Message, ...]:
+    """What is assumed of the part, and what is stated of it and used of thicknesses alone."""
+    if part is None:
+        return ()
+    assumed = tuple(one for one in part.assumed if plan.temperature is None or one.code != TEMPERATURE_ASSUMED)
+    if not part.surface_rows and not part.thicker_mm:
+        return assumed
+    return (
+        *assumed,
+        Message(
+            "part.thicknesses_alone",
+            "What is stated of the part's surface, a layer of spray or how deep its material is seen, is taken off "
+            "thicknesses alone: all else is as light shows it.",
+        ),
+    )
 
 
 def _missing(errors: PointErrors) -> tuple[Message, ...]:

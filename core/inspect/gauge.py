@@ -172,10 +172,10 @@ def measure_gauge(
     """
     errors = errors or PointErrors()
     fit = fit_gauge(cloud, errors=errors, regions=regions, seed=seed, progress=progress)
-    u, k = combined(fit.budget), student_factor(k, fit.budget)
+    u, factor = combined(fit.budget), student_factor(k, fit.budget)
     verdict = Verdict.NONE
     if nominal_mm is not None and tolerance_mm is not None:
-        verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, k * u)
+        verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, factor * u)
     missing = errors.missing()
     notes: tuple[Message, ...] = ()
     if missing:
@@ -183,7 +183,7 @@ def measure_gauge(
     gauge = GaugeResult(
         thickness_mm=fit.thickness_mm,
         u_mm=u,
-        k=k,
+        k=factor,
         upper=fit.upper,
         lower=fit.lower,
         parallelism=fit.parallelism,
@@ -195,6 +195,8 @@ def measure_gauge(
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=notes + _notes_on_form(cloud, fit, errors),
     )
+    if errors.part is not None:
+        gauge = adjusted(gauge, errors.part.thicker_mm, errors.part.surface_rows, errors.part.surface_notes, k=k)
     for doubt in filter(None, (doubt_of_light(fit.budget), errors.doubt)):
         gauge = doubted(gauge, doubt)
     return gauge
@@ -222,6 +224,35 @@ def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:
     """The same thickness, which proves nothing because of the `doubt`."""
     verdict = Verdict.NOT_PROVEN if gauge.verdict else Verdict.NONE
     return replace(gauge, verdict=verdict, notes=(doubt, *gauge.notes), complete=False)
+
+
+def adjusted(
+    gauge: GaugeResult,
+    change_mm: float,
+    rows: tuple[Contribution, ...],
+    notes: tuple[Message, ...] = (),
+    *,
+    k: float = 2.0,
+) -> GaugeResult:
+    """The thickness with a correction added, further rows in its budget, and its verdict by both.
+
+    `k` is the coverage factor where u is known.
+    """
+    if not change_mm and not rows:
+        return replace(gauge, notes=(*gauge.notes, *notes))
+    budget, thickness = (*gauge.budget, *rows), gauge.thickness_mm + change_mm
+    u, factor, verdict = combined(budget), student_factor(k, budget), gauge.verdict
+    if gauge.complete and gauge.nominal_mm is not None and gauge.tolerance_mm is not None:
+        verdict = decide(thickness - gauge.nominal_mm, gauge.tolerance_mm, factor * u)
+    return replace(
+        gauge,
+        thickness_mm=thickness,
+        u_mm=u,
+        k=factor,
+        budget=budget,
+        verdict=verdict,
+        notes=(*gauge.notes, *notes),
+    )
 
 
 def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]:

@@ -22,7 +22,7 @@ from core.inspect.fit.plane_search import FEWEST_POINTS
 from core.inspect.profile_faces import faces_of, level_limit, stretches
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
-from core.inspect.uncertainty.causes import FACE_TILT, OBSERVED
+from core.inspect.uncertainty.causes import FACE_TILT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, OBSERVED
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, plural_message
@@ -178,7 +178,12 @@ def _by_tilt(upper: Cloud, lower: Cloud, faces: FittedFaces, tilt: KnownTilt) ->
 
 
 def _as_one(effect: Effect) -> Effect:
-    """What is not shared, as one number: it is added to that of other pictures by its size alone."""
+    """What is not shared, as one number: it is added to that of other pictures by its size alone.
+
+    Light from below the two faces is shared: all pictures show the same ones.
+    """
+    if effect.source in (LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED):
+        return replace(effect, shared=True)
     if effect.shared:
         return effect
     return replace(effect, factor=np.array([[float(np.linalg.norm(effect.factor))]]))

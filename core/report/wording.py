@@ -230,8 +230,13 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
     )
 
 
-def limits_of_thickness(gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False) -> tuple[str, ...]:
-    """What no thickness of this instrument covers; `temperatures`: whether they are stated."""
+def limits_of_thickness(
+    gauge: GaugeResult, words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
+) -> tuple[str, ...]:
+    """What no thickness of this instrument covers; `temperatures`: whether they are stated.
+
+    `corrected`: whether it is stated at 20 °C.
+    """
     rule = words(gauge.rule or label("distance of two parallel planes fitted to the points of both faces"))
     return (
         words(
@@ -243,7 +248,7 @@ def limits_of_thickness(gauge: GaugeResult, words: Words = ENGLISH, *, temperatu
             "The result rests on one scan. Repeatability over several scans is in it only where the uncertainty "
             "budget names it."
         ),
-        limit_of_temperature(temperatures, words),
+        _temperatures_used(words) if corrected else limit_of_temperature(temperatures, words),
         words("Faces turned away from the camera or in the shadow of a laser were not measured."),
     )
 
@@ -252,8 +257,6 @@ def limits_of_inspection(
     words: Words = ENGLISH, *, temperatures: bool = False, corrected: bool = False
 ) -> tuple[str, ...]:
     """What no inspection of this instrument covers; `corrected`: whether a length is stated at 20 °C."""
-    temperature = words("Lengths are stated at 20 °C only where a note of theirs says so; the temperatures used are "
-                        "those the plan states.")  # fmt: skip
     return (
         words("Each result is what its rule says, of the points that were measured; it is no local length."),
         words(
@@ -264,7 +267,7 @@ def limits_of_inspection(
             "The decisions are made one by one: that all characteristics together conform is less probable than that "
             "each does."
         ),
-        temperature if corrected else limit_of_temperature(temperatures, words),
+        _temperatures_used(words) if corrected else limit_of_temperature(temperatures, words),
         words("Surfaces turned away from the camera or in the shadow of a laser were not measured."),
     )
 
@@ -278,6 +281,13 @@ def limits_of_cloud(words: Words = ENGLISH, *, temperatures: bool = False) -> tu
         ),
         limit_of_temperature(temperatures, words),
         words("Surfaces turned away from the camera or in the shadow of a laser were not measured."),
+    )
+
+
+def _temperatures_used(words: Words) -> str:
+    return words(
+        "Lengths are stated at 20 °C only where a note of theirs says so; the temperatures used are those that are "
+        "stated of the part."
     )
 
 

@@ -13,6 +13,7 @@ from core.calibrate.change import STABLE
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.inspect.uncertainty.part import Part
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
@@ -59,8 +60,14 @@ def rig_toml(scenario: Scenario) -> str:
             row_time_us=1000 * scenario.readout_ms / round(FULL_SIZE[1] * scenario.scale),
             camera_board=TRUE if scenario.stated else BoardTolerance(),
             plane_board=TRUE if scenario.stated else BoardTolerance(),
+            part=_part(scenario) if scenario.stated else Part(),
         )
     )
+
+
+def _part(scenario: Scenario) -> Part:
+    """What a simulated object is made of, and its temperature, which nothing changes."""
+    return Part(material="plastic" if scenario.inner_share else "metal", celsius=20.0, u_celsius=0.0)
 
 
 def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:

@@ -14,10 +14,13 @@ from core.calibrate.board_shape import TRUE
 from core.errors import InputError
 from core.files.project.data import Project, new_project
 from core.files.recording.rig import GaugeSpec
+from core.inspect.uncertainty.part import Part
 from core.progress import Progress, silent
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 
 SAMPLE = "sample.toml"
+METAL_AT_20 = Part(material="metal", celsius=20.0, u_celsius=0.0)
+"""What simulated objects are but for translucent ones."""
 
 
 def sample_scenario() -> Scenario:
@@ -28,7 +31,9 @@ def sample_scenario() -> Scenario:
 def simulated_project(name: str) -> Project:
     """Make a project with nothing measured for the simulated rig: its targets and its gauge block are stated."""
     project, gauge = new_project(name), GaugeSpec(float(sample_scenario().height_mm), GAUGE_TOLERANCE_MM)
-    return replace(project, rig=replace(project.rig, gauge=gauge, camera_board=TRUE, plane_board=TRUE))
+    return replace(
+        project, rig=replace(project.rig, gauge=gauge, camera_board=TRUE, plane_board=TRUE, part=METAL_AT_20)
+    )
 
 
 def sample_folder() -> Path:

@@ -8,7 +8,8 @@ import pytest
 from core.calibrate.deviations import Deviation
 from core.inspect.profile_faces import faces_of, stretches
 from core.inspect.step_height import NO_FACES, NO_TILT, NOT_PLANE, KnownTilt, Step, measure_steps, step_of
-from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.uncertainty.causes import CALIBRATIONS, LIGHT_FROM_BELOW_ASSUMED
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.scan.common_errors import CommonErrors
@@ -179,3 +180,15 @@ def test_light_that_is_bent_widens_the_uncertainty_of_a_step():
     assert len(of_bend) == 1
     assert np.linalg.norm(of_bend[0].factor) > 1e-3
     assert len(known.effects) == len(unknown.effects) + 1
+
+
+def test_light_from_below_the_faces_is_in_all_pictures_alike():
+    unstated = replace(errors(), part=Part())
+    parts = [tuple((a + 3 * i, b + 3 * i, h) for a, b, h in BLOCK) for i in range(4)]
+    steps = [step_of(picture(part, noise_px=0.1, seed=i, frame=i), unstated) for i, part in enumerate(parts)]
+
+    def by_light(of):
+        (row,) = (one for one in measure_steps(of).budget if one.source == LIGHT_FROM_BELOW_ASSUMED)
+        return row.u_mm
+
+    assert by_light(steps) == pytest.approx(by_light(steps[:1]), rel=0.1) and by_light(steps) > 0.1

@@ -14,7 +14,7 @@ from typing import Any
 
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
-from core.files.recording.rig import rig_tables
+from core.files.recording.rig import part_table, rig_tables
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
@@ -214,11 +214,22 @@ def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
         label("scan"): _key_of("scan", results),
         label("thickness regions"): _digest([gauge.get("upper_polygon_px"), gauge.get("lower_polygon_px")]),
         label("nominal thickness"): _digest([gauge.get("nominal_mm"), gauge.get("tolerance_mm")]),
+        **_part(project),
     }
 
 
 def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
-    return {label("scan"): _key_of("scan", results), label("features"): _digest(plan_tables(project.inspection))}
+    return {
+        label("scan"): _key_of("scan", results),
+        label("features"): _digest(plan_tables(project.inspection)),
+        **_part(project),
+    }
+
+
+def _part(project: Project) -> dict[str, str]:
+    """What is stated of the part, if anything is."""
+    stated = part_table(project.rig.part)
+    return {label("material and temperature of the part"): _digest(stated)} if stated else {}
 
 
 def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:

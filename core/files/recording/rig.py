@@ -19,6 +19,7 @@ from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
 from core.files.toml_text import toml_text
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.inspect.uncertainty.part import MATERIALS, Part
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -161,6 +162,7 @@ class GaugeTable(Table):
 _Above = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 _A_NUMBER = label("a number above 0")
 _NOT_NEGATIVE = label("a number not below 0")
+_AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 _Count1 = Annotated[int, Field(ge=1)]
 _A_COUNT = label("a whole number above 0")
 
@@ -246,6 +248,77 @@ class _Check(Table):
     readjust: bool = Field(False, description="true or false")
 
 
+_SD = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+_AN_SD = label("a standard uncertainty in mm, 0 to 100")
+_PAIRS = (
+    ("offset_mm", "offset_sd_mm"),
+    ("spray_mm", "spray_sd_mm"),
+    ("alpha_per_K", "u_alpha_per_K"),
+    ("celsius", "u_celsius"),
+)
+"""Keys of [part] that go together: an estimate and its standard uncertainty."""
+
+
+class _Part(Table):
+    """[part]: what is known of the part."""
+
+    material: str | None = Field(None, description=", ".join(f'"{name}"' for name in MATERIALS))
+    offset_mm: float | None = Field(None, ge=-10, le=10, allow_inf_nan=False, description="a length in mm, −10 to 10")
+    offset_sd_mm: _SD | None = Field(None, description=_AN_SD)
+    spray_mm: float | None = Field(None, ge=-10, le=10, allow_inf_nan=False, description="a length in mm, −10 to 10")
+    spray_sd_mm: _SD | None = Field(None, description=_AN_SD)
+    alpha_per_K: float | None = Field(  # noqa: N815  (as units are written)
+        None, ge=-1e-4, le=1e-3, allow_inf_nan=False, description=_AN_ALPHA
+    )
+    u_alpha_per_K: float | None = Field(  # noqa: N815
+        None, ge=0, le=1e-3, allow_inf_nan=False, description=_AN_ALPHA
+    )
+    celsius: float | None = Field(
+        None, ge=-50, le=200, allow_inf_nan=False, description="a temperature in °C from −50 to 200"
+    )
+    u_celsius: float | None = Field(None, ge=0, le=200, allow_inf_nan=False, description="a temperature, 0 to 200 K")
+
+    @model_validator(mode="after")
+    def _known(self) -> _Part:
+        if self.material is not None and self.material not in MATERIALS:
+            raise Clash(
+                "material",
+                Message("rig.no_material", "is {value}, none of {known}", value=self.material, known=tuple(MATERIALS)),
+            )
+        for pair in _PAIRS:
+            missing = [name for name in pair if getattr(self, name) is None]
+            if len(missing) == 1:
+                other = next(name for name in pair if name != missing[0])
+                raise Clash(
+                    missing[0],
+                    Message(
+                        "rig.go_together",
+                        "is missing; {value} and {other} go together, give both or neither",
+                        value=missing[0],
+                        other=other,
+                    ),
+                )
+        return self
+
+    def part(self) -> Part:
+        return Part(**{_PART_FIELDS.get(key, key): value for key, value in self.model_dump().items()})
+
+
+_PART_FIELDS = {"alpha_per_K": "alpha", "u_alpha_per_K": "u_alpha"}
+"""What keys of [part] are called inside, where that is something else."""
+
+
+def part_table(part: Part) -> dict[str, Any]:
+    """A part as [part] has it, without what is not stated."""
+    keys = {field: key for key, field in _PART_FIELDS.items()}
+    return {keys.get(name, name): value for name, value in asdict(part).items() if value is not None}
+
+
+def part_of(table: Mapping[str, Any], path: Path) -> Part:
+    """The part that a table as [part] describes; InputError if it is none."""
+    return checked(_Part, dict(table), path).part()
+
+
 class RigTables(Table):
     """What rig.toml holds, and project.json under "rig"; a step that wants a table that is not there complains."""
 
@@ -262,6 +335,7 @@ class RigTables(Table):
     )
     validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
     check: _Check | None = Field(None, description="a table [check] with readjust")
+    part: _Part | None = Field(None, description="a table [part]")
     name: str | None = Field(
         None,
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
@@ -347,6 +421,8 @@ class Rig:
     row_time_us: float | None = None
     """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
     channels: Channels = Channels()
+    part: Part = field(default_factory=Part)
+    """What is measured."""
     readjust: bool = False
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
 
@@ -427,6 +503,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
     if tables.check is not None:
         stated["readjust"] = tables.check.readjust
+    if tables.part is not None:
+        stated["part"] = tables.part.part()
     if tables.camera is not None:
         stated["row_time_us"] = tables.camera.row_time_us
     if tables.channels is not None:
@@ -458,6 +536,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "validity": _present(asdict(rig.validity)) or None,
         "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
         "check": {"readjust": True} if rig.readjust else None,
+        "part": part_table(rig.part) or None,
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 

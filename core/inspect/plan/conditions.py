@@ -25,6 +25,10 @@ class Temperature:
     u_scale_celsius: float = 0.0
     scale_alpha: float = 0.0
     u_scale_alpha: float = 0.0
+    celsius_assumed: bool = False
+    """Whether nobody has stated the part's temperature."""
+    alpha_assumed: bool = False
+    """Whether nobody has stated how it expands."""
 
 
 @dataclass(frozen=True, slots=True)

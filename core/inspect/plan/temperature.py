@@ -32,10 +32,13 @@ from core.inspect.uncertainty.causes import (
     CERTIFICATE,
     MASTER_MEASURED,
     PART_EXPANSION,
+    PART_EXPANSION_ASSUMED,
     PART_TEMPERATURE,
+    PART_TEMPERATURE_ASSUMED,
     SCALE_EXPANSION,
     SCALE_TEMPERATURE,
 )
+from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, Part
 from core.messages import Message
 
 COMPARED = "feature.compared_with_master"
@@ -64,30 +67,58 @@ def at_reference(length: Characteristic, temperature: Temperature) -> Characteri
     """
     if not expands(length):
         return length
-    rows = temperature_contributions(length.value, temperature)
-    change = -length.value * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
-    change += length.value * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
+    change, rows, notes = correction_to_reference(length.value, temperature)
+    return replace(
+        length,
+        value=length.value + change,
+        u=math.hypot(length.u, combined(rows)),
+        budget=(*length.budget, *rows),
+        notes=(*length.notes, *notes),
+    )
+
+
+def correction_to_reference(
+    length_mm: float, temperature: Temperature
+) -> tuple[float, tuple[Contribution, ...], tuple[Message, ...]]:
+    """What is to be added to a length for 20 °C, what that adds to its uncertainty, and what is said of it.
+
+    Nothing is said where the temperature is assumed: nothing is added then.
+    """
+    rows = temperature_contributions(length_mm, temperature)
+    change = -length_mm * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
+    change += length_mm * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
+    if temperature.celsius_assumed:
+        return change, rows, ()
     note = Message(
         "feature.stated_at_20",
         "Stated at 20 °C: {change_um:+.2f} µm for a part at {part_celsius:g} °C.",
         change_um=change * 1000,
         part_celsius=temperature.part_celsius,
     )
-    return replace(
-        length,
-        value=length.value + change,
-        u=math.hypot(length.u, combined(rows)),
-        budget=(*length.budget, *rows),
-        notes=(*length.notes, note),
-    )
+    return change, rows, (note,)
+
+
+def temperature_of(part: Part) -> Temperature | None:
+    """The temperature and expansion of a part as stated, else as assumed; None of one that is at 20 °C for sure."""
+    alpha, u_alpha = part.expansion
+    if part.celsius is None or part.u_celsius is None:
+        return Temperature(
+            SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, alpha, u_alpha, celsius_assumed=True,
+            alpha_assumed=part.expansion_assumed,
+        )  # fmt: skip
+    if part.celsius == REFERENCE_C and not part.u_celsius:
+        return None
+    return Temperature(part.celsius, part.u_celsius, alpha, u_alpha, alpha_assumed=part.expansion_assumed)
 
 
 def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
     """What the temperatures and coefficients contribute to the uncertainty of a length at 20 °C; no zero rows."""
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
+    of_celsius = PART_TEMPERATURE_ASSUMED if temperature.celsius_assumed else PART_TEMPERATURE
+    of_alpha = PART_EXPANSION_ASSUMED if temperature.alpha_assumed else PART_EXPANSION
     rows = (
-        (PART_TEMPERATURE, temperature.part_celsius, temperature.u_part_celsius, temperature.alpha, "°C"),
-        (PART_EXPANSION, temperature.alpha, temperature.u_alpha, part, "1/K"),
+        (of_celsius, temperature.part_celsius, temperature.u_part_celsius, temperature.alpha, "°C"),
+        (of_alpha, temperature.alpha, temperature.u_alpha, part, "1/K"),
         (SCALE_TEMPERATURE, temperature.scale_celsius, temperature.u_scale_celsius, temperature.scale_alpha, "°C"),
         (SCALE_EXPANSION, temperature.scale_alpha, temperature.u_scale_alpha, scale, "1/K"),
     )

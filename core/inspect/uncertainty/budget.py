@@ -10,6 +10,7 @@ contributes::
     sweep planes               u² = ‖Σ_j G_j sweeps_j‖²         the network's covariance but for the fan's speckle
     camera, fan calibration    u² = Σ_k (Σ_j G_j common_jk)²    over the displacements of that calibration
     skewed light               u  = ½ |Σ_j G_j behind_j|        where sections are surely skewed: U holds all of it
+    light from below           u² = ‖Σ_j G_j below_j‖²          where they are not, face by face
     form                       u² = form² ‖Σ_j G_j form_j‖²     what the residuals show beyond all that
 
 and the causes are independent of each other. Where it is not known what the network owes to the fan's speckle, it
@@ -123,6 +124,8 @@ def effects(
         found.append(_effect(source, gains, sources.common[:, mine], shared=True))
     if sources.behind.any():
         found.append(_effect(SKEWED_LIGHT, gains, sources.behind[:, None] / 2, shared=True))
+    if sources.below.any():
+        found.append(_effect(sources.cause_below, gains, sources.below, shared=False))
     return tuple(found)
 
 

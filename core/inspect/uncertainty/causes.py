@@ -13,6 +13,13 @@ FORM = Message("inspection.cause_form", "form of the faces beyond the stated noi
 UNEVEN_LIGHT = Message("inspection.cause_uneven_light", "light that lies unevenly on the curved surface")
 SAMPLING = Message("inspection.cause_sampling", "which stripes were scanned (range of 95 %)")
 SKEWED_LIGHT = Message("inspection.cause_skewed_light", "light that comes from below the surface, or to one side")
+LIGHT_FROM_BELOW = Message(
+    "inspection.cause_light_from_below", "light from below the surface, as far as nothing excludes it"
+)
+LIGHT_FROM_BELOW_ASSUMED = Message(
+    "inspection.cause_light_from_below_assumed",
+    "light from below the surface, as far as nothing excludes it (material assumed)",
+)
 FACE_TILT = Message("inspection.cause_face_tilt", "tilt of the faces against the light plane")
 
 CAMERA = Message("inspection.cause_camera", "camera calibration")
@@ -24,8 +31,16 @@ CHANGE = Message("inspection.cause_change", "change since the calibration")
 READJUSTED = Message("inspection.cause_readjusted", "change since the calibration, re-adjusted")
 CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
 
+PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
+SPRAY = Message("inspection.cause_spray", "layer of spray on the part")
+SPRAY_ASSUMED = Message("inspection.cause_spray_assumed", "layer of spray on the part (assumed)")
+
 PART_TEMPERATURE = Message("inspection.cause_part_temperature", "temperature of the part")
 PART_EXPANSION = Message("inspection.cause_part_expansion", "expansion coefficient of the part")
+PART_TEMPERATURE_ASSUMED = Message("inspection.cause_part_temperature_assumed", "temperature of the part (assumed)")
+PART_EXPANSION_ASSUMED = Message(
+    "inspection.cause_part_expansion_assumed", "expansion coefficient of the part (assumed)"
+)
 SCALE_TEMPERATURE = Message("inspection.cause_target_temperature", "temperature of the calibration target")
 SCALE_EXPANSION = Message("inspection.cause_target_expansion", "expansion coefficient of the calibration target")
 

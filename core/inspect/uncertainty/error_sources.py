@@ -22,8 +22,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import UNEXPLAINED
+from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import farthest_mean_mm
+from core.inspect.uncertainty.skewed_light import light_below
+from core.messages import Message
 from core.model.arrays import Array
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import Cloud
@@ -53,7 +55,9 @@ class Sources:
     common: Array  # (J, K)
     form: Array  # (J, patches)
     behind: Array  # (J,) what skewed light may do at most to the misfits, in mm; 0 where none is seen
+    below: Array  # (J, faces) what light from below each face does that nothing excludes
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
+    cause_below: Message  # what the row of `below` is called
 
     @property
     def explained(self) -> Array:
@@ -108,6 +112,8 @@ class Sources:
         lever = np.column_stack([mean(-gain * depth**2 * form) for form in errors.forms(rays, cloud.uv).T])
         form = np.zeros((count, int(patch.max()) + 1))
         np.add.at(form, (stretch, patch), share)
+        seen = light_below(cloud, part, np.broadcast_to(direction, cloud.points.shape), errors.part)
+        of_face = part[first]
         noise = mean(own)
         speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)
         if errors.speckle is not None:
@@ -126,8 +132,10 @@ class Sources:
             sweeps,
             _of_common(cloud, direction, mean, errors, count),
             form,
-            mean(of_noise * farthest_mean_mm(cloud, part, np.broadcast_to(direction, cloud.points.shape))[part]),
+            mean(of_noise * seen.farthest_mm[part]),
+            (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
             np.array([source == UNEXPLAINED for source in errors.sources], dtype=np.bool_),
+            LIGHT_FROM_BELOW_ASSUMED if errors.part is None or errors.part.material is None else LIGHT_FROM_BELOW,
         )
 
     def mean(self, values: Array) -> Array:

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from core.calibrate.deviations import UNEXPLAINED, Source
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
@@ -61,6 +62,8 @@ class PointErrors:
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
     doubt: Message | None = None
+    part: Part | None = None
+    """What is stated of the part; None: it is as opaque and as cold as it need be."""
     sweep_size: int = 3
     """How many numbers describe a sweep: more than 3 where planes change with the rows."""
     image_rows: int = 1

@@ -10,18 +10,30 @@ has its third cumulant c₃ = κ s³, with κ the skewness and s the σ of the s
 evenly from 0 to D, m = fD/2 and c₃ = D³ (f/4 − f²/2 + f³/4); for one that falls exponentially, m = fτ and c₃ = τ³ (6f −
 6f² + 2f³). So m/∛c₃ is 0.18, 0.53, 0.79 for f = 0.1, 0.35, 0.5 evenly, and up to 0.79 for all exponentials: the mean
 is at most 0.8·∛κ·s unless most of the light comes evenly from below.
+
+Where skewness does not show it surely, it may be there all the same: what light from below would do is weighed by how
+well it agrees with the skewness κ ± its standard error that was found. Before any picture is seen, light comes from
+below a surface with the probability that is stated of its material; then a share f of it, all alike up to a half, from
+depths D from 0.1 to 3 mm, all alike in their logarithm, falling evenly or exponentially (τ = D/2). What is left of m,
+so weighed, gives its standard uncertainty. Where sections tell nothing (a curved face, few sweeps, the fan's own lines)
+nothing but the probability before is left. The width of the sections is not used: on small pictures, where it would
+help, it cannot be told from the width of the light and of the lens's blur.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import SKEWED_LIGHT
+from core.inspect.uncertainty.coverage import COVERAGE
+from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
@@ -33,24 +45,36 @@ SURELY = 4.0
 LEAST_SKEWNESS = 0.015
 """Skewness from which on it counts: what lens, pixels and slanted faces may do is less."""
 LEAST_SWEEPS = 10.0
-"""Sweeps, as many as weigh alike, whose scatter tells how sure their mean is."""
+"""Sweeps, as many as weigh alike, whose scatter tells surely how sure their mean is."""
+FEWEST_SWEEPS = 3.0
+"""Sweeps, as many as weigh alike, whose scatter tells anything."""
 SHARE_THAT_MATTERS = 0.25
 """Share of all other uncertainty from which on it is told."""
 
 
-def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> tuple[float, float]:
+class MeanSkewness(NamedTuple):
+    """Mean skewness of sections, its standard error, and how many sweeps, as many as weigh alike, tell it."""
+
+    mean: float
+    error: float
+    sweeps: float
+
+
+def mean_skewness(skewness: Array, sweep: NDArray[np.int64]) -> MeanSkewness:
     """Mean of points' skewness (N,) and its standard error, by the scatter between their sweeps (N,).
 
-    The error is infinite where the sweeps are too few to tell.
+    The error is infinite where the scatter of fewer than three sweeps, or none at all, would have to tell.
     """
     number = np.bincount(sweep).astype(np.float64)
     share = number / max(number.sum(), 1.0)
-    if not share.any() or 1 / float(share @ share) < LEAST_SWEEPS:
-        return 0.0, math.inf
+    alike = 1 / float(share @ share) if share.any() else 0.0
+    if alike < FEWEST_SWEEPS:
+        return MeanSkewness(0.0, math.inf, alike)
     mean = float(skewness.mean())
     away = np.bincount(sweep, skewness - mean) / len(skewness)
     several = np.count_nonzero(number)
-    return mean, float(np.sqrt(several / (several - 1) * (away @ away)))
+    error = float(np.sqrt(several / (several - 1) * (away @ away)))
+    return MeanSkewness(mean, error or math.inf, alike)
 
 
 def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) -> Array:
@@ -70,10 +94,86 @@ def farthest_mean_mm(cloud: Cloud, part: NDArray[np.int64], direction: Array) ->
         mine = np.flatnonzero((part == number) & (cloud.sweep >= 0))
         if not len(mine) or np.ptp(direction[mine], axis=0).max() > 0:
             continue
-        mean, error = mean_skewness(cloud.skewness[mine], cloud.sweep[mine])
-        if error > 0 and abs(mean) > max(SURELY * error, LEAST_SKEWNESS):
-            found[number] = MEAN_OF_CUMULANT * np.cbrt(mean) * float(np.median(cloud.spread_mm[mine]))
+        seen = mean_skewness(cloud.skewness[mine], cloud.sweep[mine])
+        if seen.sweeps >= LEAST_SWEEPS and abs(seen.mean) > max(SURELY * seen.error, LEAST_SKEWNESS):
+            found[number] = MEAN_OF_CUMULANT * np.cbrt(seen.mean) * float(np.median(cloud.spread_mm[mine]))
     return found
+
+
+SHARES = np.linspace(0.0, 0.5, 33)[:-1] + 1 / 128
+"""Shares of light from below that are weighed."""
+DEPTHS_MM = np.geomspace(0.1, 3.0, 41)
+"""Depths that are weighed: from what moves the mean by 0.025 mm at most, to wax. Held by tests/accuracy/test_matter.py
+where sections tell little."""
+
+
+def unseen_mean_mm(seen: MeanSkewness, spread_mm: float, lets_light_in: float) -> float:
+    """Standard uncertainty in mm by light from below, where this mean skewness was found.
+
+    Twice as much holds 95 % of what is left: that is one-sided, and reaches far. The skewness is known by the scatter
+    of n sweeps, so it is weighed by Student's t with n − 1 degrees of freedom.
+
+    Parameters
+    ----------
+    seen
+        Of the sections on the face.
+    spread_mm
+        σ of the sections in depth.
+    lets_light_in
+        Probability of light from below before they are seen.
+
+    Examples
+    --------
+    >>> of_errors = [MeanSkewness(0.0, error, 25.0) for error in (float("inf"), 0.02, 0.002)]
+    >>> [round(unseen_mean_mm(seen, 0.6, 0.5), 3) for seen in of_errors]
+    [0.157, 0.024, 0.012]
+    """
+    f, depth = SHARES[:, None], DEPTHS_MM[None, :]
+    even = depth**3 * (f / 4 - f**2 / 2 + f**3 / 4)
+    exponential = (depth / 2) ** 3 * (6 * f - 6 * f**2 + 2 * f**3)
+    expected = np.stack([even, exponential]) / max(spread_mm, 1e-9) ** 3
+    free = max(seen.sweeps - 1, 1.0)
+    likely = (1 + ((seen.mean - expected) / seen.error) ** 2 / free) ** (-(free + 1) / 2)
+    matt = (1 + (seen.mean / seen.error) ** 2 / free) ** (-(free + 1) / 2)
+    means = np.append(np.broadcast_to(f * depth / 2, expected.shape), 0.0)
+    weights = np.append(lets_light_in * likely / likely.size, (1 - lets_light_in) * matt)
+    weights /= weights.sum()
+    order = np.argsort(means, kind="stable")
+    most = means[order][np.searchsorted(np.cumsum(weights[order]), COVERAGE)]
+    return max(float(np.sqrt(weights @ means**2)), float(most) / 2)
+
+
+NOTHING_SEEN = MeanSkewness(0.0, math.inf, 0.0)
+"""Where sections tell nothing."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class LightBelow:
+    """How far behind each face its light comes from on the mean, in mm of depth.
+
+    `farthest_mm` at most, where that is surely so; `unseen_mm` its standard uncertainty where it is not.
+    """
+
+    farthest_mm: Array
+    unseen_mm: Array
+
+
+def light_below(cloud: Cloud, part: NDArray[np.int64], direction: Array, stated: Part | None) -> LightBelow:
+    """What sections on each face show of light from below, and what they leave; arguments as `farthest_mean_mm`.
+
+    `stated` is what is known of the part; None: no more is reckoned with than what is seen.
+    """
+    farthest = farthest_mean_mm(cloud, part, direction)
+    unseen = np.zeros(len(farthest))
+    chance = 0.0 if stated is None else stated.lets_light_in
+    if chance:
+        for number in np.flatnonzero(farthest == 0):
+            mine = np.flatnonzero((part == number) & (cloud.sweep >= 0))
+            flat = len(mine) and np.ptp(direction[mine], axis=0).max() == 0
+            seen = mean_skewness(cloud.skewness[mine], cloud.sweep[mine]) if flat else NOTHING_SEEN
+            spread = float(np.median(cloud.spread_mm[mine])) if flat else 1.0
+            unseen[number] = unseen_mean_mm(seen, spread, chance)
+    return LightBelow(farthest, unseen)
 
 
 def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:

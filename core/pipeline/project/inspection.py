@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import MutableMapping
+from dataclasses import replace
 from pathlib import Path
 from typing import TypeAlias
 
@@ -78,6 +79,8 @@ def _inspected(
     folder: Path, project: Project, progress: Progress, memory: Memory | None
 ) -> tuple[Inspection, InspectedScan]:
     scan, last = open_scan(results_folder(folder)), None if memory is None else memory.get(LAST)
+    if scan.errors is not None:
+        scan = replace(scan, errors=replace(scan.errors, part=project.rig.part))
     inspection = inspect(scan, project.inspection, folder, progress, last)
     if memory is not None:
         memory[LAST] = inspection

@@ -17,7 +17,7 @@ from core.study.artefact_check import Artefact, ArtefactCheck
 def artefact_step(work: Workspace, artefact: Artefact, celsius: float | None = None) -> ArtefactCheck:
     """Compare the thickness among the results with the certificate, and keep that in the rig's history.
 
-    Nothing is corrected for temperature; `celsius` is that of the air, for the history.
+    The thickness is at 20 °C where the part's temperature is stated; `celsius` is that of the air, for the history.
 
     Raises
     ------

@@ -8,12 +8,14 @@ from dataclasses import replace
 
 from core.calibrate.change import PROVES_NOTHING
 from core.errors import InputError
-from core.files.recording.rig import GaugeSpec
+from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import ScanFile, read_scan
-from core.inspect.gauge import measure_gauge
+from core.inspect.gauge import adjusted, measure_gauge
+from core.inspect.plan.temperature import correction_to_reference, temperature_of
 from core.inspect.results import GaugeResult
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.model.arrays import Array
@@ -21,6 +23,9 @@ from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.fan_watch import MOVED_WITHIN
 from core.scan.standstill import HOLD_STILL
+
+PART = "part"
+"""Under this name the settings of a thickness in run.json say what is stated of the part."""
 
 CHANGED = Message(
     "inspection.rig_has_changed",
@@ -42,21 +47,31 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("cloud"), file.calibration_id, calibration)
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
-        cloud, spec = file.cloud, work.found.rig.gauge or GaugeSpec()
+        cloud, spec, part = file.cloud, work.found.rig.gauge or GaugeSpec(), work.found.rig.part
         with _said_first(scan):
             gauge = measure_gauge(
                 cloud,
-                errors=point_errors(scan),
+                errors=replace(point_errors(scan), part=part),
                 regions=_regions(spec),
                 nominal_mm=spec.nominal_mm,
                 tolerance_mm=spec.tolerance_mm,
                 progress=progress,
             )
+        gauge = of_part(gauge, part)
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
+        log.settings[PART] = part_table(part)
         log.notes.extend(gauge.notes)
         write_gauge(log.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
+
+
+def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
+    """The thickness at 20 °C, by what is stated or assumed of the part's temperature, and notes on what is assumed."""
+    temperature = temperature_of(part)
+    if temperature is not None:
+        gauge = adjusted(gauge, *correction_to_reference(gauge.thickness_mm, temperature))
+    return replace(gauge, notes=(*gauge.notes, *part.assumed))
 
 
 @contextmanager
@@ -93,6 +108,7 @@ def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[Gau
     except InputError as error:
         why = Message("gauge.none_measured", "No thickness was measured: {reason}", reason=error.message)
         with work.step("gauge") as log:
+            log.settings[PART] = part_table(work.found.rig.part)
             log.notes.append(why)
         return None, why
 

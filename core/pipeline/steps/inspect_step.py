@@ -2,22 +2,26 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.plan.translation import plan_tables
 from core.files.recording.recording_set import RIG
+from core.files.recording.rig import part_of
 from core.files.results.inspection_file import NAME, write_inspection
 from core.files.results.nominal_surface import read_nominals
 from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Command, Message
-from core.pipeline.steps.gauge_step import point_errors
+from core.pipeline.steps.gauge_step import PART, point_errors
 from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -142,6 +146,14 @@ def inspect_step(
     return inspection, path
 
 
+def _part_in(folder: Path) -> Part:
+    """What was stated of the part when its thickness was measured, or looked for; nothing if that is not known."""
+    path = folder / FILES["run"]
+    settings = read_run(path).settings if path.is_file() else {}
+    table = settings.get("gauge", {}).get(PART, {})
+    return part_of(table, path) if isinstance(table, Mapping) else Part()
+
+
 def _results_of(source: Path, results: Path | None) -> Path:
     """The folder of results that is meant."""
     if (source / FILES["cloud"]).is_file():
@@ -180,7 +192,7 @@ def _of_results(folder: Path) -> InspectedScan:
     return InspectedScan(
         cloud.cloud,
         read_mesh(mesh) if mesh.is_file() else None,
-        point_errors(scan),
+        replace(point_errors(scan), part=_part_in(folder)),
         cloud.calibration_id,
         folder,
     )

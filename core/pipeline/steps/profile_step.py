@@ -13,19 +13,19 @@ from core.errors import InputError
 from core.files.pictures import compression_of
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.rig import GaugeSpec
+from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
 from core.inspect.face_region import inside_polygon
-from core.inspect.gauge import doubted
+from core.inspect.gauge import adjusted, doubted
 from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
-from core.pipeline.steps.gauge_step import CHANGED
+from core.pipeline.steps.gauge_step import CHANGED, PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
@@ -89,6 +89,7 @@ def profile_step(
                 "light plane stands at right angles on the faces (--tilt-sd DEGREES)",
             ),
         )
+    part = found.rig.part
     with work.step("profile") as log:
         channel = found.laser_channel("scan")
         log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
@@ -109,7 +110,9 @@ def profile_step(
                 pictures.append(PictureStep(index, name, reason=error.what))
                 continue
             seen.append(profiles)
-            step = step_of(_within(profiles.cloud, spec), PointErrors.of_fan(profiles.pieces, common), known)
+            step = step_of(
+                _within(profiles.cloud, spec), replace(PointErrors.of_fan(profiles.pieces, common), part=part), known
+            )
             pictures.append(_row(index, name, step))
             steps += [] if isinstance(step, Message) else [step]
         progress("profiles", len(paths), len(paths))
@@ -124,6 +127,8 @@ def profile_step(
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
         doubt = CHANGED if change.p < PROVES_NOTHING else doubt_of_the_day(work, calibration)
+        gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
+        gauge = of_part(gauge, part)
         if doubt is not None:
             gauge = doubted(gauge, doubt)
         notes = (
@@ -137,6 +142,7 @@ def profile_step(
         log.frames.extend(_records(pictures, seen))
         log.notes.extend(notes)
         rule = None if gauge.rule is None else as_json(gauge.rule)
+        log.settings[PART] = part_table(part)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         _write(log, gauge, pictures, shown, cloud, calibration)
     return MeasuredProfiles(gauge, tuple(pictures), cloud)

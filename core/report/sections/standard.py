@@ -87,7 +87,7 @@ def _not_covered(look: ReportLook, content: ReportContent) -> list[Flowable]:
     if len(content.characteristics) > 1:
         general = limits_of_inspection(words, temperatures=stated, corrected=content.at_reference)
     elif gauge:
-        general = limits_of_thickness(gauge, words, temperatures=stated)
+        general = limits_of_thickness(gauge, words, temperatures=stated, corrected=content.at_reference)
     else:
         general = limits_of_cloud(words, temperatures=stated)
     sentences = general + tuple(words.known(limit) for limit in content.limits)

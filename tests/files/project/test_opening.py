@@ -34,6 +34,7 @@ from core.inspect.characteristic import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.inspect.uncertainty.part import Part
 from core.messages import plain
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
@@ -48,7 +49,8 @@ def full_project():
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
             plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5), row_time_us=26.0,
-            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True),
+            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True,
+            part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
@@ -119,6 +121,7 @@ WHOLE = {
     ("rig", "unstated"),
     ("rig", "stability"),
     ("rig", "row_time_us"),
+    ("rig", "part"),
     ("options", "stripe"),
     ("options", "plane_stripe"),
     ("options", "channel"),

@@ -12,6 +12,8 @@ from core.files.recording.rig import (
     Rig,
     RigTables,
     default_rig,
+    part_of,
+    part_table,
     read_rig,
     require_tables,
     rig_of,
@@ -19,6 +21,7 @@ from core.files.recording.rig import (
     rig_to_toml,
 )
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
+from core.inspect.uncertainty.part import Part
 
 GOOD = """
 [camera_target]
@@ -105,6 +108,34 @@ def test_how_true_the_targets_are_can_be_said(tmp_path):
     assert rig.plane_board == BoardTolerance(0.1, 2e-4)
     assert written(tmp_path, rig) == rig
     assert default_rig().camera_board == BoardTolerance()
+
+
+def test_what_is_known_of_the_part_can_be_said(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text(
+        GOOD + '\n[part]\nmaterial = "wax"\noffset_mm = 0.12\noffset_sd_mm = 0.01\nspray_mm = 0.01\n'
+        "spray_sd_mm = 0.003\nalpha_per_K = 1e-4\nu_alpha_per_K = 1e-5\ncelsius = 21.5\nu_celsius = 0.5\n"
+    )
+    rig = read_rig(path)
+    assert rig.part == Part("wax", 0.12, 0.01, 0.01, 0.003, 1e-4, 1e-5, 21.5, 0.5)
+    assert written(tmp_path, rig) == rig
+    assert part_of(part_table(rig.part), path) == rig.part
+    assert default_rig().part == Part() and part_table(Part()) == {}
+
+
+@pytest.mark.parametrize(
+    ("table", "said"),
+    [
+        ('material = "cheese"', ["part.material is cheese", "metal", "wax"]),
+        ("celsius = 21", ["part.u_celsius is missing", "celsius go together"]),
+        ("spray_sd_mm = 0.01", ["part.spray_mm is missing"]),
+        ("celsius = 900\nu_celsius = 1", ["part.celsius is 900", "−50 to 200"]),
+        ('colour = "red"', ["part.colour is an unknown key"]),
+    ],
+)
+def test_a_wrong_part_is_refused_by_name(tmp_path, table, said):
+    text = complaint(tmp_path, f"{GOOD}\n[part]\n{table}\n")
+    assert all(one in text for one in said), text
 
 
 def test_without_gauge(tmp_path):

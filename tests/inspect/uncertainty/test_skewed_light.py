@@ -10,7 +10,7 @@ from core.inspect.faces import FacePair
 from core.inspect.gauge import measure_gauge
 from core.inspect.uncertainty.causes import SKEWED_LIGHT
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import farthest_mean_mm, mean_skewness
+from core.inspect.uncertainty.skewed_light import MeanSkewness, farthest_mean_mm, mean_skewness, unseen_mean_mm
 from tests.inspect.block_scan import BlockScan
 
 TOLD = "inspection.light_is_skewed"
@@ -69,7 +69,13 @@ def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them
 
 def test_few_sweeps_tell_nothing():
     sweep = np.repeat(np.arange(5), 40)
-    assert mean_skewness(np.full(200, 0.1), sweep)[1] == np.inf
+    assert mean_skewness(np.full(200, 0.1), sweep).error == np.inf, "they do not scatter at all"
+    skewness = 0.1 + np.repeat(np.array([-1, 1, 0, -1, 1]) * 1e-3, 40)
+    seen = mean_skewness(skewness, sweep)
+    assert seen.mean > 50 * seen.error and seen.sweeps == pytest.approx(5)
+    unsure = MeanSkewness(0.0, 0.02, 5.0)
+    assert unseen_mean_mm(unsure, 0.7, 0.5) > unseen_mean_mm(unsure._replace(sweeps=25.0), 0.7, 0.5)
+    assert mean_skewness(skewness[:80], sweep[:80]).error == np.inf
 
 
 def test_sections_on_a_curved_face_are_skewed_without_that(scan):
@@ -80,3 +86,28 @@ def test_sections_on_a_curved_face_are_skewed_without_that(scan):
     assert farthest_mean_mm(cloud, part, flat)[0] > 0.2
     curved = flat + np.linspace(0, 0.1, len(cloud))[:, None]
     assert farthest_mean_mm(cloud, part, curved)[0] == 0
+
+
+def seen(mean, error):
+    return MeanSkewness(mean, error, 25.0)
+
+
+def test_what_skewness_leaves_of_light_from_below_shrinks_as_it_is_known_better():
+    known = [unseen_mean_mm(seen(0.0, error), 0.6, 0.5) for error in (np.inf, 0.1, 0.02, 0.002)]
+    assert known == sorted(known, reverse=True) and known[0] > 0.1 > 0.015 > known[-1]
+    assert unseen_mean_mm(seen(0.03, 0.01), 1.0, 0.5) > unseen_mean_mm(seen(0.0, 0.01), 1.0, 0.5)
+    assert unseen_mean_mm(seen(0.0, 0.01), 1.0, 0.0) == 0.0
+    assert unseen_mean_mm(seen(0.0, 0.01), 1.0, 1.0) > unseen_mean_mm(seen(0.0, 0.01), 1.0, 0.5)
+
+
+def test_twice_the_uncertainty_holds_nineteen_of_twenty_parts_whose_light_is_as_was_assumed():
+    rng = np.random.default_rng(8)
+    held = []
+    for number in range(600):
+        share, deep = rng.uniform(0, 0.5), np.exp(rng.uniform(np.log(0.1), np.log(3.0)))
+        below = rng.random() < 0.5
+        even = deep**3 * (share / 4 - share**2 / 2 + share**3 / 4)
+        exponential = (deep / 2) ** 3 * (6 * share - 6 * share**2 + 2 * share**3)
+        skewness = rng.normal(below * (even if number % 2 else exponential), 0.01)
+        held.append(share * deep / 2 * below <= 2 * unseen_mean_mm(seen(skewness, 0.01), 1.0, 0.5))
+    assert 0.93 <= np.mean(held) <= 0.98

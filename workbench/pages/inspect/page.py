@@ -13,7 +13,7 @@ from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
 from workbench.pages.inspect.features.form import CLICK
 from workbench.pages.inspect.features.panel import FeaturesPanel
 from workbench.pages.inspect.features.plot import PlotTab
-from workbench.pages.inspect.panels import FacesPanel, ResultPanel
+from workbench.pages.inspect.panels import FacesPanel, PartPanel, ResultPanel
 from workbench.pages.inspect.picks_panel import PicksPanel
 from workbench.pages.inspect.picture import PictureTab
 from workbench.pages.inspect.presenter import InspectPresenter
@@ -64,6 +64,8 @@ class InspectPage(StepPage):
         self.result_fold = self.add_panel(tr("Result"), self.result)
         self.faces = FacesPanel(presenter)
         self.add_panel(tr("What is measured"), self.faces)
+        self.part = PartPanel(presenter)
+        self.part_fold = self.add_panel(tr("The part"), self.part, collapsed=True)
         self.conditions = ConditionsPanel(presenter.conditions)
         self.conditions_fold = self.add_panel(tr("Conditions and frame"), self.conditions, collapsed=True)
         self.picks = PicksPanel(presenter)
@@ -87,7 +89,7 @@ class InspectPage(StepPage):
         self.conditions_fold.setText(
             tr("Conditions and frame ({said})", said=said) if said else tr("Conditions and frame")
         )
-        for panel in (self.result, self.faces, self.features, self.conditions, self.picks):
+        for panel in (self.result, self.faces, self.features, self.part, self.conditions, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
         self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else tr("Repeats"))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import QSize, Qt, Signal
@@ -17,6 +18,7 @@ from core.report.wording import verdict_sentence
 from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
+from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.words import wording
 from workbench.step_state import State
@@ -29,6 +31,50 @@ from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
+
+
+class PartPanel(QWidget):
+    """What is known of the part: material, temperature, layer of spray."""
+
+    def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._part = presenter.part
+        self.form = SettingsForm()
+        self.form.add_choice(
+            "material",
+            tr("Material"),
+            [("", tr("not stated")), *((name, tr(shown)) for name, shown in MATERIAL_NAMES.items())],
+            tr("Light may come from below the surface of all but metal: U holds it as far as nothing excludes it."),
+        )
+        assumed = tr("assumed")
+        help = tr("While it was scanned; empty: 20 °C ± 3 °C (u).")
+        self._number(
+            "celsius", tr("Temperature"), NumberRange(-50, 200, decimals=2, unit="°C", none_text=assumed), help
+        )
+        self._u("u_celsius", tr("Temperature, u"), "°C")
+        none = tr("none")
+        for key, name, help in (
+            ("spray_mm", tr("Layer of spray"), tr("On the upper face, less that on the lower one; it is taken off.")),
+            ("offset_mm", tr("Seen below the surface"), tr("By this much, found on a master of the material.")),
+        ):
+            self._number(key, name, NumberRange(0, 10, decimals=4, step=0.005, unit="mm", none_text=none), help)
+            self._u(WITH_U[key][0], tr("{name}, u", name=name), "mm")
+        self.form.edited.connect(self._part.set_value)
+        in_column(self.form, on=self, spacing=4)
+
+    def refresh(self) -> None:
+        """Show what the project says now."""
+        self.form.set_values(self._part.values())
+
+    def _number(self, key: str, name: str, allowed: NumberRange, help: str) -> None:
+        first = 20.0 if key == "celsius" else 0.01
+        self.form.add_number(key, name, replace(allowed, first=first), help)
+
+    def _u(self, key: str, name: str, unit: str) -> None:
+        most, decimals = (20.0, 2) if unit == "°C" else (10.0, 4)
+        usual = next(usual for u, usual in WITH_U.values() if u == key)
+        allowed = NumberRange(0, most, decimals=decimals, step=usual, unit=unit, none_text=tr("none"), first=usual)
+        self.form.add_number(key, name, allowed, tr("Standard uncertainty of that."))
 
 
 class FacesPanel(QWidget):

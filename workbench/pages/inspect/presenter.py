@@ -21,6 +21,7 @@ from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
+from workbench.pages.inspect.part import InspectPart
 from workbench.pages.inspect.picks import InspectPicks, Mode
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.pages.inspect.scan import InspectScan
@@ -59,6 +60,7 @@ class InspectPresenter(StepPresenter):
         self._unmeasurable = ""
         self._seen = self._just_measured = False
         self.faces, self.picks = InspectFaces(self.model, self.scan), InspectPicks(self.scan)
+        self.part = InspectPart(self.model)
         self.repeats = InspectRepeats(bench, self.scan, self.faces)
         self.studies = InspectStudies(bench, self.repeats)
         self.features = InspectFeatures(bench)

@@ -463,3 +463,14 @@ def test_the_repeats_are_studied_beside_their_chart(shown, qtbot):
     assert shown.series.type1.text_of("Tolerance T") == "0.4 mm"
     assert "4 repeats say little" in shown.series.type1_words.text()
     assert len(shown.series.histogram._values) == 4
+
+
+def test_what_the_part_is_made_of_is_chosen_on_the_page(page, qtbot):
+    scan(page, qtbot)
+    page.part_fold.expand(animate=False)
+    form = page.part.form
+    assert isinstance(form.editor("material"), QComboBox)
+    form.edited.emit("material", "plastic")
+    assert page.presenter.model.project.rig.part.material == "plastic"
+    page.refresh()
+    assert "Plastic" in form.editor("material").currentText()

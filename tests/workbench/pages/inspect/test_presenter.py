@@ -10,9 +10,11 @@ from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted
 from core.files.project.keys import finished
+from core.inspect.uncertainty.part import MATERIALS, Part
 from core.study.type1 import type1_study
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
+from workbench.pages.inspect.part import MATERIAL_NAMES
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.pages.inspect.words import repeats_tsv
@@ -504,3 +506,32 @@ def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown
 def put_repeats(presenter, values):
     repeats = tuple(cases.repeat(number, value) for number, value in enumerate(values, 2))
     presenter.model.edit("repeats", replace(presenter.project, repeats=repeats))
+
+
+# ---- the part
+
+
+def test_what_is_known_of_the_part_makes_the_thickness_out_of_date_and_is_undone(shown, qtbot):
+    assert shown.part.values()["material"] == "" and shown.part.values()["celsius"] is None
+    shown.part.set_value("material", "steel")
+    assert shown.part.part.material == "steel"
+    assert shown.stage is Stage.OUTDATED
+    undo(shown)
+    assert shown.part.part == Part()
+
+
+def test_an_estimate_and_its_uncertainty_come_and_go_together(empty):
+    empty.part.set_value("u_celsius", 0.3)
+    assert (empty.part.part.celsius, empty.part.part.u_celsius) == (20.0, 0.3)
+    undo(empty)
+    empty.part.set_value("celsius", 21.5)
+    assert (empty.part.part.celsius, empty.part.part.u_celsius) == (21.5, 0.5)
+    empty.part.set_value("u_celsius", 0.3)
+    empty.part.set_value("celsius", 22.0)
+    assert (empty.part.part.celsius, empty.part.part.u_celsius) == (22.0, 0.3)
+    empty.part.set_value("u_celsius", None)
+    assert empty.part.part == Part()
+
+
+def test_every_material_has_a_name_in_the_window():
+    assert MATERIAL_NAMES.keys() == MATERIALS.keys()

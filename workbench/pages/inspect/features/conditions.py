@@ -210,8 +210,9 @@ def with_temperature(plan: InspectionPlan, values: Mapping[str, Any]) -> Inspect
     """The plan with lengths at 20 °C as the fields say, or as measured."""
     if not values[AT_20]:
         return replace(plan, temperature=None)
-    celsius = {key: float(values[key]) for key in TEMPERATURES}
-    return replace(plan, temperature=Temperature(**celsius, **{key: values[key] / PER_KELVIN for key in COEFFICIENTS}))
+    known: dict[str, Any] = {key: float(values[key]) for key in TEMPERATURES}
+    known |= {key: values[key] / PER_KELVIN for key in COEFFICIENTS}
+    return replace(plan, temperature=Temperature(**known))
 
 
 def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPlan:

@@ -1,0 +1,166 @@
+"""What is stated of a part, and what that means for its surface as light shows it.
+
+Metal sends back the light that falls on it. Of plastic, wax or ceramic a part of the light comes from below the
+surface, and the part is measured too thin by the mean depth of it; a layer of spray makes it opaque, and thicker by
+itself. How far below its surface a material is seen is found on a master of it; no preset states a figure for that.
+
+References
+----------
+ISO 3650:1998, 7.3 (steel of gauge blocks: (11.5 ± 1.0)·10⁻⁶/K). The other coefficients span the usual grades of the
+material; u is half of that span over √3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import PART_OFFSET, SPRAY, SPRAY_ASSUMED
+from core.messages import Field, Message
+
+SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD = 20.0, 3.0
+"""Temperature of a part of which nothing is stated, and its standard uncertainty: a room that people work in."""
+SUSPECTED_ALPHA, SUSPECTED_ALPHA_SD = 11.5e-6, 2.3e-6
+"""Expansion coefficient in 1/K where nothing is stated, and its standard uncertainty."""
+SUSPECTED_LAYER_MM = 0.01
+"""What a layer of spray adds where nothing is stated of it, taken as its standard uncertainty: sprays for scanning
+leave 2 to 15 µm by their makers' data."""
+UNKNOWN_LETS_LIGHT_IN = 0.5
+"""Probability that light comes from below a surface of which nothing is stated."""
+
+
+@dataclass(frozen=True, slots=True)
+class Material:
+    """A kind of material: whether all light comes from its surface, and how it expands, in 1/K with its u."""
+
+    opaque: bool
+    alpha: float = SUSPECTED_ALPHA
+    u_alpha: float = SUSPECTED_ALPHA_SD
+
+
+MATERIALS: Mapping[str, Material] = {
+    "metal": Material(True, 17e-6, 3.6e-6),
+    "steel": Material(True, 11.5e-6, 0.6e-6),
+    "aluminium": Material(True, 23e-6, 0.9e-6),
+    "ceramic": Material(False, 8e-6, 1.7e-6),
+    "plastic": Material(False, 90e-6, 29e-6),
+    "wax": Material(False, 200e-6, 58e-6),
+    "sprayed": Material(True),
+}
+"""By the names that rig.toml has. "sprayed" is any material under a layer that lets no light through."""
+
+
+@dataclass(frozen=True, slots=True)
+class Part:
+    """What is stated of a part; None: nothing is.
+
+    Parameters
+    ----------
+    material
+        A key of MATERIALS.
+    offset_mm, offset_sd_mm
+        How far below its surface the part is seen, measured against a master of its material.
+    spray_mm, spray_sd_mm
+        Thickness of a layer of spray on the upper face of a thickness, less that on the lower one.
+    alpha, u_alpha
+        Expansion coefficient in 1/K, in place of the material's.
+    celsius, u_celsius
+        Its temperature while it was scanned.
+    Each with its standard uncertainty; one is stated only with the other.
+    """
+
+    material: str | None = None
+    offset_mm: float | None = None
+    offset_sd_mm: float | None = None
+    spray_mm: float | None = None
+    spray_sd_mm: float | None = None
+    alpha: float | None = None
+    u_alpha: float | None = None
+    celsius: float | None = None
+    u_celsius: float | None = None
+
+    @property
+    def lets_light_in(self) -> float:
+        """Probability that light comes from below its surface, before any picture is seen.
+
+        Of an offset that was measured it is none: that holds all of it.
+        """
+        if self.spray_mm is not None or self.offset_mm is not None:
+            return 0.0
+        return UNKNOWN_LETS_LIGHT_IN if self.material is None else 0.0 if MATERIALS[self.material].opaque else 1.0
+
+    @property
+    def expansion(self) -> tuple[float, float]:
+        """Its expansion coefficient in 1/K and the u of that, stated, the material's, or assumed."""
+        if self.alpha is not None and self.u_alpha is not None:
+            return self.alpha, self.u_alpha
+        known = Material(True) if self.material is None else MATERIALS[self.material]
+        return known.alpha, known.u_alpha
+
+    @property
+    def expansion_assumed(self) -> bool:
+        """Whether nothing says how it expands."""
+        return self.alpha is None and self.material in (None, "sprayed")
+
+    @property
+    def thicker_mm(self) -> float:
+        """What is added to a thickness as light shows it."""
+        return (self.offset_mm or 0.0) - (self.spray_mm or 0.0)
+
+    @property
+    def surface_rows(self) -> tuple[Contribution, ...]:
+        """What the offset and the layer of spray contribute to the uncertainty of a thickness; no zero rows."""
+        rows = [(PART_OFFSET, self.offset_sd_mm, self.offset_mm), (SPRAY, self.spray_sd_mm, self.spray_mm)]
+        if self.material == "sprayed" and self.spray_mm is None:
+            rows.append((SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
+        return tuple(Contribution(source, u, u, value=value) for source, u, value in rows if u)
+
+    @property
+    def surface_notes(self) -> tuple[Message, ...]:
+        """What was added to a thickness, if anything was."""
+        if not self.thicker_mm:
+            return ()
+        return (
+            Message(
+                "part.surface_corrected",
+                "Corrected by {change_um:+.1f} µm for what is stated of the part: its material is seen {offset_um:g} "
+                "µm below the surface, a layer of spray adds {spray_um:g} µm.",
+                change_um=self.thicker_mm * 1e3,
+                offset_um=(self.offset_mm or 0.0) * 1e3,
+                spray_um=(self.spray_mm or 0.0) * 1e3,
+            ),
+        )
+
+    @property
+    def assumed(self) -> tuple[Message, ...]:
+        """What is assumed of it, as notes."""
+        notes = []
+        if self.material is None:
+            alpha, u_alpha = self.expansion
+            notes.append(
+                Message(
+                    "part.material_assumed",
+                    "What the part is made of is not stated ({field}): the uncertainty holds light from below its "
+                    "surface as far as nothing excludes it, and an expansion of ({alpha:g} ± {u_alpha:g})·10⁻⁶/K.",
+                    field=Field("part.material", whole=True),
+                    alpha=alpha * 1e6,
+                    u_alpha=u_alpha * 1e6,
+                )
+            )
+        if self.celsius is None:
+            notes.append(
+                Message(
+                    "part.temperature_assumed",
+                    "The part's temperature is not stated ({field}): {celsius:g} °C with a standard uncertainty of "
+                    "{u:g} °C is assumed.",
+                    field=Field("part.celsius", whole=True),
+                    celsius=SUSPECTED_CELSIUS,
+                    u=SUSPECTED_CELSIUS_SD,
+                )
+            )
+        return tuple(notes)
+
+
+TEMPERATURE_ASSUMED = "part.temperature_assumed"
+"""Code of the note on a temperature that nobody has stated."""
