@@ -1,11 +1,17 @@
 """Parts that take light in and parts that shine: is U true, or is it told? And is nothing told of matt ones?
 
-Whole sets at half the full size, measured as a user would with one calibration.
+Whole sets at half and at a quarter of the full size, measured as a user would with one calibration.
 """
+
+from dataclasses import replace
 
 import pytest
 
+from core.files.recording.recording_set import open_set
 from core.inspect.conformity import Verdict
+from core.inspect.uncertainty.part import Part
+from core.pipeline.steps.gauge_step import gauge_step
+from core.pipeline.steps.workspace import Workspace
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import measure
 
@@ -53,3 +59,46 @@ def test_nothing_is_told_of_a_matt_part(seed, calibrated, tmp_path):
     assert not told
     assert abs(error) <= expanded
     assert verdict == Verdict.CONFORMING
+
+
+# ---- small pictures, whose stripes hide most of it: what they do not exclude is in U
+
+SMALL = {"scale": 0.25, "frames": 36, "camera_views": 10, "plane_poses": 8}
+UNSTATED, METAL = (Part(material, celsius=20.0, u_celsius=0.0) for material in (None, "metal"))
+
+
+@pytest.fixture(scope="module")
+def small(tmp_path_factory):
+    """A folder with a calibration, by a scan of a matt block."""
+    folder = tmp_path_factory.mktemp("small")
+    measure(Scenario(**SMALL), folder)
+    return folder
+
+
+def gauge_by(part, folder):
+    """The thickness of the scan in a folder, if this is stated of the part."""
+    found = open_set(folder / "set")
+    gauge = gauge_step(Workspace.open(replace(found, rig=replace(found.rig, part=part)), folder / "out"))
+    error, stated = gauge.thickness_mm - 50.0, part.material or "not stated"
+    print(f"{stated}: {1e3 * error:+.0f} ± {1e3 * gauge.U_mm:.0f} µm, {gauge.verdict}")
+    return gauge
+
+
+@pytest.mark.accuracy
+@pytest.mark.parametrize("seed", [2, 3, 4])
+@pytest.mark.parametrize("share", [0.15, 0.35])
+def test_light_from_below_that_small_pictures_hide_is_in_the_uncertainty(share, seed, small, tmp_path):
+    measure(Scenario(**SMALL, inner_share=share, seed=seed), tmp_path, small)
+    gauge = gauge_by(UNSTATED, tmp_path)
+    assert abs(gauge.thickness_mm - 50.0) <= gauge.U_mm or TOLD in {note.code for note in gauge.notes}
+
+
+@pytest.mark.accuracy
+@pytest.mark.parametrize("seed", [2, 3, 4, 5])
+def test_of_a_matt_part_only_a_material_that_is_not_stated_widens_the_uncertainty(seed, small, tmp_path):
+    reckoned_without = measure(Scenario(**SMALL, seed=seed), tmp_path, small).gauge
+    metal, unstated = gauge_by(METAL, tmp_path), gauge_by(UNSTATED, tmp_path)
+    assert (metal.thickness_mm, metal.U_mm) == (reckoned_without.thickness_mm, reckoned_without.U_mm)
+    assert "inspection.cause_light_from_below" not in {row.source.code for row in metal.budget}
+    assert metal.U_mm < unstated.U_mm < metal.U_mm + 0.2
+    assert abs(unstated.thickness_mm - 50.0) <= unstated.U_mm

@@ -31,7 +31,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import SKEWED_LIGHT
+from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
 from core.inspect.uncertainty.coverage import COVERAGE
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
@@ -49,7 +49,7 @@ LEAST_SWEEPS = 10.0
 FEWEST_SWEEPS = 3.0
 """Sweeps, as many as weigh alike, whose scatter tells anything."""
 SHARE_THAT_MATTERS = 0.25
-"""Share of all other uncertainty from which on it is told."""
+"""Share of all other uncertainty, but for such light that is not seen, from which on it is told."""
 
 
 class MeanSkewness(NamedTuple):
@@ -179,7 +179,7 @@ def light_below(cloud: Cloud, part: NDArray[np.int64], direction: Array, stated:
 def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:
     """Why a value with this budget proves nothing, if skewed light makes up much of it."""
     skewed = [row.u_mm for row in budget if row.source == SKEWED_LIGHT]
-    rest = [row.u_mm for row in budget if row.source != SKEWED_LIGHT]
+    rest = [row.u_mm for row in budget if row.source not in (SKEWED_LIGHT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED)]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
         return None
     return Message(

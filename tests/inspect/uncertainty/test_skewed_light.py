@@ -8,9 +8,16 @@ import pytest
 from core.inspect.conformity import Verdict
 from core.inspect.faces import FacePair
 from core.inspect.gauge import measure_gauge
-from core.inspect.uncertainty.causes import SKEWED_LIGHT
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import MeanSkewness, farthest_mean_mm, mean_skewness, unseen_mean_mm
+from core.inspect.uncertainty.skewed_light import (
+    MeanSkewness,
+    doubt_of_light,
+    farthest_mean_mm,
+    mean_skewness,
+    unseen_mean_mm,
+)
 from tests.inspect.block_scan import BlockScan
 
 TOLD = "inspection.light_is_skewed"
@@ -58,6 +65,15 @@ def test_light_from_below_is_in_the_uncertainty_and_proves_nothing(scan):
     assert seen.U_mm >= 2 * row.u_mm
     assert seen.verdict == Verdict.NOT_PROVEN
     assert TOLD in {note.code for note in seen.notes}
+
+
+def test_light_that_may_come_from_below_the_other_face_hides_no_doubt(scan):
+    sure = gauge_of(scan, 0.08)
+    (row,) = (row for row in sure.budget if row.source == SKEWED_LIGHT)
+    small = replace(row, u_mm=0.3 * np.sqrt(sure.u_mm**2 - row.u_mm**2))
+    others = [one for one in sure.budget if one.source != SKEWED_LIGHT]
+    assert doubt_of_light([*others, small]) is not None
+    assert doubt_of_light([*others, small, Contribution(LIGHT_FROM_BELOW_ASSUMED, 1.0)]) is not None
 
 
 def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them(scan):
