@@ -50,7 +50,7 @@ def _hostile(out: Path, commit: str, *, short: bool) -> None:
     """Print the hostile table, and keep it beside the figures; `short`: one seed, with a check."""
     cases = hostile_cases(0.25, SEEDS[:1], (CHECK_POSES,)) if short else hostile_cases(0.25)
     results = hostile.run(cases, out / f"hostile-{commit}.jsonl")
-    lines = [*hostile.table(cases, results), "", *hostile.summary(results.values())]
+    lines = [*hostile.table(cases, results), "", *hostile.summary(cases, results)]
     print("\n".join(lines))
     write_text(out / "hostile.md", "\n".join(lines) + "\n")
 

@@ -6,11 +6,15 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
+from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
+from core.files.recording.rig import Rig
+from core.inspect.uncertainty.part import Part
 from core.simulate.effects.lens import LensEffects
 from core.simulate.effects.plates import PlateEffects
 from core.simulate.effects.room import RoomEffects
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.effects.warming import Warming
+from core.simulate.sample import METAL_AT_20
 from core.simulate.scenario import Scenario
 
 SEEDS = (1, 2, 3)
@@ -25,8 +29,11 @@ class Effect:
     strengths: Sequence[tuple[str, Mapping[str, Any]]]
 
 
+NOTHING_STATED = "–, nothing stated"
+"""Strength at which rig.toml says nothing of the targets' sizes and of the part."""
+
 EFFECTS = (
-    Effect("nothing", [("–", {})]),
+    Effect("nothing", [("–", {}), (NOTHING_STATED, {})]),
     Effect(
         "second bounces between table and part's sides",
         [(f"{share:.0%}", {"mirror_share": share}) for share in (0.1, 0.3, 0.6)],
@@ -158,6 +165,48 @@ EFFECTS = (
 )
 
 
+BOUNCES, LIGHT = "second bounces between table and part's sides", "scan.room_light_changed"
+CHANGED = ("scan.fan_has_moved", "inspection.rig_has_changed", "validity.check_failed")
+MOVEMENT = (
+    "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
+    "gauge.moved_and_no_faces", "scan.frames_moved",
+)  # fmt: skip
+LENS = ("camera.corners_err_together", "camera.pattern_outwards", "camera.pattern_in_region", "camera.bad_fit")
+CAUSES: Mapping[str, tuple[str, ...]] = {
+    "nothing": (),
+    BOUNCES: ("scan.fan_light_ambiguous",),
+    "lamps that flicker at 100 Hz": (LIGHT,),
+    "a lamp switched within the scan": (LIGHT,),
+    "a shadow that passes": (LIGHT,),
+    "the rig warms within the scan": (*CHANGED, "scan.fan_shifted"),
+    "the rig warmed since its calibration": CHANGED,
+    "exposed too long, blooming": ("scan.overexposed", "fan.saturated_stripes"),
+    "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),
+    "camera's target larger": ("target.sizes_disagree",),
+    "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
+    "lens with k3": LENS,
+    "coma": (*LENS, "inspection.light_is_skewed"),
+    "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),
+    "JPEG": ("scan.compressed",),
+    "Bayer mosaic": ("scan.compressed",),
+    "hot pixels": ("camera.misfound_corners",),
+    "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
+    "glossy part": ("inspection.light_is_skewed",),
+    "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy"),
+    "speckle": ("form.scatter",),
+    "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll"),
+    "something moves within the scan": MOVEMENT,
+}
+"""Codes of notes and refusals that name the cause of each effect: no other counts as told."""
+TOGETHER: Mapping[str, tuple[str, ...]] = {
+    "warm rig, flicker, JPEG 60": ("the rig warmed since its calibration", "lamps that flicker at 100 Hz", "JPEG"),
+    "translucent, bowed fan, shadow": ("translucent part", "fan lines that bow", "a shadow that passes"),
+    "second bounces, blooming, coma": (BOUNCES, "exposed too long, blooming", "coma"),
+    "bowed board, k3, hot pixels": ("camera's target bowed", "lens with k3", "hot pixels"),
+}
+"""Which effects act at the strengths of "three at once": any of their causes counts."""
+
+
 @dataclass(frozen=True, slots=True)
 class HostileCase:
     """One scan: the effect, its strength, and the scenario."""
@@ -167,13 +216,36 @@ class HostileCase:
     scenario: Scenario
 
     @property
+    def causes(self) -> frozenset[str]:
+        """Codes that name the cause."""
+        return frozenset(code for title in TOGETHER.get(self.strength, (self.effect,)) for code in CAUSES[title])
+
+    @property
+    def states_size(self) -> bool:
+        """Whether rig.toml states how true the plane target is, as large as it assumes otherwise.
+
+        Else nothing is ever conforming, and no other effect could be silent.
+        """
+        return self.effect != "plane target larger" and self.strength != NOTHING_STATED
+
+    @property
+    def states_part(self) -> bool:
+        """Whether rig.toml states what the part is made of, and its temperature."""
+        return not self.scenario.inner_share and self.strength != NOTHING_STATED
+
+    def stated(self, rig: Rig) -> Rig:
+        """What rig.toml says of that."""
+        board = BoardTolerance(scale_sd=SUSPECTED_SCALE) if self.states_size else BoardTolerance()
+        return replace(rig, plane_board=board, part=METAL_AT_20 if self.states_part else Part())
+
+    @property
     def name(self) -> str:
         """Its own for each scenario: results are kept under it."""
         return f"{self.effect}, {self.strength}, {self.scenario.key}"
 
 
 def base(scale: float) -> Scenario:
-    """The rig to which all happens: nothing is stated of plates and stability, as in most rig.toml."""
+    """The rig to which all happens: its stability, and how flat its plates are, is not stated, as in most rig.toml."""
     many = scale >= 0.5
     return Scenario(
         scale=scale,
