@@ -263,10 +263,11 @@ def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path)
 
 def test_width_and_contrast_of_the_stripes_can_be_given(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
-    said = trisect("scan", simulated, "--out", out, *CUT, "--stripe-width", 4, "--contrast", 60)
+    said = trisect("scan", simulated, "--out", out, *CUT, "--stripe-width", 2.4, "--contrast", 60)
     assert said.code == 0, said.err
-    stripe = json.loads((out / "run.json").read_text())["settings"]["scan"]["stripe"]
-    assert stripe == {"width_px": 4.0, "contrast": 60.0}
+    run = json.loads((out / "run.json").read_text())
+    assert run["settings"]["scan"]["stripe"] == {"width_px": 2.4, "contrast": 60.0}
+    assert "stripes.told_width_wrong" in [note["code"] for note in run["notes"]["scan"]]
 
 
 def test_a_width_without_a_contrast_is_refused(simulated, tmp_path):

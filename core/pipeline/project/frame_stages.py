@@ -159,11 +159,11 @@ def _common(recording: _Recording) -> _Common:
     told("reference", 0, 2)
     picture, _ = reference_picture(found, None, options, told.within_step)
     looking = feature_options(options)
-    if settled and options.stripe is None:
+    if settled:
         looking = feature_options(Options(stripe=settled.fan_stripe))
     reference = read_reference(picture, looking)
     told("reference", 1, 2)
-    stripe = options.stripe or (settled.sweep_stripe if settled else None)
+    stripe = settled.sweep_stripe if settled else options.stripe
     if stripe is None:
         stream = found.stream(recording.taken[:LOOK_AHEAD])
         ahead = [(name, picture) for name, picture in stream if not isinstance(picture, Message)]

@@ -9,7 +9,7 @@ from functools import partial
 from core.acquire.grey import is_difference
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
-from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
@@ -22,6 +22,7 @@ from core.files.recording.set_listing import PlanePair
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.target_sizes import with_compared_sizes
@@ -110,7 +111,8 @@ def measure_poses(
         found.hashes.update(hashes)
         features.append(pose)
         progress("plane poses", len(features), total)
-    features[0] = replace(features[0], notes=(*chosen.notes(part), *features[0].notes))
+    of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
+    features[0] = replace(features[0], notes=(*of_all, *features[0].notes))
     return tuple(features)
 
 

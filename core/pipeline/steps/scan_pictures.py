@@ -12,7 +12,8 @@ from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
-from core.messages import Message
+from core.image.stripes.told_width import told_width_notes
+from core.messages import Message, from_json
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
 from core.progress import Progress, silent, steps
@@ -86,7 +87,8 @@ def look_at_scan(
     show = watching(reference) if watching else None
     lines = extract_lines(reference, frames, total, looking, progress, show, times)
     averaged = lines.averaged(progress, times)
-    notes = (*channel.notes("scan"), *note, *notes_on_compression(reference.noise))
+    of_width = told_width_notes(options.stripe, lines.stripes)
+    notes = (*channel.notes("scan"), *note, *of_width, *notes_on_compression(reference.noise))
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
 

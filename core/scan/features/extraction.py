@@ -21,6 +21,7 @@ from core.image.stripes.lines.smoothing import smooth
 from core.image.stripes.settings import choose_settings
 from core.image.stripes.shading import shading_sigma
 from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.told_width import as_measured
 from core.messages import Message
 from core.progress import Progress, StepProgress, silent, steps
 from core.scan.features.crossing_search import all_crossings
@@ -147,7 +148,10 @@ def extract_lines(
     stream = iter(frames)
     ahead = _look_ahead(stream)
     progress("frames", 0, total)
-    sweep_stripe = options.sweep_stripe or choose_sweep_stripe(ahead, seen, told.within_step)
+    if options.sweep_stripe is not None:
+        sweep_stripe: StripeSettings | None = _told_sweep_stripe(ahead, seen, options.sweep_stripe)
+    else:
+        sweep_stripe = choose_sweep_stripe(ahead, seen, told.within_step)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times)
     found: list[FrameFeatures] = []
     numbered = enumerate(_handed_on(ahead, stream))
@@ -241,6 +245,16 @@ def choose_sweep_stripe(
         width_px=float(np.median([s.width_px for s in seen])),
         contrast=float(np.median([s.contrast for s in seen])),
     )
+
+
+def _told_sweep_stripe(frames: Sequence[Frame], reference: ReferenceFeatures, told: StripeSettings) -> StripeSettings:
+    """The stripe that was `told`, with the width that `frames` show where that is quite another."""
+
+    def look(stripe: StripeSettings) -> tuple[Centreline, ...]:
+        reader = FrameReader(reference, stripe)
+        return tuple(piece for item in enumerate(frames) for piece in reader(item).centrelines)
+
+    return as_measured(told, look)[0]
 
 
 def _require_sweeps(frames: list[FrameFeatures]) -> None:

@@ -21,6 +21,7 @@ from core.image.stripes.noise import UNCOMPRESSED, Compression, NoiseModel, esti
 from core.image.stripes.running_statistics import median
 from core.image.stripes.settings import choose_settings
 from core.image.stripes.stripe import StripeSettings
+from core.image.stripes.told_width import as_measured
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -172,6 +173,8 @@ LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
 class FeatureOptions:
     """How pictures become features; None means chosen from the pictures.
 
+    A stripe's width that the pictures contradict gives way to the measured one.
+
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
     a `camera`, centrelines are crossed as they would be without its distortion. `compression` is that of each picture.
     """
@@ -269,8 +272,12 @@ def read_reference(picture: Picture, options: FeatureOptions | None = None) -> R
 def _fan_centrelines(
     base: NDArray[np.float32], full_scale: float, noise: NoiseModel, options: FeatureOptions
 ) -> tuple[StripeSettings, tuple[Centreline, ...]]:
-    settings = options.fan_stripe or choose_settings(base, full_scale)
-    fan = () if settings is None else extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
+    def look(settings: StripeSettings) -> tuple[Centreline, ...]:
+        return extract_centrelines(base, settings, noise=noise, saturated=base >= full_scale)
+
+    settings, fan = options.fan_stripe or choose_settings(base, full_scale), tuple[Centreline, ...]()
+    if settings is not None:
+        settings, fan = as_measured(settings, look) if options.fan_stripe else (settings, look(settings))
     if settings is None or not fan:
         raise InputError(
             Message("scan.no_fan_line", "shows no line of the fan, so nothing can be measured"),

@@ -8,7 +8,7 @@ pictures.
 
 from __future__ import annotations
 
-from functools import cache
+from functools import cache, partial
 
 import numpy as np
 import pytest
@@ -18,6 +18,7 @@ from core.image.stripes.extraction import StripeSettings, extract_centrelines
 from core.image.stripes.positions import _disagreement_px
 from core.image.stripes.runs import arc_length
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
+from core.image.stripes.told_width import as_measured, told_width_notes
 from tests.image.bound import Stripe
 from tests.image.second_generator import NOISE, bound, picture
 
@@ -36,15 +37,16 @@ def found(angle_deg: float, speckle: Speckle, told: float = 1.0) -> list[tuple[n
     for _ in range(pictures):
         point = np.array(shape[::-1]) / 2 + rng.random(2)
         light = picture((shape[0], shape[1]), (point[0], point[1]), angle_deg, STRIPE, speckle, rng)
-        line = extract_centrelines(light, StripeSettings(4 * STRIPE.width * told, STRIPE.height), noise=NOISE)[0]
-        lines.append(((line.uv - point) @ across, line))
+        settings = StripeSettings(4 * STRIPE.width * told, STRIPE.height)
+        _, seen = as_measured(settings, partial(extract_centrelines, light, noise=NOISE))
+        lines.append(((seen[0].uv - point) @ across, seen[0]))
     return lines
 
 
 def means(angle_deg: float, speckle: Speckle, told: float = 1.0) -> tuple[np.ndarray, np.ndarray]:
     """Means over MEAN_PX of arc, over their bound and over their stated σ; windows reach a little over the ends."""
     over_bound, over_sigma = [], []
-    filter_px = StripeSettings(4 * STRIPE.width * told, STRIPE.height).filter_px
+    filter_px = StripeSettings(4 * STRIPE.width, STRIPE.height).filter_px
     overlap = np.sqrt(1 - 2 / np.sqrt(np.pi) * filter_px / MEAN_PX)
     for error, line in found(angle_deg, speckle, told):
         part = (arc_length(line.uv) // MEAN_PX).astype(int)
@@ -78,3 +80,19 @@ def test_a_short_speckled_stripe_is_not_taken_for_a_skewed_one_by_chance() -> No
     assert _disagreement_px([(348, 0.0429, 0.0187)], 12.4) == 0.0
     assert _disagreement_px([(3480, 0.0429, 0.0187)], 12.4) == pytest.approx(0.042, abs=0.002)
     assert _disagreement_px([], 12.4) == 0.0
+
+
+@pytest.mark.parametrize("told", [0.6, 1.6])
+@pytest.mark.parametrize("angle_deg", [0.0, 30.0])
+def test_a_wrong_width_makes_neither_the_line_nor_its_sigma_worse(angle_deg: float, told: float) -> None:
+    wrong, right = (means(angle_deg, NO_SPECKLE, width) for width in (told, 1.0))
+    assert rms(wrong[0]) == pytest.approx(rms(right[0]), rel=0.1)
+    assert rms(wrong[1]) == pytest.approx(rms(right[1]), rel=0.1)
+
+
+def test_a_width_is_told_to_be_wrong_only_where_it_is_quite_another() -> None:
+    told, near, far = StripeSettings(6.0, 100.0), StripeSettings(7.0, 90.0), StripeSettings(10.04, 80.0)
+    assert told_width_notes(told, [near, None]) == ()
+    assert told_width_notes(None, [far]) == ()
+    (note,) = told_width_notes(told, [near, far])
+    assert "told to be 6.0 px wide, but are 10.0 px" in str(note)

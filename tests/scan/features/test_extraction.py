@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from core.scan.features.extraction import extract_features
+from core.image.stripes.stripe import StripeSettings
+from core.scan.features.extraction import FeatureOptions, extract_features
 
 WIDTH = 2.0
 
@@ -53,3 +54,13 @@ def test_little_light_more_in_a_dark_room_is_not_felt():
 
 def test_a_small_share_of_a_bright_background_is_not_felt():
     assert features([0, 9, -9], background=80.0).notes == ()
+
+
+@pytest.mark.parametrize("told", [0.6, 1.0, 1.6])
+def test_a_width_told_wrong_gives_way_to_the_measured_one(told):
+    frames = [(f"frame{n}.png", picture(70.0 + 15 * n, seed=n + 1)) for n in range(3)]
+    stripe = StripeSettings(told * 4 * WIDTH, 100.0)
+    found = extract_features(picture(), frames, len(frames), FeatureOptions(sweep_stripe=stripe, fan_stripe=stripe))
+    for used in (found.sweep_stripe, found.fan_stripe):
+        assert used.width_px == pytest.approx(4 * WIDTH, rel=0.05)
+        assert (used == stripe) == (told == 1.0)

@@ -31,6 +31,7 @@ from core.image.stripes.noise import (
 )
 from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import USUAL_STRIPE
+from core.image.stripes.told_width import as_measured
 from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -92,7 +93,8 @@ def measure_plane_pose(
     camera
         Helps finding straight edges under distortion.
     settings
-        Width and contrast of the stripes; chosen from the picture if not given.
+        Width and contrast of the stripes; chosen from the picture if not given. A width that the picture contradicts
+        gives way to the measured one.
     margin_mm
         How far the plate goes on beyond what is printed on it; None: not known.
     colour
@@ -176,10 +178,14 @@ def _stripes(
         picture -= without
         del without  # as large as four pictures of a camera, and so is each float picture that follows
     around = picture[_window(view, picture.shape, margin=1.0)]
-    chosen = settings or choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
-    if chosen is None:
-        return ()
-    return extract_centrelines(picture, chosen, noise=noise, saturated=saturated, ignore=outside)
+
+    def look(stripe: StripeSettings) -> tuple[Centreline, ...]:
+        return extract_centrelines(picture, stripe, noise=noise, saturated=saturated, ignore=outside)
+
+    if settings is not None:
+        return as_measured(settings, look)[1]
+    chosen = choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
+    return () if chosen is None else look(chosen)
 
 
 def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
