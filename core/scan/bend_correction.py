@@ -96,7 +96,7 @@ def _stripes(features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan,
             yield Stripe.of(-1 - number, -1, piece, line, fan.planes[number].pi, camera, bends)
     for numbers, frame in zip(scan.pis, scan.sweep_frames.tolist(), strict=True):
         for piece, line in enumerate(features.frames[frame].centrelines):
-            if len(line):
+            if len(line) and (frame, piece) not in scan.second_bounces:
                 middle = np.median(line.uv[:, 1], keepdims=True)
                 pi = scan.read_out.planes(numbers[None], middle)[0]
                 yield Stripe.of(frame, frame, piece, line, pi, camera, bends)

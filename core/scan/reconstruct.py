@@ -19,6 +19,7 @@ from core.progress import Progress, StepProgress, silent
 from core.scan.fan_watch import LEAST_FRAMES, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
+from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.features.reference import COMPRESSED
 from core.scan.method import Method
@@ -31,6 +32,7 @@ from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, still_part
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
+from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces
 from core.scan.sweeps.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
 from core.scan.sweeps.moving import hand_notes, read_out_of
 
@@ -96,10 +98,17 @@ def reconstruct(
     names = [frame.name for frame in features.frames]
     watched = watch_fan(features, lines, camera, fan)
     _require_rest(features, watched)
-    solved = _solve(options, crossings, line, camera, fan, names, watched, reported.within_step)
+    among = crossings, line
+    bounces = NO_BOUNCES
+    if _together(options) and not watched.first_after:  # the fan's light, moved, would be taken for a bounce
+        bounces = find_second_bounces(features.frames, among, camera, fan)
+    kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
+    kept &= ~bounces.among(crossings)
+    solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
+    reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)
-    found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera))
+    found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
     if not np.any(cloud.sweep >= 0):
@@ -114,7 +123,7 @@ def reconstruct(
                 field=Field("laser_fan.lines"),
             ),
         )
-    records = frame_records(features, crossings, line, solved.reasons, sweeps.frames, cloud, camera)
+    records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
     progress("network", 3, 3)
     return ScanResult(
         cloud=cloud,
@@ -126,16 +135,22 @@ def reconstruct(
         crossing_weights=solved.weights,
         fan_lines=lines,
         scale=sweeps.scale,
-        notes=_ordered(features.notes, solved)
+        notes=bounces.notes
+        + _ordered(features.notes, solved)
         + (() if too_bright is None else (too_bright,))
         + _unsure(found, cloud, solved, options)
         + _fan_notes(lines),
         datum=solved.datum,
-        speckle=_speckle(features, lines, sweeps, camera, fan) if options.method == Method.NETWORK else None,
-        crossing_reasons=solved.reasons,
+        speckle=_speckle(features, lines, sweeps, camera, fan) if _together(options) else None,
+        crossing_reasons=reasons,
         read_out=solved.read_out,
         moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
+        second_bounces=bounces,
     )
+
+
+def _together(options: ReconstructOptions) -> bool:
+    return options.method == Method.NETWORK
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -153,21 +168,22 @@ class _Solved:
 
 def _solve(
     options: ReconstructOptions,
-    crossings: CrossingTable,
-    line: NDArray[np.int64],
+    numbered_crossings: tuple[CrossingTable, NDArray[np.int64]],
+    kept: NDArray[np.bool_],
     camera: Camera,
     fan: Fan,
     names: Sequence[str],
     watched: FanRest,
     progress: Progress,
 ) -> _Solved:
-    if options.method != Method.NETWORK:
+    crossings, line = numbered_crossings
+    kept = kept.copy()
+    if not _together(options):
         sweeps = locate_each(crossings, line, camera, fan, progress)
         everywhere = np.ones(len(crossings), dtype=np.bool_)
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
         reasons = reasons_of(crossings.with_fan, sweeps.weights, everywhere, located)
         return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
-    kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     among, of_among = crossings.select(kept), line[kept]
     read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
     part = still_part(among, of_among, camera, fan, names, progress, read_out)
@@ -212,7 +228,7 @@ def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, cam
     return fan_speckle(features.fan, planes, camera, cell_px, sweeps.fan_cells, sweeps.fan_covariance)
 
 
-def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera) -> list[Cloud]:
+def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera, bounces: SecondBounces) -> list[Cloud]:
     clouds: list[Cloud] = []
     cell_px, size = features.crossings.half_length_px, sweeps.pis.shape[1]
     for sweep, frame in enumerate(sweeps.frames):
@@ -220,6 +236,8 @@ def _sweep_clouds(features: ScanFeatures, sweeps: LocatedSweeps, camera: Camera)
         mine = sweeps.line_cells[:, 0] == sweep
         cells, covariance = sweeps.line_cells[mine, 1:], sweeps.line_covariance[mine]
         for number, piece in enumerate(features.frames[frame].centrelines):
+            if (frame, number) in bounces:
+                continue
             own = OwnLine(_by_cell(cells[:, 0] == number, cells[:, 1], covariance), cell_px)
             clouds.append(
                 triangulate(piece, sweeps.pis[sweep], sweeps.covariance[block, block], camera, int(frame), sweep, own)

@@ -62,6 +62,7 @@ def frame_records(
 
 
 def _why_no_points(reasons: Index, solved: bool) -> Message:
+    reasons = reasons[reasons != CrossingUse.SECOND_BOUNCE]
     if not len(reasons):
         return Message("scan.frame_without_crossing", "its stripe crosses neither the fan nor another sweep")
     if not solved:

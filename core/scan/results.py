@@ -16,6 +16,7 @@ from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.surface.cloud import Cloud
 from core.scan.sweeps.fan_lines import FanLines
+from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces
 
 __all__ = ["FrameRecord", "ScanResult"]
 
@@ -50,6 +51,8 @@ class ScanResult:
         Strength with which the fan fixes scale and place; None when frames were solved each on its own.
     speckle
         The error common to the fan's own points and the sweeps; None when frames were solved each on its own.
+    second_bounces
+        The pieces of the sweeps' light that were left out as such.
     moved
         Whether object, table or camera moved within the scan.
     read_out
@@ -71,9 +74,11 @@ class ScanResult:
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     read_out: ReadOut = AT_ONCE
     moved: bool = False
+    second_bounces: SecondBounces = NO_BOUNCES
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:
-        """(M,) True for the crossings of solved sweeps; frames after a movement are not solved."""
+        """(M,) True for the crossings of solved sweeps' own light; frames after a movement are not solved."""
         table = self.crossings
-        return np.isin(table.a, self.sweep_frames) & (table.with_fan | np.isin(table.b, self.sweep_frames))
+        solved = np.isin(table.a, self.sweep_frames) & (table.with_fan | np.isin(table.b, self.sweep_frames))
+        return np.asarray(solved & ~self.second_bounces.among(table))

@@ -36,7 +36,7 @@ EFFECTS = (
     Effect("nothing", [("–", {}), (NOTHING_STATED, {})]),
     Effect(
         "second bounces between table and part's sides",
-        [(f"{share:.0%}", {"mirror_share": share}) for share in (0.1, 0.3, 0.6)],
+        [(f"{share:.0%}", {"mirror_share": share}) for share in (0.1, 0.15, 0.2, 0.3, 0.6)],
     ),
     Effect(
         "lamps that flicker at 100 Hz",

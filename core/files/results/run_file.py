@@ -117,6 +117,7 @@ class _Frame(ResultFile):
     points: int = 0
     sigma_mm: OrNan = math.nan
     left_out_reasons: dict[str, int] = Field(default_factory=dict)
+    second_bounces: int = 0
 
 
 class _RunFile(ResultFile):

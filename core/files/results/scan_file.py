@@ -70,6 +70,7 @@ _MEMBERS = {
     "stripes": real(2, 2),
     "change_p": real(optional=True),
     "doubt": texts(None, optional=True),
+    "second_bounces": whole(None, 2, optional=True),
     "frame_fan_shifts_px": real("frames", None, optional=True),
     "frame_fan_known": truth("frames", optional=True),
     "common_sources": texts(None, optional=True),
@@ -126,6 +127,8 @@ class ScanFile:
         Probability that chance alone sets calibrations and pictures of the scan so far apart; 1 if not known.
     doubt
         Why nothing measured in the scan proves conformity, if calibration or check did not hold on its day; else None.
+    second_bounces
+        Frame and number of the sweeps' centrelines that were left out as second bounces.
     """
 
     features: ScanFeatures
@@ -141,6 +144,7 @@ class ScanFile:
     speckle: FanSpeckle | None = None
     change_p: float = 1.0
     doubt: Message | None = None
+    second_bounces: tuple[tuple[int, int], ...] = ()
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -165,6 +169,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "change_p": np.array(scan.change_p),
         "doubt": pack_messages((scan.doubt,)),
         **_pack_shifts(features),
+        **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -231,6 +236,9 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         speckle=_speckle(arrays),
         change_p=float(arrays.get("change_p", 1.0)),
         doubt=next(iter(unpack_messages(arrays["doubt"])), None) if "doubt" in arrays else None,
+        second_bounces=tuple(
+            (frame, piece) for frame, piece in arrays.get("second_bounces", np.zeros((0, 2))).tolist()
+        ),
     )
 
 

@@ -178,4 +178,4 @@ def _settled(results: Path, picture: Path, name: str, project: Project) -> Settl
 @lru_cache(maxsize=1)
 def _read_settled(scan: _Version) -> SettledScan:
     file = read_scan(scan.path)
-    return SettledScan(file.features.sweep_stripe, file.features.fan_stripe, file.fan_line)
+    return SettledScan(file.features.sweep_stripe, file.features.fan_stripe, file.fan_line, file.second_bounces)

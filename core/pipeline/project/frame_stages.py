@@ -107,6 +107,7 @@ def frame_stages(
         shift_px=features.shift_px,
         left_out=name in options.excluded,
         reason=features.reason,
+        bounced=tuple(piece for frame, piece in settled.second_bounces if frame == index) if settled else (),
     )
 
 

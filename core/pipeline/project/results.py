@@ -113,7 +113,7 @@ def _check(path: Path, calibration_id: str, calibration: Calibration | None) -> 
 
 
 def _settled(scan: ScanFile) -> SettledScan:
-    return SettledScan(scan.features.sweep_stripe, scan.features.fan_stripe, scan.fan_line)
+    return SettledScan(scan.features.sweep_stripe, scan.features.fan_stripe, scan.fan_line, scan.second_bounces)
 
 
 def _notes(record: RunRecord | None) -> tuple[Message, ...]:

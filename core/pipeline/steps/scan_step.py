@@ -229,6 +229,7 @@ def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: st
         calibration_id=calibration_id,
         features_key=key,
         speckle=scan.speckle,
+        second_bounces=tuple(sorted(scan.second_bounces.pieces)),
     )
 
 

@@ -56,6 +56,7 @@ class CrossingUse(IntEnum):
     NOT_THE_SWEEPS = 2
     MOVED = 3
     NOT_LOCATED = 4
+    SECOND_BOUNCE = 5
 
     @property
     def message(self) -> Message:
@@ -71,6 +72,7 @@ _WHY_LEFT_OUT = {
         "scan.crossing_moved", "object or camera moved between its frame and the others, or the fan"
     ),
     CrossingUse.NOT_LOCATED: Message("scan.crossing_not_located", "its frame was not located"),
+    CrossingUse.SECOND_BOUNCE: Message("scan.crossing_second_bounce", "lies on a second bounce, or on what may be one"),
 }
 
 
@@ -94,6 +96,8 @@ class FrameRecord:
         How many of the crossings did not count: in all, and by reason.
     condition
         Ratio of the singular values of the crossings with the fan: how near to collinear they are.
+    second_bounces
+        How many of its centrelines were left out because a shiny side had mirrored the light, or may have.
     points, sigma_mm
         How many it gave, and their median σ.
     """
@@ -112,6 +116,7 @@ class FrameRecord:
     points: int = 0
     sigma_mm: float = float("nan")
     left_out_reasons: tuple[tuple[CrossingUse, int], ...] = ()
+    second_bounces: int = 0
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:

@@ -175,6 +175,8 @@ class FrameStages:
         Whether this frame is left out by hand; its stages are shown all the same.
     reason
         Why there is no sweep; None if there is.
+    bounced
+        Which of the sweep's centrelines the measurement left out as second bounces.
     """
 
     index: int
@@ -190,15 +192,20 @@ class FrameStages:
     shift_px: float
     left_out: bool
     reason: Message | None
+    bounced: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
 class SettledScan:
-    """Settings that a finished measurement has found: the stripes' width and contrast, the fan line of each piece."""
+    """What a finished measurement has found: the stripes' width and contrast, the fan line of each piece.
+
+    `second_bounces` are frame and number of the sweeps' centrelines that it left out as such.
+    """
 
     sweep_stripe: StripeSettings | None
     fan_stripe: StripeSettings
     fan_line: tuple[int, ...]
+    second_bounces: tuple[tuple[int, int], ...] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -359,6 +359,13 @@ def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
     assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
 
 
+def test_second_bounces_of_a_scan_are_kept(tmp_path, scan):
+    write_scan(tmp_path / "scan.npz", replace(scan, second_bounces=((0, 1), (2, 0))))
+    assert read_scan(tmp_path / "scan.npz").second_bounces == ((0, 1), (2, 0))
+    write_scan(tmp_path / "scan.npz", scan)
+    assert read_scan(tmp_path / "scan.npz").second_bounces == ()
+
+
 def test_what_displaced_calibrations_do_is_kept_with_the_scan(tmp_path, scan):
     rng = np.random.default_rng(6)
     cameras = rng.normal(size=(3, 10))

@@ -85,6 +85,19 @@ def show_sweep(image: ImageView, pieces: Sequence[Centreline], sigma: Sequence[A
         image.set_lines("sweep", lines, colour=SWEEP, width=1.6, title=tr("sweep"))
 
 
+def show_swept(image: ImageView, pieces: Sequence[Centreline], bounced: Sequence[int]) -> None:
+    """The centrelines of a measured frame; those `bounced`, by their number, in another colour and marked with ×."""
+    show_sweep(image, [piece for number, piece in enumerate(pieces) if number not in bounced])
+    if bounced:
+        mirrored = [pieces[number].uv for number in bounced]
+        image.set_lines(
+            "second bounces", mirrored, colour=CROSSING_LEFT_OUT.colour, width=1.6, labels=["×"] * len(mirrored),
+            title=tr("second bounce, left out"),
+        )  # fmt: skip
+    else:
+        image.remove_layer("second bounces")
+
+
 def show_crossings(image: ImageView, preview: FramePreview | None) -> None:
     """Crossings as marks: green circle, amber triangle, red cross; the reason on hover."""
     titles = (tr("crossing, good"), tr("crossing, weak"), tr("crossing, left out"))

@@ -121,7 +121,7 @@ class ScanPicture(QWidget):
         self.image.clear_layers()
         if place >= list(View).index(View.CENTRELINES):
             overlays.show_fan_pieces(self.image, stages.fan, stages.fan_line)
-            overlays.show_sweep(self.image, stages.sweep)
+            overlays.show_swept(self.image, stages.sweep, stages.bounced)
         if self.wanted is View.CROSSINGS:
             overlays.show_crossings(self.image, stages.seen)
         if self.wanted is View.POINTS:

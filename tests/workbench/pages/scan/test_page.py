@@ -16,6 +16,7 @@ from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarte
 from core.scan.preview.preflight import Check
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
+from workbench.pages.scan import overlays
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
@@ -246,6 +247,15 @@ def test_every_stage_of_a_frame_can_be_seen(measured, qtbot, view, layers):
     assert set(image.layer_names()) == layers
     shown = {View.DIFFERENCE: 80, View.RIDGE: 120}.get(view, 40)
     assert image._picture.picture[0, 0] == shown
+
+
+def test_second_bounces_are_seen_as_such_and_listed(measured):
+    image, (own, mirrored) = measured.picture.image, (cases.line(4, 30, 10.0), cases.line(34, 60, 14.0))
+    overlays.show_swept(image, (own, mirrored), (1,))
+    assert {"sweep", "second bounces"} <= set(image.layer_names())
+    assert "second bounce, left out" in image.legend_titles
+    overlays.show_swept(image, (own,), ())
+    assert "second bounces" not in image.layer_names()
 
 
 def test_a_crossing_says_on_hover_why_it_is_weak(measured, qtbot):

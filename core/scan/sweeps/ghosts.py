@@ -1,0 +1,183 @@
+"""Second bounces: pieces of a sweep's light that shiny sides have mirrored onto table or part.
+
+Mirrored light lies in another plane than its sweep, so its crossings with other sweeps and with the fan do not close.
+Within the network it would be known by that, were it not for its number: some twenty such pieces among a hundred make
+the planes fall together, or look as if something had moved. But a mirror gives back less than it gets. So the network
+is solved by the bright pieces alone, and every fainter one is held against it:
+
+- it is the sweep's own if its crossings close within their σ;
+- it is a second bounce if they miss by more than its own width, too;
+- where no crossing says either, it is left out as well if there are second bounces in the scan: it may be one.
+
+A scan in which no piece misses keeps all of them, the faint ones as well: dark paint and grazed sides are no mirrors.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence, Set
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.image.stripes.stripe import WIDTH_IN_SIGMA
+from core.messages import Message, plural_message
+from core.model import Camera, Fan
+from core.model.arrays import Array
+from core.model.robust import huber_weights, mad_sd
+from core.scan.features.crossings import CrossingTable, Index
+from core.scan.features.frames import FrameFeatures, FrameRecord
+from core.scan.network.adjustment import HUBER_AT, has_collapsed
+from core.scan.network.equations import GRADIENT_FLOOR, Adjustment
+from core.scan.network.geometry import CrossingRays, floored, noise_gains
+from core.scan.network.line_errors import LineErrors
+from core.scan.sweeps.locate import by_sweep, sweeping_frames
+
+# Held by tests/scan/sweeps/test_ghosts.py and tests/accuracy/test_second_bounces.py.
+FAINT = 0.85
+"""Of the median height of a frame's stripe: fainter pieces may be second bounces. Polished metal mirrors 0.6."""
+SEVERAL = 3
+"""Crossings of such pieces in a scan, at least, before there are second bounces in it: one may be wrong by chance."""
+MISSED = 4.0
+"""Standard deviations by which a crossing misses. Those of second bounces miss by 100 to 1000."""
+_ROUNDS = 6
+"""Rounds of reweighting by Huber: wrong crossings are few among bright pieces."""
+
+
+Piece = tuple[int, int]
+"""Frame and number of a piece of a sweep's light."""
+
+
+@dataclass(frozen=True, slots=True)
+class SecondBounces:
+    """The `pieces` that are, or may be, second bounces."""
+
+    pieces: frozenset[Piece] = frozenset()
+
+    def __contains__(self, piece: Piece) -> bool:
+        return piece in self.pieces
+
+    def among(self, crossings: CrossingTable) -> NDArray[np.bool_]:
+        """(M,) True for the crossings of such a piece."""
+        return _of(self.pieces, crossings.a, crossings.piece_a) | _of(self.pieces, crossings.b, crossings.piece_b)
+
+    def counted(self, records: Sequence[FrameRecord]) -> tuple[FrameRecord, ...]:
+        """The records of all frames with how many of their pieces are second bounces."""
+        count = Counter(frame for frame, _ in self.pieces)
+        return tuple(replace(one, second_bounces=count[one.index]) for one in records)
+
+    @property
+    def notes(self) -> tuple[Message, ...]:
+        """A note for the technician if there are any."""
+        if not self.pieces:
+            return ()
+        return (
+            plural_message(
+                "scan.second_bounces",
+                "Second bounces: {n} piece of the hand-held laser's stripe is left out. Shiny sides mirror its light "
+                "onto table or part: spray the part matt, or lay it on something dark.",
+                "Second bounces: {n} pieces of the hand-held laser's stripe are left out, in {frames} frames. Shiny "
+                "sides mirror its light onto table or part: spray the part matt, or lay it on something dark.",
+                n=len(self.pieces),
+                frames=len({frame for frame, _ in self.pieces}),
+            ),
+        )
+
+
+NO_BOUNCES = SecondBounces()
+
+
+def find_second_bounces(
+    frames: Sequence[FrameFeatures], numbered_crossings: tuple[CrossingTable, Index], camera: Camera, fan: Fan
+) -> SecondBounces:
+    """Find the pieces of the sweeps' light that are second bounces.
+
+    With the crossings goes the fan's line (M,) of each, −1 between sweeps.
+    """
+    crossings, line = numbered_crossings
+    faint = _faint_pieces(frames)
+    faint_a, faint_b = _of(faint, crossings.a, crossings.piece_a), _of(faint, crossings.b, crossings.piece_b)
+    among = ~faint_a & ~faint_b
+    bright, tested = crossings.select(among), faint_a != faint_b
+    if np.count_nonzero(tested) < SEVERAL or not np.any(bright.with_fan):
+        return NO_BOUNCES
+    first, second = np.flatnonzero(tested & faint_a), np.flatnonzero(tested & faint_b)
+    table = crossings.select(first).followed_by(crossings.select(second).swapped())  # the faint piece is a
+    known = sweeping_frames(bright)
+    solvable = np.isin(table.a, known) & (table.with_fan | np.isin(table.b, known))
+    table, of_fan = table.select(solvable), line[np.concatenate([first, second])][solvable]
+    missed, real = _judged(table, of_fan, bright, line[among], camera, fan)
+    width = {(f, p): WIDTH_IN_SIGMA * float(np.median(frames[f].centrelines[p].width)) for f, p in faint}
+    found, proven = 0, set[Piece]()
+    for piece in faint:
+        mine = (table.a == piece[0]) & (table.piece_a == piece[1])
+        if np.any(mine) and np.median(missed[mine]) > width[piece]:
+            found += int(np.count_nonzero(mine))
+        if np.any(real[mine]) and 2 * np.count_nonzero(real[mine]) > np.count_nonzero(mine):
+            proven.add(piece)
+    if found < SEVERAL:
+        return NO_BOUNCES
+    return SecondBounces(frozenset(faint - proven))
+
+
+def _faint_pieces(frames: Sequence[FrameFeatures]) -> set[Piece]:
+    """Frame and number of the pieces that are clearly fainter than the frame's stripe is on the whole."""
+    found = set()
+    for frame in frames:
+        if len(frame.centrelines) < 2:
+            continue
+        usual = np.median(np.concatenate([piece.strength for piece in frame.centrelines]))
+        found |= {
+            (frame.index, number)
+            for number, piece in enumerate(frame.centrelines)
+            if np.median(piece.strength) < FAINT * usual
+        }
+    return found
+
+
+def _of(pieces: Set[Piece], frame: Index, piece: Index) -> NDArray[np.bool_]:
+    """(M,) True where frame and piece are one of `pieces`."""
+    return np.array([one in pieces for one in zip(frame.tolist(), piece.tolist(), strict=True)], dtype=np.bool_)
+
+
+def _judged(
+    table: CrossingTable, line: Index, bright: CrossingTable, bright_line: Index, camera: Camera, fan: Fan
+) -> tuple[Array, NDArray[np.bool_]]:
+    """By how many px (M,) a's line misses each crossing of `table`, and whether it does not although it well could.
+
+    0 px where it misses by no more than its uncertainty, that of the planes solved by the `bright` crossings included;
+    neither where these alone do not tell the planes apart.
+    """
+    frames = sweeping_frames(bright)
+    renumbered = by_sweep(bright, frames)
+    equations = Adjustment(
+        renumbered, CrossingRays.of(bright, camera), bright_line, fan, len(frames), LineErrors.of(renumbered)
+    )
+    solution = equations.start()
+    for _ in range(_ROUNDS):
+        solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
+    if has_collapsed(equations, solution.pis):  # the part is dark: the bright pieces know nothing of depth
+        return np.zeros(len(table)), np.zeros(len(table), dtype=np.bool_)
+    covariance = equations.covariance(solution)[0].reshape(len(frames), 3, len(frames), 3)
+    scale = max(1.0, mad_sd(solution.residuals))
+    place = np.searchsorted(frames, np.arange(max(frames[-1], table.a.max(initial=0), table.b.max(initial=0)) + 1))
+    at = table.renumber(place)
+    rays = CrossingRays.of(at, camera)
+    tested = Adjustment(at, rays, line, fan, len(frames), LineErrors.of(at))
+    off = np.einsum("mi,mi->m", tested.differences(solution.pis), rays.rays)
+    gradient = floored(tested.gradient(solution.pis), GRADIENT_FLOOR * equations.typical_gradient)
+    gain_a, gain_b = noise_gains(at, gradient)
+    a, b = at.a, np.maximum(at.b, 0)
+    of_planes = _variance(covariance, a, a, rays.rays)
+    between = _variance(covariance, b, b, rays.rays) - 2 * _variance(covariance, a, b, rays.rays)
+    of_planes = of_planes + np.where(at.with_fan, 0.0, between)
+    sigma = scale * np.sqrt((gain_a * at.sigma_a) ** 2 + (gain_b * at.sigma_b) ** 2 + np.maximum(of_planes, 0.0))
+    misses = np.abs(off) > MISSED * sigma
+    sharp = MISSED * sigma < np.abs(gain_a)  # a line one pixel aside would miss
+    return np.where(misses, np.abs(off / gain_a), 0.0), ~misses & sharp
+
+
+def _variance(covariance: Array, one: Index, other: Index, rays: Array) -> Array:
+    """Covariance (M,) of π·r of two sweeps each."""
+    return np.asarray(np.einsum("mi,mij,mj->m", rays, covariance[one, :, other, :], rays))

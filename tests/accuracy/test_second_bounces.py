@@ -1,0 +1,21 @@
+"""Shiny sides that mirror the lasers onto the table: a thickness is right within U, or second bounces are named."""
+
+from dataclasses import replace
+
+import pytest
+
+from tests.accuracy.hostile import figures_of
+from tests.accuracy.hostile_cases import base
+
+OTHER_CAUSES = {"scan.moved", "scan.collapsed", "scan.fan_disagrees", "inspection.moved_during_scan"}
+
+
+@pytest.mark.accuracy
+@pytest.mark.parametrize("seed", [2, 3])
+@pytest.mark.parametrize("share", [0.2, 0.3, 0.6])
+def test_second_bounces_leave_a_thickness_within_its_uncertainty(share, seed, tmp_path):
+    figures = figures_of(replace(base(0.25), seed=seed, mirror_share=share), tmp_path)
+    print(share, seed, figures)
+    assert abs(figures["error"]) <= figures["U"]
+    assert not OTHER_CAUSES & set(figures["told"])
+    assert ("scan.second_bounces" in figures["told"]) == (share >= 0.3)
