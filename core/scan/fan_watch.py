@@ -6,6 +6,9 @@ see a hundredth of a pixel, long before crossings between sweeps disagree. The f
 absolute deviations from the medians before and after is least, again and again while both sides differ by more than
 chance and by more than MOVED_PX.
 
+A rig that warms moves evenly, not at once: where straight lines through the shifts leave less than the parts do, it is
+a drift, and no frame is better than another.
+
 References
 ----------
 Scott, A. J., Knott, M., A cluster analysis method for grouping means in the analysis of variance, Biometrics 30 (1974),
@@ -24,6 +27,7 @@ from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import mad_sd
+from core.scan.features.crossings import Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.reference import fan_stretches
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
@@ -48,6 +52,9 @@ NEARLY_ALL = 0.8
 MOVED_WITHIN = Message(
     "inspection.moved_during_scan", "Something moved during the scan: nothing measured proves conformity."
 )
+DRIFTED_WITHIN = Message(
+    "inspection.drifted_during_scan", "The rig drifted during the scan: nothing measured proves conformity."
+)
 PART_WORDS = Message("scan.the_part", "the part")
 EVERYTHING_WORDS = Message("scan.everything", "the camera, the fan, or the table with the part")
 
@@ -64,6 +71,9 @@ class FanRest:
         The first frame of each part of the scan but the first, in order.
     shift_px, shift_mm, share
         Of the stretches that moved: median shift in the picture and in depth, and how many of all they are.
+    drifts
+        Whether all of it lies evenly farther aside from frame to frame, from the first to the last: nothing moved at
+        once, and all frames are used.
     """
 
     at_rest: NDArray[np.bool_]
@@ -71,9 +81,26 @@ class FanRest:
     shift_px: float = 0.0
     shift_mm: float = 0.0
     share: float = 0.0
+    drifts: bool = False
+
+    @property
+    def unsteady(self) -> bool:
+        """Whether anything has moved, at once or evenly."""
+        return bool(self.first_after) or self.drifts
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Note for the technician if anything moved; `frames` frames are used."""
+        if self.drifts:
+            return (
+                Message(
+                    "scan.drifted",
+                    "The rig drifts: from the first frame to the last the fan's light moves evenly, by {shift_px:.2g} "
+                    "px, which is {shift_mm:.2g} mm in depth. All frames are used. Let camera and lasers warm up "
+                    "before a scan, and scan faster.",
+                    shift_px=self.shift_px,
+                    shift_mm=self.shift_mm,
+                ),
+            )
         if not self.first_after:
             return ()
         return (
@@ -107,10 +134,15 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
         return FanRest(np.ones(count, dtype=np.bool_))
     shifts = np.array([features.frames[i].fan_shifts_px for i in known])
     noise = np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
-    splits = sorted(_splits(shifts, np.maximum(noise, LEAST_NOISE_PX), 0))
+    level = np.maximum(noise, LEAST_NOISE_PX)
+    splits = sorted(_splits(shifts, level, 0))
     if not splits:
         return FanRest(np.ones(count, dtype=np.bool_))
-    parts = np.split(np.arange(len(known)), splits)
+    parts, per_px = np.split(np.arange(len(known)), splits), _depth_per_px(features, lines, camera, fan)
+    drift, left = _drift(shifts, known, level)
+    if left < sum(_spread(shifts[part], level) for part in parts):
+        aside_px, aside_mm = _median(np.abs(drift)), _median(np.abs(drift * per_px))
+        return FanRest(np.ones(count, dtype=np.bool_), (), aside_px, aside_mm, 1.0, drifts=True)
     middles = np.array([np.median(shifts[part], axis=0) for part in parts])
     off = np.sqrt(np.mean(middles**2, axis=1))
     rest = int(np.argmin(off))
@@ -123,12 +155,12 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     farthest = int(np.argmax(off))
     change = middles[farthest] - middles[rest]
     moved = np.abs(change) > np.maximum(SURELY * noise / np.sqrt(len(parts[farthest])), MOVED_PX)
-    in_depth = np.abs(change * _depth_per_px(features, lines, camera, fan))[moved]
+    in_depth = np.abs(change * per_px)[moved]
     return FanRest(
         at_rest,
         tuple(int(known[split]) for split in splits),
-        float(np.median(np.abs(change[moved]))) if moved.any() else 0.0,
-        float(np.nanmedian(in_depth)) if np.isfinite(in_depth).any() else 0.0,
+        _median(np.abs(change[moved])),
+        _median(in_depth),
         float(np.mean(moved)),
     )
 
@@ -149,6 +181,22 @@ def _splits(shifts: Array, noise: Array, first: int) -> list[int]:
     if not _moved(np.median(before, axis=0), np.median(after, axis=0), noise, min(at, count - at)):
         return [first + edge for edge in _for_a_while(shifts, noise)]
     return [*_splits(before, noise, first), first + at, *_splits(after, noise, first + at)]
+
+
+def _drift(shifts: Array, frames: Index, noise: Array) -> tuple[Array, float]:
+    """What straight lines through the shifts (K, C) of `frames` (K,) come to over the scan (C,), and what they leave.
+
+    The latter as `_spread` counts it.
+    """
+    third = max(1, len(frames) // 3)
+    rise = np.median(shifts[-third:], axis=0) - np.median(shifts[:third], axis=0)
+    slope = rise / (np.mean(frames[-third:]) - np.mean(frames[:third]))
+    return slope * (frames[-1] - frames[0]), _spread(shifts - np.outer(frames, slope), noise)
+
+
+def _median(values: Array) -> float:
+    """Median of those values that are known; 0 where none is."""
+    return float(np.nanmedian(values)) if np.isfinite(values).any() else 0.0
 
 
 def _for_a_while(shifts: Array, noise: Array) -> list[int]:

@@ -100,7 +100,7 @@ def reconstruct(
     _require_rest(features, watched)
     among = crossings, line
     bounces = NO_BOUNCES
-    if _together(options) and not watched.first_after:  # the fan's light, moved, would be taken for a bounce
+    if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
         bounces = find_second_bounces(features.frames, among, camera, fan)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
@@ -146,6 +146,7 @@ def reconstruct(
         read_out=solved.read_out,
         moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
         second_bounces=bounces,
+        drifted=watched.drifts,
     )
 
 
@@ -194,7 +195,7 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    explained = watched.first_after or part.movements or of_hand or sweeps.notes
+    explained = watched.unsteady or part.movements or of_hand or sweeps.notes
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,

@@ -55,6 +55,8 @@ class ScanResult:
         The pieces of the sweeps' light that were left out as such.
     moved
         Whether object, table or camera moved within the scan.
+    drifted
+        Whether camera or fan moved evenly from its first frame to its last.
     read_out
         How planes change while the camera reads its rows out.
     """
@@ -74,6 +76,7 @@ class ScanResult:
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     read_out: ReadOut = AT_ONCE
     moved: bool = False
+    drifted: bool = False
     second_bounces: SecondBounces = NO_BOUNCES
 
     @property

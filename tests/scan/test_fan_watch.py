@@ -9,6 +9,7 @@ from core.errors import InputError
 from core.scan.features.extraction import FeatureOptions, extract_features
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.records import MOVED_FRAME
+from core.simulate.effects.warming import Warming
 from core.simulate.recording import moved_stage, scan_of
 from core.simulate.scenario import Scenario
 
@@ -74,3 +75,15 @@ def test_a_part_that_is_put_back_is_used_before_and_after():
 def test_a_camera_bumped_early_is_refused_with_what_happened_and_when():
     with pytest.raises(InputError, match="the first frame after it is frame0006, and only 6 frames"):
         measured(bumped_px=2.0, moved_frame=6)
+
+
+@SEEDS
+def test_a_rig_that_warms_is_told_as_a_drift_and_all_frames_are_used(seed):
+    warming = Warming(scan_px=0.1, scan_focal_ppm=50, scan_urad=20)
+    result = measured(seed=seed, moved_frame=0, warming=warming)
+    assert result.drifted
+    assert not result.moved
+    assert result.notes[0].code == "scan.drifted"
+    assert 0.01 < result.notes[0].values["shift_px"] < 0.1
+    assert not {note.code for note in result.notes} & {"scan.fan_shifted", "scan.moved", "scan.second_bounces"}
+    assert not [frame for frame in result.frames if frame.reason == MOVED_FRAME]

@@ -21,7 +21,7 @@ from core.messages import Message, as_json
 from core.model.arrays import Array
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
-from core.scan.fan_watch import MOVED_WITHIN
+from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
 from core.scan.standstill import HOLD_STILL
 
 PART = "part"
@@ -96,7 +96,7 @@ def _said_first(scan: ScanFile) -> Iterator[None]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    if scan.doubt == MOVED_WITHIN:
+    if scan.doubt in (MOVED_WITHIN, DRIFTED_WITHIN):
         return replace(errors, doubt=scan.doubt)
     return replace(errors, doubt=CHANGED if scan.change_p < PROVES_NOTHING else scan.doubt)
 

@@ -26,7 +26,7 @@ from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
-from core.scan.fan_watch import MOVED_WITHIN
+from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.features.frames import left_out_notes
 from core.scan.method import Method
@@ -107,7 +107,7 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
-        doubt = MOVED_WITHIN if scan.moved else doubt_of_the_day(work, calibration)
+        doubt = _unsteady(scan) or doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
@@ -139,6 +139,13 @@ def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progres
     cloud = with_normals(cloud, progress=progress)
     surface = with_normals(fuse(cloud, image_size, progress=progress), progress=progress)
     return cloud, build_mesh(surface, progress=progress)
+
+
+def _unsteady(scan: ScanResult) -> Message | None:
+    """Why nothing in the scan proves conformity, if something moved within it."""
+    if scan.moved:
+        return MOVED_WITHIN
+    return DRIFTED_WITHIN if scan.drifted else None
 
 
 def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:

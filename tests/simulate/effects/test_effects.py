@@ -224,6 +224,8 @@ def test_a_warm_camera_moves_its_picture():
     camera = scenario_rig(SMALL).camera
     mean, _, _ = moments(Warming(scan_px=2.0).at(0.5, light, camera))
     assert mean == pytest.approx([51.0, 40.6], abs=0.02)
+    mean, _, _ = moments(Warming(scan_px=0.1).at(0.1, light, camera))
+    assert mean == pytest.approx([50.01, 40.006], abs=5e-4), "no step is rounded"
     centre = camera.matrix[:2, 2]
     mean, _, _ = moments(Warming(scan_focal_ppm=20_000.0).at(1.0, light, camera))
     assert mean == pytest.approx(centre + 1.02 * (np.array([50, 40]) - centre), abs=0.02)
