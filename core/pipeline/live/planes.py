@@ -64,7 +64,7 @@ class LivePlanes:
         self._context, request = context, context.request
         self._target, self._camera, self._lines = request.rig.plane_target, request.camera, request.rig.lines
         self._checks, self._auto, self._capture = request.step == "check", request.auto, False
-        self._settings = request.options.stripe
+        self._settings = request.options.plane_stripe
         self._judge: CaptureJudge | None = None
         self._look: FoundPose | None = None
         self._stage: Stage = "looking"

@@ -5,7 +5,9 @@ import pytest
 
 from core.acquire.source import Lasers
 from core.files.pictures import read_picture
+from core.files.recording.options import Options
 from core.files.recording.rig import Rig
+from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, Checkerboard, detect
 from core.pipeline.live import planes as live_planes
 from core.pipeline.live.commands import Auto, Capture, Discard, Stop
@@ -207,6 +209,20 @@ def test_a_picture_still_exposed_with_the_fan_on_is_not_taken_for_the_one_withou
     assert ended.recorded == 1
     assert np.array_equal(read_picture(tmp_path / "planes" / "pose00_off.png"), plates.poses[0][1])
     assert measured == ["pose00"], "pictures with the fan still on are seen to be that before anything is measured"
+
+
+@pytest.mark.parametrize("step", ["planes", "check"])
+def test_stripes_on_the_plane_target_are_looked_for_as_its_own_page_says(monkeypatch, tmp_path, plates, step):
+    looked = []
+    real = live_planes.measure_pair
+    monkeypatch.setattr(live_planes, "measure_pair", lambda *args: looked.append(args[5]) or real(*args))
+    on_plate, in_scan = StripeSettings(4.0, 20.0), StripeSettings(9.0, 100.0)
+    window = Window(answer_to(LiveTaken, Stop()))
+    choices = {"frames": UNTIL_STOPPED, "options": Options(stripe=in_scan, plane_stripe=on_plate)}
+    shown = Late(plates.poses[0], 0)
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, step, camera=plates.camera, **choices)
+    assert ended.recorded == 1
+    assert looked == [on_plate]
 
 
 def test_both_pictures_of_a_pose_are_exposed_one_after_the_other(monkeypatch, tmp_path, plates):
