@@ -25,7 +25,6 @@ from core.inspect.fit.plane_fit import (
     fit_parallel_planes,
     fit_plane,
 )
-from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
@@ -207,17 +206,10 @@ def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Me
     planes = fit.planes
     if not planes.tilt_determined:
         return ()
-    distances = ((fit.pair.upper, planes.upper_distance), (fit.pair.lower, planes.lower_distance))
-    middles = [(cloud.points[face].mean(axis=0), distance) for face, distance in distances]
-    centres = np.array([middle - planes.normal * (planes.normal @ middle - distance) for middle, distance in middles])
-    return notes_on_form(
-        cloud,
-        np.concatenate([fit.pair.upper, fit.pair.lower]),
-        ParallelPlanes.through(-planes.normal, centres),
-        errors,
-        (UPPER_FACE, LOWER_FACE),
-        np.repeat([0, 1], [len(fit.pair.upper), len(fit.pair.lower)]),
-    )
+    indices = np.concatenate([fit.pair.upper, fit.pair.lower])
+    part = np.repeat([0, 1], [len(fit.pair.upper), len(fit.pair.lower)])
+    shape = planes.shape(cloud.points[indices], part)
+    return notes_on_form(cloud, indices, shape, errors, (UPPER_FACE, LOWER_FACE), part)
 
 
 def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:

@@ -17,6 +17,8 @@ import numpy as np
 
 from core.inspect.conformity import Verdict, decide
 from core.inspect.faces import FacePair
+from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE
+from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
 from core.inspect.fit.plane_fit import FittedFaces, ParallelPlaneFit, fit_faces, fit_parallel_planes, fit_plane
 from core.inspect.fit.plane_search import FEWEST_POINTS
 from core.inspect.profile_faces import faces_of, level_limit, stretches
@@ -72,11 +74,12 @@ class Step:
     """The thickness that one picture gives.
 
     `pair` counts in that picture's `cloud`; `effects` are what makes it uncertain, `by_tilt_mm` what the tilt of its
-    faces does, as far as that was taken from elsewhere.
+    faces does, as far as that was taken from elsewhere; `errors` are those of its points.
     """
 
     frame: int
     cloud: Cloud
+    errors: PointErrors
     pair: FacePair
     faces: FittedFaces
     effects: tuple[Effect, ...]
@@ -133,7 +136,15 @@ def step_of(cloud: Cloud, errors: PointErrors, tilt: KnownTilt | None = None) ->
         calibrations=errors.calibrations,
     )  # fmt: skip
     by_tilt = 0.0 if robust.tilt_determined or tilt is None else _by_tilt(upper, lower, faces, tilt)
-    return Step(int(cloud.frame[0]), cloud, pair, faces, tuple(map(_as_one, of_step)), by_tilt)
+    return Step(int(cloud.frame[0]), cloud, errors, pair, faces, tuple(map(_as_one, of_step)), by_tilt)
+
+
+def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
+    """Unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
+    points = cloud.points - cloud.points.mean(axis=0)
+    flat = points - np.outer(points @ step_normal, step_normal)
+    along = np.linalg.svd(flat, full_matrices=False)[2][0]
+    return np.asarray(along if along[0] > 0 else -along), -np.asarray(step_normal)
 
 
 def _others_on_part(cloud: Cloud, along: Array, pair: FacePair, planes: ParallelPlaneFit) -> bool:
@@ -256,7 +267,7 @@ def measure_steps(
         verdict=verdict,
         normal=shown.faces.planes.normal,
         rule=RULE_ONE_LINE if one_line else RULE,
-        notes=_notes(len(steps), alike),
+        notes=(*_notes(len(steps), alike), *_notes_on_form(steps if alike < _STOOD_STILL else [shown])),
     )
 
 
@@ -330,6 +341,18 @@ def _faces(step: Step) -> tuple[Face, Face]:
         rms = float(np.sqrt(np.mean(residuals**2)))
         made.append(Face(plane, indices[kept], residuals, float(high - low), rms))
     return made[0], made[1]
+
+
+def _notes_on_form(steps: Sequence[Step]) -> tuple[Message, ...]:
+    """What is wrong with the faces by pictures that are independent of each other."""
+    pictures = []
+    for step in steps:
+        part = np.repeat([0, 1], [len(step.pair.upper), len(step.pair.lower)])
+        cloud, planes = step.cloud.select(np.concatenate([step.pair.upper, step.pair.lower])), step.faces.planes
+        along = profile_axes(planes.normal, cloud)[0]
+        shape = planes.shape(cloud.points, part)
+        pictures.append(FacesInPicture(cloud, part, shape, cloud.points @ along, step.errors))
+    return notes_on_profiles(pictures, (UPPER_FACE, LOWER_FACE))
 
 
 def _notes(count: int, alike: float) -> tuple[Message, ...]:

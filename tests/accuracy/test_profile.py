@@ -32,6 +32,7 @@ def test_bent_light_is_not_taken_for_faces_and_is_in_the_uncertainty(tmp_path):
     )
     gauge = by_profiles(scenario, tmp_path / "set")
     assert 0.1 < abs(gauge.thickness_mm - 50.0) < gauge.U_mm < 2.0
+    assert "profile.not_straight" in [note.code for note in gauge.notes]
 
 
 @pytest.mark.accuracy
@@ -48,5 +49,6 @@ def test_thicknesses_are_as_sure_as_they_say(tmp_path, lines):
         error = gauge.thickness_mm - height
         print(f"{lines} lines, seed {seed}, {height:g} mm: error {error:+.4f} mm, U {gauge.U_mm:.4f} mm")
         assert abs(error) < 1.5 * gauge.U_mm
+        assert not {"profile.not_straight", "form.scatter"} & {note.code for note in gauge.notes}
         relative.append(error / gauge.u_mm)
     assert 0.3 < np.sqrt(np.mean(np.square(relative))) < 1.6

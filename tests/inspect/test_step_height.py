@@ -1,5 +1,6 @@
 """Thickness by the step on light profiles: faces found, tilt told or taken, uncertainty as large as the errors."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -192,3 +193,41 @@ def test_light_from_below_the_faces_is_in_all_pictures_alike():
         return row.u_mm
 
     assert by_light(steps) == pytest.approx(by_light(steps[:1]), rel=0.1) and by_light(steps) > 0.1
+
+
+def lifted(cloud: Cloud, up_mm: np.ndarray) -> Cloud:
+    """A cloud with points (N,) moved towards the camera along their rays by so many mm."""
+    return replace(cloud, points=cloud.points * (1 - up_mm / cloud.points[:, 2])[:, None])
+
+
+def codes(steps: Sequence[Step]) -> list[str]:
+    return [note.code for note in measure_steps(steps).notes]
+
+
+@pytest.mark.parametrize("count", [1, 4])
+def test_plane_faces_in_straight_light_are_not_accused(count):
+    for seed in range(8):
+        steps = [step(picture(BLOCK, noise_px=0.1, seed=10 * seed + i, frame=i)) for i in range(count)]
+        assert codes(steps) == ["profile.mean_of"], seed
+
+
+def test_light_that_is_bent_alike_in_all_pictures_is_told():
+    def bent(seed: int) -> Cloud:
+        cloud = picture(BLOCK, noise_px=0.1, seed=seed, frame=seed)
+        return lifted(cloud, 0.25 * (cloud.points[:, 0] / 100) ** 2)
+
+    notes = [
+        one for one in measure_steps([step(bent(i)) for i in range(4)]).notes if one.code == "profile.not_straight"
+    ]
+    assert any("the lower face" in str(note) and "above their line" in str(note) for note in notes)
+
+
+def test_a_bowed_face_is_told_apart_from_the_plane_one_under_it():
+    def bowed(seed: int) -> Cloud:
+        cloud = picture(BLOCK, noise_px=0.1, seed=seed, frame=seed)
+        x = (cloud.points[:, 0] - 5) / 25
+        return lifted(cloud, np.where(np.abs(x) <= 1, 0.5 * (1 - x**2), 0.0))
+
+    of_mean, note = measure_steps([step(bowed(i)) for i in range(4)]).notes
+    assert (of_mean.code, note.code) == ("profile.mean_of", "profile.not_straight")
+    assert "the upper face" in str(note)

@@ -74,7 +74,7 @@ STRETCHES = (
 )
 ARC, PIECE = Message("form.the_arc", "the arc"), Message("form.the_piece", "the surface about the point")
 _UP, _DOWN = Message("form.too_high", "too high"), Message("form.too_low", "too low")
-_ABOVE, _BELOW = Message("form.above", "above"), Message("form.below", "below")
+ABOVE, BELOW = Message("form.above", "above"), Message("form.below", "below")
 
 
 def level(number: int) -> Message:
@@ -163,28 +163,62 @@ class Places:
         return np.column_stack([2 * (step + 0.5) / side - 1 for step, side in zip(steps, self.sides, strict=True)])
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Stretches:
+    """What is left beside a surface of each of J stretches of stripes.
+
+    Parameters
+    ----------
+    sources
+        What acts on them.
+    misfit, expected
+        (J,) in mm, and its standard uncertainty as stated.
+    cell
+        (J,) number of the place.
+    design
+        (J, P) how far the surface moves outwards at each with what was fitted.
+    """
+
+    sources: Sources
+    misfit: Array
+    expected: Array
+    cell: NDArray[np.intp]
+    design: Array
+
+    @classmethod
+    def of(cls, cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Stretches:
+        """Of what is `left` of all points of a cloud; those far off count for less."""
+        expected = cloud.sigma * np.maximum(
+            np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING
+        )
+        relative = left.misfit / expected
+        weights = huber_weights(relative / max(mad_sd(relative), 1e-9), _BEYOND)
+        sources = Sources.of(cloud, left.outward, weights, part, places.cell.astype(np.int64), errors)
+        return cls(
+            sources,
+            sources.mean(left.misfit),
+            np.sqrt(sources.mean(expected**2)),
+            np.asarray(sources.form.argmax(axis=1), dtype=np.intp),
+            sources.mean(left.design),
+        )
+
+
 def judge_form(cloud: Cloud, left: Left, part: Parts, places: Places, errors: PointErrors) -> Judgement | None:
     """Judge what is `left` of all points of a cloud, on the faces `part` (N,) of a surface; cells are its `places`.
 
     Of stretches of stripes; groups are the sweeps. None where there are no more of them than what was fitted.
     """
-    expected = cloud.sigma * np.maximum(np.abs((left.outward * cloud.points).sum(axis=1)) / cloud.points[:, 2], GRAZING)
-    relative = left.misfit / expected
-    weights = huber_weights(relative / max(mad_sd(relative), 1e-9), _BEYOND)
-    sources = Sources.of(cloud, left.outward, weights, part, places.cell.astype(np.int64), errors)
+    stretches = Stretches.of(cloud, left, part, places, errors)
+    sources = stretches.sources
     if len(sources.own) <= left.design.shape[1]:
         return None
     group = np.zeros(len(sources.own), dtype=np.intp)
     group[sources.stretch] = cloud.sweep - cloud.sweep.min()
     residuals = Residuals(
-        sources.mean(left.misfit),
-        np.sqrt(sources.mean(expected**2)),
-        group,
-        np.asarray(sources.form.argmax(axis=1), dtype=np.intp),
-        places.number * (int(part.max(initial=0)) + 1),
+        stretches.misfit, stretches.expected, group, stretches.cell, places.number * (int(part.max(initial=0)) + 1)
     )
     shared = np.hstack([sources.speckle, sources.sweeps, sources.common])
-    return judge_with_shared(residuals, SharedErrors(sources.own, shared, sources.mean(left.design)))
+    return judge_with_shared(residuals, SharedErrors(sources.own, shared, stretches.design))
 
 
 def notes_on_form(
@@ -231,7 +265,7 @@ def notes_on_form(
     if found is None:
         return ()
     patterns = [
-        _pattern(found, places, number, cloud.select(np.flatnonzero(part == number))) for number in range(len(names))
+        pattern_on(found, places, number, cloud.select(np.flatnonzero(part == number))) for number in range(len(names))
     ]
     least = _CARRIED * max((float(np.ptp(one.height)) for one in patterns if one is not None), default=0.0)
     notes = [
@@ -239,7 +273,7 @@ def notes_on_form(
         for number, pattern in enumerate(patterns)
         if pattern is not None and np.ptp(pattern.height) >= least
     ]
-    return tuple(notes) or _of_scatter(found, names)
+    return tuple(notes) or of_scatter(found, names)
 
 
 def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: PointErrors) -> tuple[Message, ...]:
@@ -253,7 +287,7 @@ def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: P
     found = judge_form(cloud, Left.of_nominal(cloud.points, deviation, normals), one, places, errors)
     if found is None:
         return ()
-    pattern = _pattern(found, places, 0, cloud)
+    pattern = pattern_on(found, places, 0, cloud)
     if pattern is None:
         return ()
     most = int(np.argmax(np.abs(pattern.height)))
@@ -270,7 +304,7 @@ def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: P
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Pattern:
+class Pattern:
     """`height` (n,) in mm of n places of one face from their mean, `count` (n,) of their stretches, `at` (n, sides)."""
 
     height: Array
@@ -278,7 +312,7 @@ class _Pattern:
     at: Array
 
 
-def _pattern(found: Judgement, places: Places, number: int, face: Cloud) -> _Pattern | None:
+def pattern_on(found: Judgement, places: Places, number: int, face: Cloud) -> Pattern | None:
     """The pattern over one face, if it is surely there and stands out in pixels."""
     count = found.count[places.of_face(number)]
     seen = np.flatnonzero(count)
@@ -288,7 +322,7 @@ def _pattern(found: Judgement, places: Places, number: int, face: Cloud) -> _Pat
     height = np.asarray(profile - np.average(profile, weights=count[seen]), dtype=np.float64)
     if np.ptp(height) <= STANDS_OUT_PX * _pixel_mm(face):
         return None
-    return _Pattern(height, count[seen], places.flat(seen))
+    return Pattern(height, count[seen], places.flat(seen))
 
 
 def _pixel_mm(cloud: Cloud) -> float:
@@ -296,7 +330,7 @@ def _pixel_mm(cloud: Cloud) -> float:
     return pixel_angle(cloud.points, cloud.uv) * float(np.median(cloud.points[:, 2]))
 
 
-def _of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
+def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
     """A note on points that scatter more than stated, if they surely do."""
     by_chance = float(chdtrc(found.freedom, found.freedom * found.alone**2)) if found.freedom > 0 else 1.0
     if min(found.times, found.alone) <= TIMES or by_chance >= SURELY:
@@ -312,7 +346,7 @@ def _of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ..
     )
 
 
-def _of_pattern(pattern: _Pattern, places: Places, number: int, name: Message) -> Message:
+def _of_pattern(pattern: Pattern, places: Places, number: int, name: Message) -> Message:
     """A note on the pattern of one face."""
     height, count = pattern.height, pattern.count
     form, root = _parabola(pattern.at), np.sqrt(count)
@@ -321,7 +355,7 @@ def _of_pattern(pattern: _Pattern, places: Places, number: int, name: Message) -
     explained = 1 - float(count @ (height - bowl) ** 2) / float(count @ height**2)
     middle = float(solved[0] - np.average(bowl, weights=count))
     if explained > _BOWL and abs(middle) > np.ptp(bowl) / 4:
-        where, to_edges = _ABOVE if middle > 0 else _BELOW, places.sides[0] / (places.sides[0] - 1)
+        where, to_edges = ABOVE if middle > 0 else BELOW, places.sides[0] / (places.sides[0] - 1)
         return Message(
             "form.bowed",
             "The form of {name} is not true: it is bowed, its middle is {mm:.2g} mm {where} its rim. U contains "

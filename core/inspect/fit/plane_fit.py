@@ -27,6 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.fit.generalised import Generalised, generalised_fit
+from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.uncertainty.error_sources import Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.model.arrays import Array
@@ -82,6 +83,14 @@ class ParallelPlaneFit:
     def thickness(self) -> float:
         """Distance of the two planes in mm."""
         return self.lower_distance - self.upper_distance
+
+    def shape(self, points: Array, face: NDArray[np.int64]) -> ParallelPlanes:
+        """The planes as a shape amid `points` (N, 3) of the upper face, 0, and the lower, 1, as `face` (N,) says."""
+        centres = []
+        for number, distance in enumerate((self.upper_distance, self.lower_distance)):
+            middle = points[face == number].mean(axis=0)
+            centres.append(middle - self.normal * (self.normal @ middle - distance))
+        return ParallelPlanes.through(-self.normal, np.array(centres))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -20,10 +20,9 @@ from core.files.results.profile_file import PictureStep, write_profiles, write_p
 from core.inspect.face_region import inside_polygon
 from core.inspect.gauge import adjusted, doubted
 from core.inspect.results import GaugeResult
-from core.inspect.step_height import KnownTilt, Step, measure_steps, step_of
+from core.inspect.step_height import KnownTilt, Step, measure_steps, profile_axes, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
-from core.model.arrays import Array
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED, PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
@@ -146,14 +145,6 @@ def profile_step(
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         _write(log, gauge, pictures, shown, cloud, calibration)
     return MeasuredProfiles(gauge, tuple(pictures), cloud)
-
-
-def profile_axes(step_normal: Array, cloud: Cloud) -> tuple[Array, Array]:
-    """Unit vectors (3,) along the profiles, to the right in the picture, and up, against the faces' normal."""
-    points = cloud.points - cloud.points.mean(axis=0)
-    flat = points - np.outer(points @ step_normal, step_normal)
-    along = np.linalg.svd(flat, full_matrices=False)[2][0]
-    return np.asarray(along if along[0] > 0 else -along), -np.asarray(step_normal)
 
 
 def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:

@@ -33,10 +33,10 @@ from core.image.display import in_8_bit
 from core.image.stripes.centreline import Centreline
 from core.inspect.plan.feature_spec import Deviation
 from core.inspect.results import GaugeResult
+from core.inspect.step_height import profile_axes
 from core.messages import Command, Message, label
 from core.model import Camera
 from core.model.arrays import Array
-from core.pipeline.steps.profile_step import profile_axes
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
