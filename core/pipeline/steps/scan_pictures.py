@@ -13,7 +13,7 @@ from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
 from core.image.stripes.told_width import told_width_notes
-from core.messages import Message, from_json
+from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
 from core.progress import Progress, silent, steps
