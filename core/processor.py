@@ -17,7 +17,7 @@ import sys
 from llvmlite import binding
 
 IMPORTED_BEFORE = tuple(name for name in ("cv2", "numpy") if name in sys.modules)
-"""Libraries that whoever uses this one has imported before it: they have chosen by themselves."""
+"""Libraries that were imported before this package: they have chosen by themselves."""
 
 _V3 = ("avx2", "bmi", "bmi2", "f16c", "fma", "lzcnt", "movbe")
 """What x86-64-v3 adds to its forerunner (psABI of AMD64, table 3.1), as LLVM names it."""

@@ -94,8 +94,14 @@ def test_a_language_that_is_asked_for_gets_a_catalogue_of_every_text(tmp_path, m
 )
 def test_make_asks_for_the_language_on_its_command_line_and_not_for_the_readers_own(given, surroundings, asked):
     command = ["make", "--dry-run", "translations", *given]
+    surroundings_here = {name: value for name, value in os.environ.items() if not name.startswith("MAKE")}
     done = subprocess.run(
-        command, cwd=translations.ROOT, env={**os.environ, **surroundings}, capture_output=True, text=True, check=True
+        command,
+        cwd=translations.ROOT,
+        env={**surroundings_here, **surroundings},
+        capture_output=True,
+        text=True,
+        check=True,
     )
     assert done.stdout.splitlines()[-1].endswith(f"python -m {asked}")
 

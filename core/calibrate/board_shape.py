@@ -135,7 +135,7 @@ class BoardTolerance:
 
 
 SIZE_ASSUMED = "target.size_assumed"
-"""Code of the note on a size that nobody has stated."""
+"""Code of the note on a size that is not stated."""
 SIZE_UNCONFIRMED = Message(
     "target.size_unconfirmed",
     "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, so that "

@@ -67,6 +67,7 @@ class Solution(Generic[State, Model]):
 
 
 MOST_STEPS = 50
+"""After so many steps it stops unconverged, and says so."""
 LEAST_GAIN = 1e-9
 """It has converged when a step lowers the sum by no more than this share of it."""
 

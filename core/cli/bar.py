@@ -20,6 +20,7 @@ from core.progress import Progress
 from core.remaining import USUAL_S, Remaining, in_words
 
 _WIDTH = 40
+"""Characters: stage and time left have room beside it on a terminal of 80."""
 
 
 @contextmanager

@@ -85,7 +85,7 @@ def test_a_shape_is_only_believed_when_it_is_sure_or_expected():
 
 
 def test_absurd_tolerances_are_refused():
-    with pytest.raises(ValueError, match="flatness of -1"):
+    with pytest.raises(ValueError, match="flatness of −1"):
         BoardTolerance(flatness_mm=-1)
     with pytest.raises(ValueError, match=r"uncertainty of 0\.5"):
         BoardTolerance(scale_sd=0.5)

@@ -9,7 +9,9 @@ from PySide6.QtGui import QGuiApplication, QIcon, QPainter, QPaintEvent, QPalett
 from PySide6.QtWidgets import QWidget
 
 _WIDTH, _HEIGHT, _SIGN = 360, 200, 72
+"""Px: its size, and that of the sign in it."""
 _LISTEN_MS = 10
+"""The screen is listened to for so long at a time."""
 _PATIENCE_S = 0.5
 """A screen that has not asked for the picture by then is not waited for any longer."""
 

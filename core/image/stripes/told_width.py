@@ -1,4 +1,4 @@
-"""A width of stripes that somebody has told, held against the width that their cross-sections have.
+"""A stated width of stripes, held against the width that their cross-sections have.
 
 Told a width 40 % too small, centrelines scatter by twice the Cramér–Rao bound, and σ is 1.3 times too small; what is
 measured of the cross-sections is the width all the same.

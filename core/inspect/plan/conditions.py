@@ -26,9 +26,9 @@ class Temperature:
     scale_alpha: float = 0.0
     u_scale_alpha: float = 0.0
     celsius_assumed: bool = False
-    """Whether nobody has stated the part's temperature."""
+    """Whether the part's temperature is not stated."""
     alpha_assumed: bool = False
-    """Whether nobody has stated how it expands."""
+    """Whether its expansion is not stated."""
 
 
 @dataclass(frozen=True, slots=True)

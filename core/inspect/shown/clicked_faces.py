@@ -1,4 +1,4 @@
-"""Faces grown from where somebody clicked, as a window proposes them. Light to import."""
+"""Faces grown from clicked points, as a window proposes them. Light to import."""
 
 from __future__ import annotations
 

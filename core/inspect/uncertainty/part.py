@@ -163,4 +163,4 @@ class Part:
 
 
 TEMPERATURE_ASSUMED = "part.temperature_assumed"
-"""Code of the note on a temperature that nobody has stated."""
+"""Code of the note on a temperature that is not stated."""

@@ -1,4 +1,4 @@
-"""The whole job of a project in one go: whatever is not up to date is done, until somebody has to decide something.
+"""The whole job of a project in one go: whatever is not up to date is done, up to the first decision for a person.
 
 It gives what pressing every button in turn gives, byte for byte. Calibrations are accepted by themselves, unless a
 note says that they are bad.
@@ -36,7 +36,7 @@ BAD = frozenset({"camera.bad_fit"})
 
 @dataclass(frozen=True, slots=True)
 class Stop:
-    """Where the whole job stopped: the page at which somebody has to decide or to mend something, and why."""
+    """Where the whole job stopped: the page where a person has to decide or to mend something, and why."""
 
     page: str
     why: Message

@@ -64,7 +64,7 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
-    """The calibration with a size of the plane target that nobody stated, as far as an artefact has confirmed it.
+    """The calibration with a plane target whose size is not stated, as far as an artefact has confirmed it.
 
     The artefact measured nearest in time counts, if it passed and that is no longer ago than `[validity]` lets a check
     hold. The size is then uncertain by the error found, which nothing corrects, and by how sure that is, both as a

@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
-from scipy.ndimage import affine_transform
 
 from core.model import Camera
 from core.simulate.effects.ranges import require_ranges
@@ -60,6 +59,8 @@ class Warming:
         """Light (h, w) as the camera shows it when `share` of the scan is over."""
         if not share or not (self.scan_px or self.scan_focal_ppm):
             return light
+        from scipy.ndimage import affine_transform  # here: the command line reads scenarios, and --help needs no scipy
+
         grown = 1 + share * self.scan_focal_ppm * 1e-6
         centre = camera.matrix[:2, 2]
         shift = (1 - grown) * centre + share * self.scan_px * np.array([1.0, 0.6])

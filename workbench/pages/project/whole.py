@@ -20,14 +20,14 @@ EDIT = "whole job"
 
 
 class MeasuringAll(QObject):
-    """Does every step that is not up to date, from the pictures to the report, and stops where somebody has to decide.
+    """Does every step that is not up to date, from the pictures to the report, and stops at a decision for a person.
 
     Each step is in the project as soon as it is done: what was done before a cancel stays.
     """
 
     changed = Signal()
     ended = Signal(str)
-    """It is over, and this step is to be looked at: where somebody has to decide, or the report."""
+    """The job has ended, and this page is to be looked at: that of a decision, or the report."""
 
     def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -81,7 +81,7 @@ class MeasuringAll(QObject):
             self._task = None
 
     def _step_done(self, task: Task, folder: Path, file: ProjectFile) -> None:
-        """Put what was done into the project; end it where that may not be changed by whoever is there."""
+        """Put what was done into the project; end the job where the person signed in may not change that."""
         if task is not self._task or folder != self._model.folder:
             return
         now, accepted = self._model.project, file.project.accepted

@@ -100,7 +100,7 @@ class SceneButtons(QToolBar):
         return self._actions[name]
 
     def add_tool(self, text: str, key: str, symbol: str) -> QAction:
-        """A checkable button of whoever shows the view, before the others; `symbol` names its icon."""
+        """A checkable button of the page that shows the view, before the others; `symbol` names its icon."""
         if self._tools_end is None:
             self._tools_end = self.insertSeparator(self._actions["front"])
         action = self._add(symbol, text, key, checkable=True)
