@@ -166,7 +166,7 @@ class ReportContent:
     part, serial, laboratory, operator, customer
         Names for the title block; an empty one is left out (an empty `part` is printed as "not named").
     air_celsius, part_celsius
-        Temperatures in °C as somebody read them, or None; printed, never used.
+        Temperatures in °C as the project or rig.toml state them, or None; here they are printed only.
     remarks
         The operator's own words; may have several lines.
     rig

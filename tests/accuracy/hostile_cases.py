@@ -171,14 +171,15 @@ MOVEMENT = (
     "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
     "gauge.moved_and_no_faces", "scan.frames_moved",
 )  # fmt: skip
+DRIFT = ("scan.drifted", "inspection.drifted_during_scan", "gauge.drifted_and_no_faces")
 LENS = ("camera.corners_err_together", "camera.pattern_outwards", "camera.pattern_in_region", "camera.bad_fit")
 CAUSES: Mapping[str, tuple[str, ...]] = {
     "nothing": (),
-    BOUNCES: ("scan.fan_light_ambiguous",),
+    BOUNCES: ("scan.fan_light_ambiguous", "scan.second_bounces"),
     "lamps that flicker at 100 Hz": (LIGHT,),
     "a lamp switched within the scan": (LIGHT,),
     "a shadow that passes": (LIGHT,),
-    "the rig warms within the scan": (*CHANGED, "scan.fan_shifted"),
+    "the rig warms within the scan": (*CHANGED, *DRIFT, "scan.fan_shifted"),
     "the rig warmed since its calibration": CHANGED,
     "exposed too long, blooming": ("scan.overexposed", "fan.saturated_stripes"),
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),

@@ -48,7 +48,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.found.rig.gauge or GaugeSpec(), work.found.rig.part
-        with _said_first(scan):
+        with said_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -75,22 +75,27 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
 
 
 @contextmanager
-def _said_first(scan: ScanFile) -> Iterator[None]:
-    """A complaint about faces begins with what moved in the scan, if anything did: that is why."""
+def said_first(scan: ScanFile) -> Iterator[None]:
+    """A complaint about faces begins with what moved or drifted in the scan, if anything did: that is why."""
     try:
         yield
     except InputError as error:
-        if scan.doubt != MOVED_WITHIN:
-            raise
-        raise InputError(
-            Message(
+        if scan.doubt == MOVED_WITHIN:
+            what = Message(
                 "gauge.moved_and_no_faces",
                 "something moved during the scan; of what is left: {reason}",
                 reason=error.what,
-            ),
-            where=error.where,
-            todo=HOLD_STILL,
-        ) from error
+            )
+            raise InputError(what, where=error.where, todo=HOLD_STILL) from error
+        if scan.doubt == DRIFTED_WITHIN:
+            what = Message(
+                "gauge.drifted_and_no_faces",
+                "the rig drifted during the scan; of what it measured so: {reason}",
+                reason=error.what,
+            )
+            todo = Message("gauge.advice_warm_up", "let camera and lasers warm up, then scan again")
+            raise InputError(what, where=error.where, todo=todo) from error
+        raise
 
 
 def point_errors(scan: ScanFile) -> PointErrors:

@@ -117,7 +117,11 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
     content = said(content) if said else content
     channel = work.record().settings.get("scan", {}).get("channel") or rig.channel_of("scan")
     words = Words.of(content.language)
-    return replace(content, rig=_rig_in_words(rig, content.camera.camera.image_size, channel, words))
+    return replace(
+        content,
+        rig=_rig_in_words(rig, content.camera.camera.image_size, channel, words),
+        part_celsius=rig.part.celsius if content.part_celsius is None else content.part_celsius,
+    )
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
