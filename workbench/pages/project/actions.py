@@ -38,7 +38,7 @@ class ProjectActions(QObject):
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
         self.bench, self.model, self._window = bench, bench.model, window
-        self.sample = SampleProject(bench, self.open_project, self)
+        self.sample = SampleProject(bench, self._open_at_result, self)
         self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
         self.pack = ProjectPack(bench, window, self.save, self.open_project, self)
         self._when_left: Callable[[], object] | None = None
@@ -150,6 +150,12 @@ class ProjectActions(QObject):
     def open_sample(self) -> None:
         """Open the finished sample project; it is measured first if this has not been done yet."""
         self.sample.open()
+
+    def _open_at_result(self, folder: Path) -> None:
+        """Open a project where its result is to be seen, if it has been inspected."""
+        self.open_project(folder)
+        if self.model.folder == folder.resolve() and "inspect" in self.model.results:
+            self.go_to.emit("inspect")
 
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""

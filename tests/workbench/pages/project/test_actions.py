@@ -15,6 +15,7 @@ from core.errors import InputError
 from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project, recoverable, write_autosave
+from core.files.project.keys import finished
 from core.files.project.lock import take_lock
 from core.files.project.people import Rules, person, write_rules
 from tests.workbench.hand_lane import HandLane
@@ -459,6 +460,25 @@ def test_the_sample_is_made_once_and_opened_when_it_is_ready(projects: ProjectAc
     projects.open_sample()
     assert projects.model.project.info.name == "Sample"
     assert measuring.ran == [jobs.SAMPLE_PROJECT]
+
+
+@pytest.mark.parametrize(("inspected", "expected"), [(True, ["inspect"]), (False, [])])
+def test_an_inspected_sample_opens_at_its_result(
+    projects: ProjectActions, inspected: bool, expected: list[str]
+) -> None:
+    folder = made_sample(projects.bench.settings.projects_folder / "Sample")
+    projects.open_project(folder)
+    if inspected:
+        projects.model.record("inspect", finished("inspect", projects.model.project, {}))
+    projects.close_project()
+    went: list[str] = []
+    projects.go_to.connect(went.append)
+    projects.open_project(folder)
+    assert went == [], "opened as any other project, it opens as before"
+    projects.close_project()
+    projects.open_sample()
+    assert projects.model.folder == folder.resolve()
+    assert went == expected
 
 
 def test_a_project_opened_meanwhile_is_not_taken_away_by_the_sample(
