@@ -15,8 +15,9 @@ from core.files.project.data import Project, ProjectFile, new_project
 from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from core.simulate.sample import simulated_project
+from core.translations import languages
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import spoken, text_of, tr
 from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
@@ -347,7 +348,7 @@ class ProjectActions(QObject):
 
         def create() -> None:
             try:
-                self.model.create(folder, replace(made, info=replace(made.info, name=name)))
+                self.model.create(folder, replace(made, info=replace(made.info, name=name), report=report))
             except InputError as error:
                 self.bench.notices.failed(error)
                 return
@@ -359,4 +360,5 @@ class ProjectActions(QObject):
         except InputError as error:
             self.bench.notices.failed(error)
             return
+        report = replace(made.report, language=spoken()) if spoken() in languages() else made.report
         self.close_project(create)
