@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 
 from tests.accuracy.hostile import figures_of
-from tests.accuracy.hostile_cases import base
+from tests.accuracy.hostile_cases import BOUNCES, HostileCase, base
 
 OTHER_CAUSES = {"scan.moved", "scan.collapsed", "scan.fan_disagrees", "inspection.moved_during_scan"}
 
@@ -14,7 +14,8 @@ OTHER_CAUSES = {"scan.moved", "scan.collapsed", "scan.fan_disagrees", "inspectio
 @pytest.mark.parametrize("seed", [2, 3])
 @pytest.mark.parametrize("share", [0.2, 0.3, 0.6])
 def test_second_bounces_leave_a_thickness_within_its_uncertainty(share, seed, tmp_path):
-    figures = figures_of(replace(base(0.25), seed=seed, mirror_share=share), tmp_path)
+    scenario = replace(base(0.25), seed=seed, mirror_share=share)
+    figures = figures_of(HostileCase(BOUNCES, f"{share:.0%}", scenario), tmp_path)
     print(share, seed, figures)
     assert abs(figures["error"]) <= figures["U"]
     assert not OTHER_CAUSES & set(figures["told"])
