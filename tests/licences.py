@@ -46,7 +46,6 @@ class Licence:
 
     package: str
     words: str
-    home: str
 
     @property
     def refusal(self) -> str:
@@ -81,19 +80,14 @@ def licence(name: str, said: PackageMetadata) -> Licence:
     fields = {field: said[field] for field in ("License", "License-Expression") if field in said}
     written = next((line.strip() for line in fields.get("License", "").splitlines() if line.strip(" =")), "")
     words = fields.get("License-Expression") or ", ".join(classifiers) or written[:_LINE]
-    return Licence(name, words, _home(said))
-
-
-def _home(said: PackageMetadata) -> str:
-    """Its page at the package index, which leads on."""
-    return f"https://pypi.org/project/{said['Name']}/"
+    return Licence(name, words)
 
 
 def notice() -> str:
     """The text of NOTICE."""
     lines = []
     for one in runtime_licences():
-        lines.append(f"{one.package}: {one.words}\n  {one.home}")
+        lines.append(f"{one.package}: {one.words}")
         if one.package in REASONS:
             lines.append(f"  {REASONS[one.package]}")
     return HEAD + "\n" + "\n".join(lines) + "\n"
