@@ -20,7 +20,7 @@ from unittest import mock
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
 
-from PySide6.QtCore import QEvent, QObject, QTimer
+from PySide6.QtCore import QEvent, QEventLoop, QObject, QTimer
 from PySide6.QtWidgets import QAbstractButton, QApplication
 
 from core.files.project.data import Accepted, new_project
@@ -139,9 +139,10 @@ class Soak(QObject):
             self.wait(0.05)
 
     def wait(self, seconds: float) -> None:
-        """Let events come for so long, as the program's own loop does."""
-        QTimer.singleShot(int(1000 * seconds), self, QApplication.exit)
-        QApplication.exec()
+        """Let events come for so long; in a loop of its own, for the end of the program's own one ends the program."""
+        loop = QEventLoop()
+        QTimer.singleShot(int(1000 * seconds), loop, loop.quit)
+        loop.exec()
 
     def _measure(self) -> None:
         with suppress(OSError, AttributeError):  # the process may be about to end

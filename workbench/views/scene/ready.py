@@ -139,6 +139,8 @@ class Readiness(QObject):
             self._look_again.start()
             return
         self._thread = None
+        if self._stoppable.stopped:
+            return  # not everything is imported, and who is told now would import the rest in the GUI thread
         if failed:
             _log.error("the 3D libraries cannot be imported: %r", failed[0])
         self._kind = "none" if failed else kind

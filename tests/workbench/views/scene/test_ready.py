@@ -45,3 +45,18 @@ def test_libraries_that_cannot_be_imported_leave_the_program_without_3d(tmp_path
         known._import("pictures")
     assert known.kind == "none"
     assert "no driver" in caplog.text
+
+
+def test_an_import_that_was_stopped_halfway_promises_no_3d(tmp_path, qtbot, monkeypatch):
+    from workbench.views.scene import ready
+
+    (tmp_path / "slow_3d.py").write_text("import time\ntime.sleep(0.2)\nimport rest_of_3d\n")
+    (tmp_path / "rest_of_3d.py").write_text("")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(ready, "SURFACES", "slow_3d")
+    known = ready.Readiness(None)
+    with qtbot.assertNotEmitted(known.known, wait=1000):
+        known._import("pictures")
+        known.stop()
+    assert known.kind is None
+    assert known._thread is None
