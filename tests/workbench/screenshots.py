@@ -76,7 +76,9 @@ def main() -> int:
         try:
             (_readme if given.readme else _all)(app, bench, window, folder)
         finally:
+            bench.close()
             window.leave()
+            bench.wait_until_closed()
     return 0
 
 
