@@ -183,7 +183,7 @@ def bypassing(tree):
         for line in body if isinstance(body, list) else ():
             if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant):
                 skipped.add(line.value)  # a docstring
-        if isinstance(node, ast.keyword) and node.arg == translations.DESCRIBED:
+        if isinstance(node, ast.keyword) and node.arg in translations.DESCRIBED:
             skipped.add(node.value)
         called = node.func if isinstance(node, ast.Call) else None
         logged = isinstance(called, ast.Attribute) and ast.unparse(called.value) == "_log"

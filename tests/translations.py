@@ -26,8 +26,10 @@ WORDS_AT = {"tr": slice(1), "label": slice(1), "words": slice(1), "say": slice(1
             "heads": slice(1, None), "progress": slice(1), "steps": slice(2, 3)}  # fmt: skip
 """Calls that tell fixed words, and which of their arguments those are."""
 
-DESCRIBED = "description"
-"""The keyword by which a field of a file says what it must be."""
+DESCRIBED = ("description", "help")
+"""The keywords by which a field of a file says what it must be, and an option of a command what it does."""
+COMMAND = "command"
+"""What makes a command of a function, whose docstring is its help."""
 
 HEAD = "# Written by `make translations`; messages stand by their code (msgctxt), fixed words by the English ones."
 PLACEHOLDERS = (
@@ -66,6 +68,8 @@ def texts(*folders: str) -> list[Text]:
 def texts_of(tree: ast.AST, path: str = "") -> Iterator[Text]:
     """Every text of one module, in no particular order."""
     for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and any(map(_makes_command, node.decorator_list)):
+            yield Text("", (ast.get_docstring(node) or "",), path, node.lineno)
         if not isinstance(node, ast.Call):
             continue
         name = called(node)
@@ -75,8 +79,12 @@ def texts_of(tree: ast.AST, path: str = "") -> Iterator[Text]:
                 yield Text(code[0], tuple(one[0] for one in english), path, node.lineno)
         for argument in node.args[WORDS_AT[name]] if name in WORDS_AT else ():
             yield from (Text("", (word,), path, node.lineno) for word in literals(argument) if word)
-        for described in (keyword.value for keyword in node.keywords if keyword.arg == DESCRIBED):
+        for described in (keyword.value for keyword in node.keywords if keyword.arg in DESCRIBED):
             yield from (Text("", (word,), path, node.lineno) for word in literals(described))
+
+
+def _makes_command(decorator: ast.expr) -> bool:
+    return isinstance(decorator, ast.Call) and called(decorator) == COMMAND
 
 
 def called(call: ast.Call) -> str:

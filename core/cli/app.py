@@ -15,13 +15,16 @@ from typing import Annotated, Any
 
 import typer
 from typer.core import TyperGroup
+from typer.main import get_command
 
 from core import __version__
+from core.cli import language
 from core.cli.measuring_commands import commands as measuring
 from core.cli.options import EPILOG, ExitCode
 from core.cli.preparing_commands import commands as preparing
 from core.cli.project_commands import commands as projects
 from core.cli.result_commands import commands as results
+from core.cli.simulating import HELP_VALUES
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
 from core.errors import Cancelled, InputError
@@ -47,7 +50,7 @@ app = typer.Typer(
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
-    context_settings={"help_option_names": ["-h", "--help"]},
+    context_settings={"help_option_names": language.HELP_OPTIONS},
 )
 for commands in (measuring, results, preparing, projects, simulating):
     app.add_typer(commands)
@@ -77,12 +80,14 @@ def main(arguments: Sequence[str] | None = None) -> None:
     cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
     words = list(sys.argv[1:] if arguments is None else arguments)
     try:
+        language.choose(words)
         _run(words)
     except InputError as error:
         _refuse(error, as_json="--json" in words)
         sys.exit(ExitCode.BAD_INPUT)
     except Cancelled:
-        sys.stderr.write("trisect: interrupted; what was finished before is whole, nothing is half written.\n")
+        told = language.tr("interrupted; what was finished before is whole, nothing is half written.")
+        sys.stderr.write(f"trisect: {told}\n")
         sys.exit(ExitCode.INTERRUPTED)
     except BrokenPipeError:
         # Whoever read our output has left; Python would complain once more when it closes standard output.
@@ -98,7 +103,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _run(words: list[str]) -> None:
     """Run the commands; they leave by SystemExit with their own code."""
     try:
-        app(words, prog_name="trisect")
+        language.speak(get_command(app), HELP_VALUES)(words, prog_name="trisect")
     finally:
         sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
 
@@ -125,4 +130,4 @@ def _refuse(error: InputError, *, as_json: bool) -> None:
             "todo": as_json_message(error.todo),
         }
         sys.stdout.write(to_json(told))
-    sys.stderr.write(f"trisect: {error}\n")
+    sys.stderr.write(f"trisect: {language.told(error)}\n")

@@ -15,6 +15,7 @@ from rich.progress import ProgressColumn, Task, TextColumn, TimeElapsedColumn
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
+from core.cli.language import told, tr
 from core.errors import Cancelled
 from core.progress import Progress
 from core.remaining import USUAL_S, Remaining, in_words
@@ -47,7 +48,7 @@ def bar(job: str = "") -> Iterator[Progress]:
                 check()
                 with telling:
                     remaining.tell(step, done, total)
-                drawn.update(shown, description=step, refresh=step != drawn.tasks[0].description)
+                drawn.update(shown, description=told(step), refresh=told(step) != drawn.tasks[0].description)
 
             yield show
 
@@ -71,7 +72,7 @@ class _Left(_Column):
     def render(self, task: Task) -> Text:
         with self._telling:
             left = self._remaining.left
-        return Text("" if left is None else f"about {in_words(left)} left")
+        return Text("" if left is None else tr("about {time} left", time=in_words(left)))
 
 
 @contextmanager

@@ -9,12 +9,12 @@ from rich.table import Table
 
 from core.cli import output
 from core.cli.bar import bar
+from core.cli.language import spoken, told, tr
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
-from core.messages import Message, visible
-from core.report.wording import count
+from core.messages import Message, label, plural_message, visible
 
-_COLUMNS = ("name in the set", "picture", "fan off", "taken at")
+_COLUMNS = (label("name in the set"), label("picture"), label("fan off"), label("taken at"))
 
 
 def understood(camera: str, planes: str, planes_off: str, scan: str, reference: Path | None, order: str) -> ImportPlan:
@@ -39,8 +39,8 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
         _print_pictures(plan.pictures)
     rows = [(part, _part_in_words(plan, part)) for part in plan.parts]
     if imported is not None:
-        ways = ", ".join(f"{count} as {way}" for way, count in imported.ways.items())
-        rows += [("files", ways), ("written", f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
+        ways = ", ".join(tr("{n} as {way}", n=n, way=told(way)) for way, n in imported.ways.items())
+        rows += [(tr("files"), ways), (tr("written"), f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
     output.print_rows(rows, notes if imported is not None else (*notes, _NOTHING_WRITTEN))
 
 
@@ -51,7 +51,7 @@ def _print_pictures(pictures: Sequence[ImportedPicture]) -> None:
     columns = [name for name in _COLUMNS if name not in _empty_columns(pictures)]
     table = Table(box=None, padding=(0, 2, 0, 0))
     for name in columns:
-        table.add_column(name, overflow="fold")
+        table.add_column(told(name), overflow="fold")
     for one in pictures:
         values = dict(zip(_COLUMNS, _row(one), strict=True))
         table.add_row(*(visible(values[name]) for name in columns))
@@ -72,9 +72,16 @@ def _empty_columns(pictures: Sequence[ImportedPicture]) -> set[str]:
 def _part_in_words(plan: ImportPlan, part: str) -> str:
     pictures = plan.parts[part]
     pairs = sum(one.off is not None for one in pictures)
-    counted = count(len(pictures), "picture") if part != "planes" else f"{count(len(pictures), 'pose')}, {pairs} paired"
+    counted = (
+        plural_message("import.pictures", "{n:,} picture", "{n:,} pictures", n=len(pictures))
+        if part != "planes"
+        else plural_message(
+            "import.poses", "{n:,} pose, {pairs} paired", "{n:,} poses, {pairs} paired", n=len(pictures), pairs=pairs
+        )
+    )
     folders = dict.fromkeys(str(path.parent) for one in pictures for _, path in one.files())
-    return f"{counted}, {plan.rules[part]}; from {' and '.join(folders)}"
+    joined = spoken().joined(list(folders), "and")
+    return tr("{pictures}, {rule}; from {folders}", pictures=counted, rule=plan.rules[part], folders=joined)
 
 
 def _values(plan: ImportPlan, imported: Imported | None, notes: Sequence[Message]) -> dict[str, object]:

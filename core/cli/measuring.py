@@ -14,6 +14,7 @@ from rich.table import Table
 from core.acquire.grey import Channel
 from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
+from core.cli.language import spoken, told, tr
 from core.cli.options import ChannelName, ExitCode
 from core.errors import InputError
 from core.files.folder_lock import alone_in
@@ -25,7 +26,7 @@ from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
-from core.messages import Message, visible
+from core.messages import Message, label, visible
 from core.pipeline.batch import FAULT, SetResult, run_batch
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.executors import executor_of
@@ -41,7 +42,7 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
 from core.progress import Progress
-from core.report.wording import grouped, with_uncertainty
+from core.report.wording import Words, grouped, with_uncertainty
 from core.scan.method import Method
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
@@ -143,8 +144,8 @@ def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside
 
 def show_run(result: RunResult, *, as_json: bool) -> None:
     """Say what a whole run measured."""
-    rows: output.Rows = output.gauge_rows(result.gauge) if result.gauge else [("thickness", "not measured")]
-    rows += [("camera", output.camera_summary(result.camera)), ("fan", output.fan_summary(result.fan))]
+    rows: output.Rows = output.gauge_rows(result.gauge) if result.gauge else [(tr("thickness"), tr("not measured"))]
+    rows += [(tr("camera"), output.camera_summary(result.camera)), (tr("fan"), output.fan_summary(result.fan))]
     rows += output.frame_rows(result.frames, result.points)
     values = {
         **output.gauge_json(result.gauge),
@@ -261,7 +262,9 @@ def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, A
     return Shown(rows, values, notes, {name: files[name] for name in names})
 
 
-_SET_COLUMNS = ("set", "thickness", "U", "verdict", "points", "frames", "time")
+_SET_COLUMNS = (
+    label("set"), label("thickness"), label("U"), label("verdict"), label("points"), label("frames"), label("time"),
+)  # fmt: skip
 
 
 def run_sets(
@@ -293,13 +296,13 @@ def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
     console = output.console()
     table = Table(box=None, padding=(0, 2, 0, 0))
     for name in _SET_COLUMNS:
-        table.add_column(name, justify="left" if name in ("set", "verdict") else "right")
+        table.add_column(told(name), justify="left" if name in ("set", "verdict") else "right")
     for result in results:
         table.add_row(*map(visible, _set_row(result)))
     console.print(table)
     for result in results:
         if result.error:
-            console.print(visible(f"{result.folder.name}: {result.error}"), soft_wrap=True)
+            console.print(visible(f"{result.folder.name}: {told(result.error)}"), soft_wrap=True)
 
 
 def _set_values(result: SetResult) -> dict[str, Any]:
@@ -312,11 +315,19 @@ def _set_values(result: SetResult) -> dict[str, Any]:
 
 
 def _set_row(result: SetResult) -> tuple[str, ...]:
-    seconds = f"{result.seconds:.1f} s"
+    seconds = tr("{seconds:.1f} s", seconds=result.seconds)
     if result.error:
-        return result.folder.name, "", "", "not measured", "", "", seconds
+        return result.folder.name, "", "", tr("not measured"), "", "", seconds
     thickness = U = ""
     if result.thickness_mm is not None and result.U_mm is not None:
-        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm))
-    frames = f"{result.frames_used} of {result.frames}"
-    return result.folder.name, thickness, U, result.verdict or "none", grouped(result.points), frames, seconds
+        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm, Words(spoken())))
+    frames = tr("{used} of {all}", used=result.frames_used, all=result.frames)
+    return (
+        result.folder.name,
+        thickness,
+        U,
+        told(result.verdict) if result.verdict else tr("none"),
+        grouped(result.points),
+        frames,
+        seconds,
+    )

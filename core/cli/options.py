@@ -8,9 +8,10 @@ from typing import Annotated
 
 import typer
 
+from core.messages import label
 from core.scan.method import Method
 
-EPILOG = (
+EPILOG = label(
     "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, "
     "70 a fault of the program, 130 interrupted."
 )

@@ -19,6 +19,7 @@ from core.calibrate.results import (
     ProposedReadjustment,
     Readjustment,
 )
+from core.cli.language import spoken, told, tr
 from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
@@ -27,8 +28,8 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
-from core.messages import ENGLISH, Message, as_json, visible
-from core.report.wording import count, decimals_of, fixed, grouped, thickness_line, with_uncertainty
+from core.messages import Message, as_json, plural_message, visible
+from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.study.artefact_check import ArtefactCheck
@@ -70,22 +71,23 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         table.add_row(label, visible(value))
     if files:
         folder = next(iter(files.values())).parent
-        table.add_row("written", f"{folder}: {', '.join(path.name for path in files.values())}")
+        table.add_row(tr("written"), f"{folder}: {', '.join(path.name for path in files.values())}")
     if table.rows:
         out.print(table)
     for note in notes:
-        out.print(f"note: {visible(str(note))}", soft_wrap=True)
+        out.print(visible(tr("note: {note}", note=note)), soft_wrap=True)
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
     """On standard error: processor time and share of each stage, and how long all of it took."""
-    table = Table("stage", box=None, padding=(0, 2, 0, 0))
-    for title in ("processor s", "share"):
+    table = Table(tr("stage"), box=None, padding=(0, 2, 0, 0))
+    for title in (tr("processor s"), tr("share")):
         table.add_column(title, justify="right")
     total = sum(seconds.values())
     for name, spent in seconds.items():
-        table.add_row(name, f"{spent:.2f}", f"{spent / total:.0%}")
-    table.add_row("all", f"{total:.2f}", f"{total / wall_s:.1f} processors busy for {wall_s:.1f} s")
+        table.add_row(told(name), tr("{seconds:.2f}", seconds=spent), f"{spent / total:.0%}")
+    busy = tr("{n:.1f} processors busy for {seconds:.1f} s", n=total / wall_s, seconds=wall_s)
+    table.add_row(tr("all"), tr("{seconds:.2f}", seconds=total), busy)
     Console(stderr=True, highlight=False).print(table)
 
 
@@ -94,19 +96,30 @@ def camera_rows(calibration: CameraCalibration) -> Rows:
     camera = calibration.camera
     values = [*camera.matrix[[0, 1, 0, 0, 1], [0, 1, 1, 2, 2]], *camera.distortion]
     rows = [
-        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name])))
+        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name], _words())))
         for name, value in zip(CAMERA_PARAMETERS, values, strict=True)
         if calibration.sd[name] > 0
     ]
-    return [*rows, ("reprojection", camera_summary(calibration)), ("picture covered", f"{calibration.coverage:.0%}")]
+    return [
+        *rows,
+        (tr("reprojection"), camera_summary(calibration)),
+        (tr("picture covered"), f"{calibration.coverage:.0%}"),
+    ]
 
 
 def camera_summary(calibration: CameraCalibration) -> str:
     """The camera in one line."""
     used = sum(view.used for view in calibration.views)
-    return (
-        f"{calibration.rms_px:.3f} px RMS, {calibration.mean_px:.3f} px mean, "
-        f"{used} of {count(len(calibration.views), 'view')}"
+    return told(
+        plural_message(
+            "cli.camera",
+            "{rms_px:.3f} px RMS, {mean_px:.3f} px mean, {used} of {n:,} view",
+            "{rms_px:.3f} px RMS, {mean_px:.3f} px mean, {used} of {n:,} views",
+            n=len(calibration.views),
+            used=used,
+            rms_px=calibration.rms_px,
+            mean_px=calibration.mean_px,
+        )
     )
 
 
@@ -114,54 +127,89 @@ def fan_rows(calibration: FanCalibration) -> Rows:
     """Every plane, the angles between them, and whether the pencil suits the laser."""
     rows = []
     for number, (plane, rms) in enumerate(zip(calibration.fan.planes, calibration.rms_mm, strict=True), start=1):
-        normal = ", ".join(fixed(float(part), 5) for part in plane.normal)
-        rows.append((f"plane {number}", f"normal ({normal}), d {plane.d_mm:.3f} mm, RMS {rms:.3f} mm"))
+        normal = ", ".join(_words().fixed(float(part), 5) for part in plane.normal)
+        said = tr("normal ({normal}), d {d:.3f} mm, RMS {rms:.3f} mm", normal=normal, d=plane.d_mm, rms=rms)
+        rows.append((tr("plane {n}", n=number), said))
     if calibration.angles:
-        rows.append(("angles", ", ".join(f"{math.degrees(angle):.3f}°" for angle in calibration.angles)))
-        free = ", ".join(f"{math.degrees(angle):.3f}°" for angle in calibration.free_angles)
-        rows.append(("angles, free fit", free))
+        rows.append((tr("angles"), _angles(calibration.angles)))
+        rows.append((tr("angles, free fit"), _angles(calibration.free_angles)))
     used = sum(pose.used for pose in calibration.poses)
-    rows.append(("poses", f"{used} of {count(len(calibration.poses), 'pose')} used"))
+    rows.append((tr("poses"), _poses_used(used, len(calibration.poses))))
     if math.isfinite(calibration.cross_validation_mm):
-        rows.append(("poses foretold", f"to {calibration.cross_validation_mm:.3f} mm RMS, each by the others"))
-    return [*rows, ("verdict", str(calibration.verdict))] if calibration.verdict else rows
+        foretold = tr("to {rms:.3f} mm RMS, each by the others", rms=calibration.cross_validation_mm)
+        rows.append((tr("poses foretold"), foretold))
+    return [*rows, (tr("verdict"), told(calibration.verdict))] if calibration.verdict else rows
 
 
 def fan_summary(calibration: FanCalibration) -> str:
     """The fan in one line."""
     used = sum(pose.used for pose in calibration.poses)
-    rms = ", ".join(f"{value:.3f}" for value in calibration.rms_mm)
-    return f"{rms} mm RMS, {used} of {count(len(calibration.poses), 'pose')}"
+    rms = ", ".join(spoken().number(value, ".3f") for value in calibration.rms_mm)
+    return told(
+        plural_message(
+            "cli.fan",
+            "{rms} mm RMS, {used} of {n:,} pose",
+            "{rms} mm RMS, {used} of {n:,} poses",
+            n=len(calibration.poses),
+            rms=rms,
+            used=used,
+        )
+    )
+
+
+def _words() -> Words:
+    return Words(spoken())
+
+
+def _angles(angles: Sequence[float]) -> str:
+    return ", ".join(f"{spoken().number(math.degrees(angle), '.3f')}°" for angle in angles)
+
+
+def _poses_used(used: int, poses: int) -> str:
+    said = plural_message(
+        "cli.poses_used", "{used} of {n:,} pose used", "{used} of {n:,} poses used", n=poses, used=used
+    )
+    return told(said)
 
 
 def gauge_rows(gauge: GaugeResult) -> Rows:
     """Thickness, deviation, verdict and the faces."""
-    rows = [("thickness", thickness_line(gauge))]
+    rows = [(tr("thickness"), thickness_line(gauge, _words()))]
     if gauge.nominal_mm is not None and gauge.tolerance_mm is not None and gauge.deviation_mm is not None:
-        rows.append(("nominal", f"{gauge.nominal_mm:g} mm ± {gauge.tolerance_mm:g} mm"))
-        rows.append(("deviation", f"{fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
-    rows.append(("verdict", gauge.verdict or "none: rig.toml states no nominal value"))
+        limits = tr("{nominal:g} mm ± {tolerance:g} mm", nominal=gauge.nominal_mm, tolerance=gauge.tolerance_mm)
+        rows.append((tr("nominal"), limits))
+        rows.append((tr("deviation"), f"{_words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
+    verdict = told(gauge.verdict) if gauge.verdict else tr("none: rig.toml states no nominal value")
+    rows.append((tr("verdict"), verdict))
     upper, lower = gauge.points_used
-    flatness = f"{gauge.upper.flatness_mm:.3f} mm above, {gauge.lower.flatness_mm:.3f} mm below (95 % of points)"
+    flatness = tr(
+        "{above:.3f} mm above, {below:.3f} mm below (95 % of points)",
+        above=gauge.upper.flatness_mm,
+        below=gauge.lower.flatness_mm,
+    )
     return [
         *rows,
-        ("flatness", flatness),
-        ("parallelism", f"{math.degrees(gauge.parallelism):.3f}°"),
-        ("points on faces", f"{grouped(upper)} above, {grouped(lower)} below"),
+        (tr("flatness"), flatness),
+        (tr("parallelism"), _angles([gauge.parallelism])),
+        (tr("points on faces"), tr("{above:,} above, {below:,} below", above=upper, below=lower)),
     ]
 
 
 def check_rows(check: InterimCheck) -> Rows:
     """Where the stripes are, and what that does to a step of the part's height."""
     return [
-        ("poses", f"{check.used} of {count(len(check.poses), 'pose')} used"),
-        ("stripes off by", f"{check.offset_px:.3f} px, {check.offset_mm:.4f} mm (RMS)"),
-        ("chance", f"p = {check.p:.2g}"),
+        (tr("poses"), _poses_used(check.used, len(check.poses))),
+        (tr("stripes off by"), tr("{px:.3f} px, {mm:.4f} mm (RMS)", px=check.offset_px, mm=check.offset_mm)),
+        (tr("chance"), tr("p = {p:.2g}", p=check.p)),
         (
-            f"a step of {check.step_mm:g} mm",
-            f"measured wrong by {check.error_mm:+.3f} mm ± {check.unseen_mm:.3f} mm (k = 2) with this calibration",
+            tr("a step of {step:g} mm", step=check.step_mm),
+            tr(
+                "measured wrong by {error:+.3f} mm ± {unseen:.3f} mm (k = 2) with this calibration",
+                error=check.error_mm,
+                unseen=check.unseen_mm,
+            ),
         ),
-        ("verdict", str(check.sentence)),
+        (tr("verdict"), told(check.sentence)),
     ]
 
 
@@ -180,15 +228,21 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
 
 def readjustment_rows(done: ProposedReadjustment) -> Rows:
     """What was changed, how sure that is, and what it does."""
-    parts = zip(("fan turned", "fan moved", "picture moved", "focal length"), _changed_parts(done.record), strict=True)
+    names = tr("fan turned"), tr("fan moved"), tr("picture moved"), tr("focal length")
+    parts, record = zip(names, _changed_parts(done.record), strict=True), done.record
+    before, after = done.offset_px
     return [
-        ("poses", f"{done.record.poses} used"),
+        (tr("poses"), tr("{n} used", n=record.poses)),
         *((name, f"{change} ± {sd} {unit} (k = 1)") for name, (change, sd, unit) in parts),
-        ("stripes off by", f"{done.offset_px[1]:.3f} px, before {done.offset_px[0]:.3f} px (RMS)"),
-        ("chance", f"p = {done.record.p_after:.2g}, before {done.record.p_before:.2g}"),
+        (tr("stripes off by"), tr("{px:.3f} px, before {before:.3f} px (RMS)", px=after, before=before)),
+        (tr("chance"), tr("p = {p:.2g}, before {before:.2g}", p=record.p_after, before=record.p_before)),
         (
-            f"a step of {done.step_mm:g} mm",
-            f"measured {done.correction_mm:+.3f} mm larger, ± {2 * done.u_mm:.3f} mm (k = 2) by camera and fan",
+            tr("a step of {step:g} mm", step=done.step_mm),
+            tr(
+                "measured {more:+.3f} mm larger, ± {U:.3f} mm (k = 2) by camera and fan",
+                more=done.correction_mm,
+                U=2 * done.u_mm,
+            ),
         ),
     ]
 
@@ -198,8 +252,8 @@ def _changed_parts(record: Readjustment) -> list[tuple[str, str, str]]:
     parts = ((1e6, slice(3), "µrad"), (1e3, slice(3, 6), "µm"), (1.0, slice(6, 8), "px"), (1e6, slice(8, 9), "·10⁻⁶"))
     return [
         (
-            ", ".join(f"{by * value:+.3g}" for value in record.change[part]),
-            ", ".join(f"{by * value:.3g}" for value in record.sd[part]),
+            ", ".join(spoken().number(by * value, "+.3g") for value in record.change[part]),
+            ", ".join(spoken().number(by * value, ".3g") for value in record.sd[part]),
             unit,
         )
         for by, part, unit in parts
@@ -229,12 +283,15 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
     """What was measured of an artefact, and how that agrees with its certificate."""
     known = check.artefact
     return [
-        ("artefact", " ".join(part for part in (known.id, known.certificate and f"({known.certificate})") if part)),
-        ("certified", f"{known.value_mm:.4f} mm ± {known.U_mm:.4f} mm (k = {known.k:g})"),
-        ("measured", f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm))} mm (k = 2)"),
-        ("E_n", f"{check.e_n:.2f}"),
-        ("detects", f"errors from {2 * check.u_error_mm:.3f} mm (k = 2)"),
-        ("verdict", str(check.sentence)),
+        (tr("artefact"), " ".join(part for part in (known.id, known.certificate and f"({known.certificate})") if part)),
+        (
+            tr("certified"),
+            tr("{value:.4f} mm ± {U:.4f} mm (k = {k:g})", value=known.value_mm, U=known.U_mm, k=known.k),
+        ),
+        (tr("measured"), f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm, _words()))} mm (k = 2)"),
+        ("E_n", spoken().number(check.e_n, ".2f")),
+        (tr("detects"), tr("errors from {U:.3f} mm (k = 2)", U=2 * check.u_error_mm)),
+        (tr("verdict"), told(check.sentence)),
     ]
 
 
@@ -255,25 +312,25 @@ def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
 def history_rows(history: RigHistory) -> Rows:
     """Each check of a rig: when, what came of it, by how much a step was off, and within which limits."""
     if not history.checks:
-        return [("rig", f"{history.name}: never checked on this computer")]
+        return [(tr("rig"), tr("{name}: never checked on this computer", name=history.name))]
     return [
-        ("rig", history.name),
-        *((ENGLISH.time(one.taken_at.astimezone()), _past_check(one, history.chart(one))) for one in history.checks),
+        (tr("rig"), history.name),
+        *((spoken().time(one.taken_at.astimezone()), _past_check(one, history.chart(one))) for one in history.checks),
     ]
 
 
 def _past_check(check: PastCheck, chart: ControlChart) -> str:
-    where = "within" if chart.holds(check.error_mm) else "outside"
-    rule = f"by {chart.n} checks before" if chart.own else "by its stated stability"
-    warm = "" if check.celsius is None else f", {check.celsius:g} °C"
-    by = f"{check.offset_px:.2f} px, {check.offset_mm:.3f} mm, p = {check.p:.2g}"
+    where = tr("within" if chart.holds(check.error_mm) else "outside")
+    rule = tr("by {n} checks before", n=chart.n) if chart.own else tr("by its stated stability")
+    warm = "" if check.celsius is None else f", {spoken().number(check.celsius, 'g')} °C"
+    by = tr("{px:.2f} px, {mm:.3f} mm, p = {p:.2g}", px=check.offset_px, mm=check.offset_mm, p=check.p)
     if check.artefact:
-        by = f"{check.artefact}: E_n = {check.e_n:.2f}"
-    return (
-        f"{check.verdict}, {by}; "
-        f"{check.step_mm:g} mm off by {check.error_mm:+.3f} mm, {where} {chart.lower:+.3f} … {chart.upper:+.3f} mm "
-        f"{rule}{warm}"
-    )
+        by = tr("{artefact}: E_n = {e_n:.2f}", artefact=check.artefact, e_n=check.e_n)
+    off = tr(
+        "{step:g} mm off by {error:+.3f} mm, {where} {lower:+.3f} … {upper:+.3f} mm {rule}",
+        step=check.step_mm, error=check.error_mm, where=where, lower=chart.lower, upper=chart.upper, rule=rule,
+    )  # fmt: skip
+    return f"{told(check.verdict)}, {by}; {off}{warm}"
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
@@ -287,20 +344,31 @@ def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
     reasons: dict[str, list[str]] = {}
     for frame in frames:
         if not frame.used:
-            reasons.setdefault(str(frame.reason or NO_REASON), []).append(frame.name)
+            reasons.setdefault(told(frame.reason or NO_REASON), []).append(frame.name)
     used = sum(frame.used for frame in frames)
-    rows = [("frames", f"{used} of {count(len(frames), 'frame')} used")]
+    said = plural_message(
+        "cli.frames_used", "{used} of {n:,} frame used", "{used} of {n:,} frames used", n=len(frames), used=used
+    )
+    rows = [(tr("frames"), told(said))]
     for reason, names in reasons.items():
-        others = ", …" if len(names) > _NAMES_SHOWN else ""
-        rows.append(("", f"{len(names)} left out: {reason} ({', '.join(names[:_NAMES_SHOWN])}{others})"))
-    return [*rows, ("points", grouped(points))]
+        shown = ", ".join(names[:_NAMES_SHOWN]) + (", …" if len(names) > _NAMES_SHOWN else "")
+        rows.append(("", tr("{n} left out: {reason} ({names})", n=len(names), reason=reason, names=shown)))
+    return [*rows, (tr("points"), grouped(points))]
 
 
 def picture_rows(pictures: Sequence[PictureStep]) -> Rows:
     """The step of each picture of the fan alone, or why it gave none."""
-    rows = [("pictures", f"{sum(one.reason is None for one in pictures)} of {count(len(pictures), 'picture')} used")]
+    used = sum(one.reason is None for one in pictures)
+    said = plural_message(
+        "cli.pictures_used", "{used} of {n:,} picture used", "{used} of {n:,} pictures used", n=len(pictures), used=used
+    )
+    rows = [(tr("pictures"), told(said))]
     for one in pictures:
-        step = f"{one.thickness_mm:.3f} mm, own u {one.own_mm:.3f} mm" if one.reason is None else str(one.reason)
+        step = (
+            tr("{thickness:.3f} mm, own u {own:.3f} mm", thickness=one.thickness_mm, own=one.own_mm)
+            if one.reason is None
+            else told(one.reason)
+        )
         rows.append(("", f"{one.name}: {step}"))
     return rows
 

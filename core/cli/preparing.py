@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from core.cli import output
+from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
@@ -20,7 +21,7 @@ from core.plan.bounds import Bound
 from core.plan.predict import Prediction
 from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
-from core.report.wording import grouped, target_in_words
+from core.report.wording import Words, grouped, target_in_words
 
 
 def target_of_words(
@@ -89,12 +90,12 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
     """Say what was written, and what to do at the printer."""
     name = _paper(paper)
     layout = sheet_layout(target, name)
-    sheet = f"{name}, {layout.width_mm:g} × {layout.height_mm:g} mm"
+    sheet = tr("{paper}, {width:g} × {height:g} mm", paper=name, width=layout.width_mm, height=layout.height_mm)
     if as_json:
         output.print_json({"target": target_in_words(target), "paper": name, "file": str(out)})
         return
     output.print_rows(
-        [("target", target_in_words(target)), ("paper", sheet), ("written", str(out))],
+        [(tr("target"), target_in_words(target, Words(spoken()))), (tr("paper"), sheet), (tr("written"), str(out))],
         [
             Message(
                 "target.print_to_size",
@@ -148,27 +149,44 @@ def run_plan(
 def _rows(result: PlanResult) -> output.Rows:
     rows: output.Rows = []
     for prediction in result.predictions:
-        rows.append((f"block {prediction.height_mm:g} mm", f"U = {prediction.U_mm:.3f} mm (k = {prediction.k:g})"))
+        said = tr("U = {U:.3f} mm (k = {k:g})", U=prediction.U_mm, k=prediction.k)
+        rows.append((tr("block {height:g} mm", height=prediction.height_mm), said))
     shown = result.largest
-    rows += [("u from", _budget(shown)), ("σ of a depth", _sigma(shown))]
-    rows.append(("sweeps", f"{shown.sweeps_used} of {result.design.sweeps} give {grouped(shown.points)} points"))
+    rows += [(tr("u from"), _budget(shown)), (tr("σ of a depth"), _sigma(shown))]
+    counts = {"used": shown.sweeps_used, "all": result.design.sweeps, "points": grouped(shown.points)}
+    rows.append((tr("sweeps"), tr("{used} of {all} give {points} points", **counts)))
     for effect in result.effects:
-        value = f"U {effect.U_mm:.3f} mm ({effect.share - 1:+.0%})" if effect.U_mm is not None else str(effect.reason)
-        rows.append(("change", f"{effect.change} ({effect.to}): {value}"))
-    rows += [("advice", str(result.advice))] if result.advice else []
-    return rows + [("no program below", _bound(bound)) for bound in result.bounds]
+        value = (
+            tr("U {U:.3f} mm ({share:+.0%})", U=effect.U_mm, share=effect.share - 1)
+            if effect.U_mm is not None
+            else told(effect.reason or "")
+        )
+        rows.append((tr("change"), f"{told(effect.change)} ({told(effect.to)}): {value}"))
+    rows += [(tr("advice"), told(result.advice))] if result.advice else []
+    return rows + [(tr("no program below"), _bound(bound)) for bound in result.bounds]
 
 
 def _bound(bound: Bound) -> str:
-    without = "" if bound.without == bound.with_speckle else f", {bound.without:.2g} {bound.unit} without speckle"
-    return f"{bound.quantity}: u {bound.with_speckle:.2g} {bound.unit}{without}"
+    quantity, unit = told(bound.quantity), bound.unit
+    said = tr("{quantity}: u {u:.2g} {unit}", quantity=quantity, u=bound.with_speckle, unit=unit)
+    if bound.without == bound.with_speckle:
+        return said
+    return f"{said}, {tr('{u:.2g} {unit} without speckle', u=bound.without, unit=unit)}"
 
 
 def _budget(prediction: Prediction) -> str:
     largest = sorted(prediction.budget, key=lambda row: -row.u_mm)
-    return ", ".join(f"{row.source} {row.u_mm:.3f} mm" for row in largest if row.u_mm >= 0.1 * prediction.u_mm)
+    return ", ".join(
+        tr("{source} {u:.3f} mm", source=told(row.source), u=row.u_mm)
+        for row in largest
+        if row.u_mm >= 0.1 * prediction.u_mm
+    )
 
 
 def _sigma(prediction: Prediction) -> str:
     own, common = (float(np.nanmedian(part)) for part in (prediction.sigma.own, prediction.sigma.common))
-    return f"{own:.3f} mm of each point, {common:.3f} mm common to the scan (medians over the picture)"
+    return tr(
+        "{own:.3f} mm of each point, {common:.3f} mm common to the scan (medians over the picture)",
+        own=own,
+        common=common,
+    )

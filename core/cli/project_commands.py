@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING, Annotated, cast
 import typer
 
 from core.cli.bar import bar
+from core.cli.language import spoken, told, tr
 from core.cli.options import EPILOG, ExitCode, Json
-from core.messages import ENGLISH
 
 if TYPE_CHECKING:
     from core.files.project.audit import Entry
@@ -30,7 +30,7 @@ def pack(
 
     with bar() as progress:
         made = pack_project(project, out, progress)
-    rows = [("files", str(made.files)), ("size", f"{made.bytes / 1e6:.1f} MB")]
+    rows = [(tr("files"), str(made.files)), (tr("size"), tr("{size:.1f} MB", size=made.bytes / 1e6))]
     Shown(rows, {"files_packed": made.files, "bytes": made.bytes}, files={"packed": made.path}).show(as_json=json)
 
 
@@ -46,7 +46,7 @@ def unpack(
 
     with bar() as progress:
         folder = unpack_project(file, out, progress)
-    Shown([("project", str(folder))], {"project": str(folder)}).show(as_json=json)
+    Shown([(tr("project"), str(folder))], {"project": str(folder)}).show(as_json=json)
 
 
 @commands.command(epilog=EPILOG)
@@ -68,11 +68,14 @@ def verify(
     with bar() as progress:
         found = compare(folder, set_, head, progress)
     rows = [
-        ("audit trail", f"{len(found.trail.entries)} entries, head {found.trail.head or 'none'}"),
-        ("results", f"{found.results} compared"),
-        ("inputs", f"{found.inputs} compared"),
-        ("differs", str(len(found.problems))),
-        *(("", str(problem)) for problem in found.problems),
+        (
+            tr("audit trail"),
+            tr("{n} entries, head {head}", n=len(found.trail.entries), head=found.trail.head or tr("none")),
+        ),
+        (tr("results"), tr("{n} compared", n=found.results)),
+        (tr("inputs"), tr("{n} compared", n=found.inputs)),
+        (tr("differs"), str(len(found.problems))),
+        *(("", told(problem)) for problem in found.problems),
     ]
     values = {
         "entries": len(found.trail.entries),
@@ -113,7 +116,7 @@ def audit(
     trail = read_trail(project)
     rows = []
     for entry in trail.entries:
-        rows.append((f"{entry.n}  {ENGLISH.time(entry.at, seconds=True)}", _told(entry)))
+        rows.append((f"{entry.n}  {spoken().time(entry.at, seconds=True)}", _told(entry)))
         rows += [("", f"{one.field}: {one.old or '–'} → {one.new or '–'}") for one in entry.changes]
         rows += [("", f"{name}: {digest}") for name, digest in entry.files.items()]
         rows += [("", entry.why)] if entry.why else []
@@ -168,17 +171,17 @@ def people(
     changed = replace(changed, people=tuple(left))
     if changed != rules:
         write_rules(project, changed, administrator)
-    rows: list[tuple[str, str]] = [(one.name, one.role) for one in changed.people] or [
-        ("people", "everybody may do everything")
+    rows: list[tuple[str, str]] = [(one.name, told(one.role)) for one in changed.people] or [
+        (tr("people"), tr("everybody may do everything"))
     ]
-    rows.append(("reasons", "asked for when limits change" if changed.reasons else "not asked for"))
+    rows.append((tr("reasons"), tr("asked for when limits change" if changed.reasons else "not asked for")))
     values = {"people": [{"name": one.name, "role": one.role} for one in changed.people], "reasons": changed.reasons}
     Shown(rows, values).show(as_json=json)
 
 
 def _told(entry: Entry) -> str:
-    signed = f", {entry.by} ({entry.role})" if entry.by else ""
-    return f"{entry.what} by {entry.who} on {entry.host}{signed}"
+    said = tr("{what} by {who} on {host}", what=told(entry.what), who=entry.who, host=entry.host)
+    return f"{said}, {entry.by} ({told(entry.role)})" if entry.by else said
 
 
 def _pin(name: str) -> str:
@@ -187,5 +190,5 @@ def _pin(name: str) -> str:
     import sys
 
     if sys.stdin.isatty():
-        return getpass.getpass(f"PIN of {name}: ")
+        return getpass.getpass(tr("PIN of {name}: ", name=name))
     return sys.stdin.readline().rstrip("\n")

@@ -12,6 +12,7 @@ from typing import cast
 from rich.table import Table
 
 from core.cli import output
+from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, alone_with, exit_code
 from core.cli.options import ExitCode
 from core.errors import InputError
@@ -23,7 +24,7 @@ from core.files.results.export_list import EXPORTS
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
 from core.inspect.evaluate import Inspection
-from core.messages import Message, visible
+from core.messages import Message, label, visible
 from core.pipeline.project.export import export_results, import_camera, with_template
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
@@ -31,9 +32,12 @@ from core.pipeline.steps.report_step import report_step, with_studies
 from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.template import LANGUAGES, PAPERS, Paper
-from core.report.wording import decimals_of, fixed, grouped
+from core.report.wording import Words, decimals_of, grouped, shown_name
 
-_COLUMNS = ("characteristic", "measured", "U", "nominal", "limits", "deviation", "verdict")
+_COLUMNS = (
+    label("characteristic"), label("measured"), label("U"), label("nominal"), label("limits"), label("deviation"),
+    label("verdict"),
+)  # fmt: skip
 
 
 def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
@@ -58,7 +62,9 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
         return
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for name in _COLUMNS:
-        table.add_column(name, justify="left" if name in ("characteristic", "verdict") else "right", overflow="fold")
+        table.add_column(
+            told(name), justify="left" if name in ("characteristic", "verdict") else "right", overflow="fold"
+        )
     for row in inspection.characteristics:
         table.add_row(*map(visible, _cells(row)))
     output.console().print(table)
@@ -68,18 +74,19 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
 def _cells(row: Characteristic) -> tuple[str, ...]:
     """One line of the table; an angle in degrees."""
     scale, unit = (math.degrees(1.0), "°") if row.quantity == "angle" else (1.0, " mm")
-    decimals = decimals_of(row.U * scale)
+    words, decimals = Words(spoken()), decimals_of(row.U * scale)
+    name = shown_name(row, words)
 
     def text(value: float, *, signed: bool = False) -> str:
-        return fixed(value * scale, decimals, signed=signed) + unit
+        return words.fixed(value * scale, decimals, signed=signed) + unit
 
     if row.limits is None or row.deviation is None:
-        return row.name, text(row.value), text(row.U), "", "", "", ""
+        return name, text(row.value), text(row.U), "", "", "", ""
     lower, upper = row.limits.lower, row.limits.upper
-    sides = [f"{value * scale:+g}".replace("-", "−") if math.isfinite(value) else "–" for value in (lower, upper)]
-    limits = f"± {upper * scale:g}{unit}" if lower == -upper else f"{' … '.join(sides)}{unit}"
-    nominal = f"{row.limits.nominal * scale:g}{unit}"
-    return row.name, text(row.value), text(row.U), nominal, limits, text(row.deviation, signed=True), row.verdict
+    sides = [words.numeral(f"{value * scale:+g}") if math.isfinite(value) else "–" for value in (lower, upper)]
+    limits = f"± {words.numeral(f'{upper * scale:g}')}{unit}" if lower == -upper else f"{' … '.join(sides)}{unit}"
+    nominal = words.numeral(f"{row.limits.nominal * scale:g}") + unit
+    return name, text(row.value), text(row.U), nominal, limits, text(row.deviation, signed=True), told(row.verdict)
 
 
 def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:
@@ -87,12 +94,21 @@ def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Pa
     names = [name.strip() for one in formats for name in one.split(",") if name.strip()]
     made, written = mesh_step(results, names, options, to or results, progress)
     filled = int(made.mesh.filled.sum())
-    rows = [("triangles", grouped(len(made.mesh.triangles)))]
+    rows = [(tr("triangles"), grouped(len(made.mesh.triangles)))]
     if options.fill_mm:
-        rows.append(("of them filled", f"{grouped(filled)}, marked where the format can"))
+        rows.append((tr("of them filled"), tr("{n:,}, marked where the format can", n=filled)))
     if options.triangles or options.error_mm:
-        rows.append(("error", f"{made.largest_mm:.3f} mm at most, {made.most_mm:.3f} mm for 95 % of the vertices"))
-        rows.append(("outer edge", f"moved by up to {made.edge_mm:.3f} mm"))
+        rows.append(
+            (
+                tr("error"),
+                tr(
+                    "{largest:.3f} mm at most, {most:.3f} mm for 95 % of the vertices",
+                    largest=made.largest_mm,
+                    most=made.most_mm,
+                ),
+            )
+        )
+        rows.append((tr("outer edge"), tr("moved by up to {edge:.3f} mm", edge=made.edge_mm)))
     values = {
         "triangles": len(made.mesh.triangles),
         "filled": filled,
@@ -156,13 +172,16 @@ def run_export(out: Path, formats: Sequence[str], to: Path | None, chosen: Repor
             todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
         )
     files = export_results(out, kinds, to, chosen.said, progress)
-    return Shown([(EXPORTS[name].title, path.name) for name, path in files.items()], {}, (), files)
+    return Shown([(told(EXPORTS[name].title), path.name) for name, path in files.items()], {}, (), files)
 
 
 def run_import(file: Path, out: Path) -> Shown:
     """A camera of another program as camera.json."""
     calibration = import_camera(file, out)
     camera = calibration.camera
-    rows = [("picture", " × ".join(map(str, camera.image_size)) + " px"), ("focal length", f"{camera.focal:.2f} px")]
+    rows = [
+        (tr("picture"), " × ".join(map(str, camera.image_size)) + " px"),
+        (tr("focal length"), tr("{focal:.2f} px", focal=camera.focal)),
+    ]
     values = output.camera_json(calibration)
     return Shown(rows, values, calibration.notes, {"camera": out / "camera.json"})

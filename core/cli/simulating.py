@@ -13,6 +13,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
+from core.cli.language import spoken, tr
 from core.cli.measuring_commands import TAKEN_OVER
 from core.cli.options import EPILOG, Json
 from core.progress import Progress
@@ -24,6 +25,12 @@ commands = typer.Typer()
 
 SCENARIO = Scenario()
 """The defaults of a simulated recording."""
+HELP_VALUES = {
+    "objects": ", ".join(OBJECTS),
+    "camera_targets": ", ".join(CAMERA_TARGETS),
+    "plane_targets": ", ".join(PLANE_TARGETS),
+}
+"""What stands in the places of this room's help."""
 _PART = "gauge block of the embedded sample"
 _QUICK_SCALE, _QUICK_FRAMES, _QUICK_CUT_MM = 0.25, 24, 0.3
 """The quick demonstration: share of the paper's resolution, number of frames, and cut on σ in mm, which so coarse
@@ -32,7 +39,7 @@ pictures need."""
 
 @commands.command()
 def simulate(
-    thing: Annotated[str, typer.Argument(metavar="OBJECT", help=f"What stands on the table: {', '.join(OBJECTS)}.")],
+    thing: Annotated[str, typer.Argument(metavar="OBJECT", help="What stands on the table: {objects}.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
     height: Annotated[
         float,
@@ -51,8 +58,8 @@ def simulate(
         SCENARIO.ambient_grey
     ),
     texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
-    camera_target: Annotated[str, typer.Option(help=f"One of {', '.join(CAMERA_TARGETS)}.")] = SCENARIO.camera_target,
-    plane_target: Annotated[str, typer.Option(help=f"One of {', '.join(PLANE_TARGETS)}.")] = SCENARIO.plane_target,
+    camera_target: Annotated[str, typer.Option(help="One of {camera_targets}.")] = SCENARIO.camera_target,
+    plane_target: Annotated[str, typer.Option(help="One of {plane_targets}.")] = SCENARIO.plane_target,
     check_poses: Annotated[int, typer.Option(help="Pictures of an interim check.")] = SCENARIO.check_poses,
     turned: Annotated[
         float, typer.Option(metavar="URAD", help="The laser turned by so much since its calibration.")
@@ -148,7 +155,8 @@ def simulate(
     if json:
         output.print_json({"set": str(out)})
     else:
-        sys.stdout.write(f"recording set in {out}; measure it with: trisect run {out} --out DIR\n")
+        told = tr("recording set in {path}; measure it with: trisect run {path} --out DIR", path=str(out))
+        sys.stdout.write(f"{told}\n")
 
 
 @commands.command(epilog=EPILOG)
@@ -160,15 +168,17 @@ def demo(
     """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
         from core.cli import measuring
-        from core.report.wording import thickness_line
+        from core.report.wording import Words, thickness_line
 
         options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
         with bar("run") as progress, _sample(progress, quick=quick) as folder:
             result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)
     if result.gauge is not None and not json:
-        line = thickness_line(result.gauge)
-        sys.stdout.write(f"\nThe sample block measures {line}; the report is {result.files['report']}.\n")
+        line = thickness_line(result.gauge, Words(spoken()))
+        report = str(result.files["report"])
+        told = tr("The sample block measures {thickness}; the report is {path}.", thickness=line, path=report)
+        sys.stdout.write(f"\n{told}\n")
     raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
 
 

@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-EPILOG = (
+from core.messages import label
+
+EPILOG = label(
     "Exit code: 0 done, and conforming, capable or acceptable if a limit was given; 1 measured, but not so, or not "
     "proven; 2 bad input, 130 interrupted."
 )
@@ -104,10 +106,6 @@ def grr(
     studying.finish(studying.grr(file, characteristic, tolerance), out, as_json=json)
 
 
-def _limit(what: str) -> object:
-    return typer.Option(f"--{what}", metavar="MM", help=f"Largest permitted {what} error.")
-
-
 @studies.command(epilog=EPILOG)
 def acceptance(
     files: Files,
@@ -122,10 +120,14 @@ def acceptance(
     diameter: Annotated[
         float | None, typer.Option("--diameter", metavar="MM", help="Of a bar's two spheres, by which they are found.")
     ] = None,
-    form: Annotated[float | None, _limit("form")] = None,
-    size: Annotated[float | None, _limit("size")] = None,
-    spacing: Annotated[float | None, _limit("spacing")] = None,
-    flatness: Annotated[float | None, _limit("flatness")] = None,
+    form: Annotated[float | None, typer.Option("--form", metavar="MM", help="Largest permitted form error.")] = None,
+    size: Annotated[float | None, typer.Option("--size", metavar="MM", help="Largest permitted size error.")] = None,
+    spacing: Annotated[
+        float | None, typer.Option("--spacing", metavar="MM", help="Largest permitted spacing error.")
+    ] = None,
+    flatness: Annotated[
+        float | None, typer.Option("--flatness", metavar="MM", help="Largest permitted flatness error.")
+    ] = None,
     out: Out = None,
     json: Json = False,
 ) -> None:

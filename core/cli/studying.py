@@ -9,15 +9,16 @@ from typing import cast
 
 import typer
 
+from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, exit_code
 from core.cli.output import Rows
 from core.errors import InputError
 from core.files.study.input import read_crossed, read_readings, read_repeats
 from core.files.study.study_file import Study, study_values, write_study
-from core.messages import Message
+from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
-from core.report.wording import count, decimals_of, fixed
+from core.report.wording import Words, decimals_of
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
 from core.study.grr import ACCEPTABLE, AnovaRow, Component, GrrStudy, grr_study
@@ -216,7 +217,7 @@ def study_rows(study: Study) -> Rows:
             found = _grr(study)
         case AcceptanceCheck():
             found = [row for one in study.quantities for row in _quantity(one)]
-    return [*found, ("verdict", study.verdict or "none: no limit was given")]
+    return [*found, (tr("verdict"), told(study.verdict) if study.verdict else tr("none: no limit was given"))]
 
 
 def _repeats(study: RepeatStudy) -> Rows:
@@ -224,37 +225,62 @@ def _repeats(study: RepeatStudy) -> Rows:
     digits = max(decimals_of(study.budget.U), decimals_of(found.std_mm), 3)
 
     def shown(value: float | None, *, signed: bool = False) -> str:
-        return "unknown" if value is None else f"{fixed(value, digits, signed=signed)} {unit}"
+        return tr("unknown") if value is None else f"{_fixed(value, digits, signed=signed)} {unit}"
 
     lines = [
-        (study.name, f"{count(found.n, 'scan')}, mean {shown(found.mean_mm)}"),
-        ("STD (n − 1)", shown(found.std_mm)),
+        (
+            told(study.name),
+            told(
+                plural_message(
+                    "cli.repeats",
+                    "{n:,} scan, mean {mean}",
+                    "{n:,} scans, mean {mean}",
+                    n=found.n,
+                    mean=shown(found.mean_mm),
+                )
+            ),
+        ),
+        (tr("STD (n − 1)"), shown(found.std_mm)),
     ]
     if study.nominal is not None:
         lines += [
-            ("nominal", f"{study.nominal:g} {unit}"),
-            ("mean error", shown(found.error_mm, signed=True)),
-            ("RMSE", shown(found.rmse_mm)),
-            ("largest error", shown(found.largest_error_mm)),
+            (tr("nominal"), tr("{value:g} {unit}", value=study.nominal, unit=unit)),
+            (tr("mean error"), shown(found.error_mm, signed=True)),
+            (tr("RMSE"), shown(found.rmse_mm)),
+            (tr("largest error"), shown(found.largest_error_mm)),
         ]
     if study.run is not None:
-        lines.append(("run chart", f"{shown(study.run.lower)} to {shown(study.run.upper)} (individual values)"))
-    lines += [("U of the mean", _expanded(study.budget, digits)), ("from", _sources(study.budget, digits))]
+        lower, upper = shown(study.run.lower), shown(study.run.upper)
+        lines.append((tr("run chart"), tr("{lower} to {upper} (individual values)", lower=lower, upper=upper)))
+    lines += [(tr("U of the mean"), _expanded(study.budget, digits)), (tr("from"), _sources(study.budget, digits))]
     if study.zones is not None:
-        limits = f"{fixed(study.zones.lower, 3, signed=True)} to {fixed(study.zones.upper, 3, signed=True)} {unit}"
-        lines.append(("rule", f"ISO 14253-1, deviation {limits}, guard band {shown(study.zones.guard_band)}"))
+        said = tr(
+            "ISO 14253-1, deviation {lower} to {upper} {unit}, guard band {guard}",
+            lower=_fixed(study.zones.lower, 3, signed=True),
+            upper=_fixed(study.zones.upper, 3, signed=True),
+            unit=unit,
+            guard=shown(study.zones.guard_band),
+        )
+        lines.append((tr("rule"), said))
     return lines
 
 
 def _expanded(budget: UncertaintyBudget, digits: int) -> str:
-    dof = "∞" if math.isinf(budget.dof) else f"{budget.dof:.1f}"
-    return f"{fixed(budget.U, digits)} {budget.unit} (k = {budget.k:.2f}, ν_eff = {dof}, {budget.coverage:.2%})"
+    dof = "∞" if math.isinf(budget.dof) else spoken().number(budget.dof, ".1f")
+    U = f"{_fixed(budget.U, digits)} {budget.unit}"
+    return tr("{U} (k = {k:.2f}, ν_eff = {dof}, {coverage:.2%})", U=U, k=budget.k, dof=dof, coverage=budget.coverage)
+
+
+def _fixed(value: float, decimals: int, *, signed: bool = False) -> str:
+    return Words(spoken()).fixed(value, decimals, signed=signed)
 
 
 def _sources(budget: UncertaintyBudget, digits: int) -> str:
     largest = sorted(budget.rows, key=lambda row: -row.u_mm)
     return ", ".join(
-        f"{row.source} {fixed(row.u_mm, digits)} {budget.unit}" for row in largest if row.u_mm >= 0.1 * budget.u > 0
+        f"{told(row.source)} {_fixed(row.u_mm, digits)} {budget.unit}"
+        for row in largest
+        if row.u_mm >= 0.1 * budget.u > 0
     )
 
 
@@ -262,57 +288,103 @@ def _type1(study: Type1Study) -> Rows:
     digits, unit = max(decimals_of(study.s) + 1, 3), study.unit
 
     def shown(value: float, *, signed: bool = False) -> str:
-        return f"{fixed(value, digits, signed=signed)} {unit}"
+        return f"{_fixed(value, digits, signed=signed)} {unit}"
 
-    low, high = (fixed(value, digits, signed=True) for value in study.bias_interval)
+    low, high = (_fixed(value, digits, signed=True) for value in study.bias_interval)
     lines = [
-        ("repeats", f"{study.n}, mean {shown(study.mean)}, s {shown(study.s)}"),
-        ("reference", f"{study.reference:g} {unit}, T = {study.tolerance:g} {unit}"),
-        ("bias", f"{shown(study.bias, signed=True)} (95 %: {low} to {high}), t = {study.t:.2f}, p = {study.p:.2g}"),
-        ("Cg", f"{_index(study.cg)} (95 %: {_index(study.cg_interval[0])} to {_index(study.cg_interval[1])})"),
-        ("Cgk", f"{_index(study.cgk)}; both must be {LIMIT} or more"),
-        ("smallest T", f"{shown(study.smallest_tolerance)} for which they would be"),
+        (tr("repeats"), tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s))),
+        (
+            tr("reference"),
+            tr(
+                "{value:g} {unit}, T = {tolerance:g} {unit}",
+                value=study.reference,
+                unit=unit,
+                tolerance=study.tolerance,
+            ),
+        ),
+        (
+            tr("bias"),
+            tr(
+                "{bias} (95 %: {low} to {high}), t = {t:.2f}, p = {p:.2g}",
+                bias=shown(study.bias, signed=True),
+                low=low,
+                high=high,
+                t=study.t,
+                p=study.p,
+            ),
+        ),
+        ("Cg", _with_interval(_index(study.cg), *map(_index, study.cg_interval))),
+        ("Cgk", tr("{cgk}; both must be {limit} or more", cgk=_index(study.cgk), limit=LIMIT)),
+        (tr("smallest T"), tr("{T} for which they would be", T=shown(study.smallest_tolerance))),
     ]
     if study.resolution_share is not None:
-        judged = "suffices" if study.resolution_suffices else "does not suffice: 5 % at most"
-        lines.append(("resolution", f"{study.resolution:g} {unit}, {study.resolution_share:.1%} of T: {judged}"))
+        judged = tr("suffices" if study.resolution_suffices else "does not suffice: 5 % at most")
+        said = tr(
+            "{value:g} {unit}, {share:.1%} of T: {judged}",
+            value=study.resolution, unit=unit, share=study.resolution_share, judged=judged,
+        )  # fmt: skip
+        lines.append((tr("resolution"), said))
     return lines
 
 
 def _index(value: float) -> str:
-    return "∞" if math.isinf(value) and value > 0 else fixed(value, 2)
+    return "∞" if math.isinf(value) and value > 0 else _fixed(value, 2)
+
+
+def _with_interval(value: str, low: str, high: str) -> str:
+    return tr("{value} (95 %: {low} to {high})", value=value, low=low, high=high)
+
+
+def _share(value: float) -> str:
+    return spoken().number(value, ".1%")
 
 
 def _grr(study: GrrStudy) -> Rows:
     p, o, r = study.values.shape
-    lines = [("measured", f"{count(p, 'part')} × {count(o, 'operator')} × {count(r, 'repeat')}")]
-    lines += [(f"ANOVA {row.source}", _anova(row)) for row in (study.pooled_anova or study.anova)]
-    lines += [(one.source, _component(one, study.unit)) for one in study.components]
+    lines = [(tr("measured"), tr("parts {p} × operators {o} × repeats {r}", p=p, o=o, r=r))]
+    lines += [(f"ANOVA {told(row.source)}", _anova(row)) for row in (study.pooled_anova or study.anova)]
+    lines += [(told(one.source), _component(one, study.unit)) for one in study.components]
     low, high = study.grr_interval
     gauge = study.component("gauge R&R")
-    lines.append(("%GRR of total", f"{gauge.of_total:.1%} (95 %: {low:.1%} to {high:.1%})"))
+    lines.append((tr("%GRR of total"), _with_interval(*map(_share, (gauge.of_total, low, high)))))
     if study.tolerance_interval is not None and gauge.of_tolerance is not None:
         low, high = study.tolerance_interval
-        said = f"{gauge.of_tolerance:.1%} (95 %: {low:.1%} to {high:.1%}), T = {study.tolerance:g} {study.unit}"
-        lines.append(("%GRR of T", said))
+        said = _with_interval(*map(_share, (gauge.of_tolerance, low, high)))
+        said = tr("{share}, T = {tolerance:g} {unit}", share=said, tolerance=study.tolerance, unit=study.unit)
+        lines.append((tr("%GRR of T"), said))
     low, high = study.ndc_interval
-    lines.append(("ndc", f"{study.categories or '∞'} ({_index(study.ndc)}; 95 %: {_index(low)} to {_index(high)})"))
+    said = tr(
+        "{n} ({ndc}; 95 %: {low} to {high})",
+        n=str(study.categories or "∞"), ndc=_index(study.ndc), low=_index(low), high=_index(high),
+    )  # fmt: skip
+    lines.append(("ndc", said))
     return lines
 
 
 def _anova(row: AnovaRow) -> str:
-    tested = "" if row.f is None or row.p is None else f", F {row.f:.3g}, p {row.p:.3g}"
-    return f"SS {row.ss:.6g}, ν {row.dof}" + ("" if math.isnan(row.ms) else f", MS {row.ms:.4g}") + tested
+    number = spoken().number
+    tested = "" if row.f is None or row.p is None else f", F {number(row.f, '.3g')}, p {number(row.p, '.3g')}"
+    mean = "" if math.isnan(row.ms) else f", MS {number(row.ms, '.4g')}"
+    return f"SS {number(row.ss, '.6g')}, ν {row.dof}{mean}{tested}"
 
 
 def _component(one: Component, unit: str) -> str:
-    of_tolerance = "" if one.of_tolerance is None else f", {one.of_tolerance:.1%} of T"
+    of_tolerance = "" if one.of_tolerance is None else tr(", {share:.1%} of T", share=one.of_tolerance)
     low, high = (math.sqrt(value) for value in one.variance_interval)
-    return f"σ {one.sigma:.4g} {unit} (95 %: {low:.3g} to {high:.3g}), {one.of_total:.1%} of total{of_tolerance}"
+    said = tr(
+        "σ {sigma:.4g} {unit} (95 %: {low:.3g} to {high:.3g}), {share:.1%} of total",
+        sigma=one.sigma, unit=unit, low=low, high=high, share=one.of_total,
+    )  # fmt: skip
+    return said + of_tolerance
 
 
 def _quantity(one: CheckedQuantity) -> Rows:
-    limit = "no limit" if one.limit is None else f"limit {one.limit:g} mm"
-    positions = count(len({reading.position for reading in one.readings}), "position")
-    said = f"{fixed(one.largest_error, 4, signed=True)} mm at {one.worst.position}, {positions}, {limit}"
-    return [(str(one.title), said + (f": {one.verdict}" if one.verdict else ""))]
+    limit = tr("no limit") if one.limit is None else tr("limit {limit:g} mm", limit=one.limit)
+    positions = plural_message(
+        "cli.positions", "{n} position", "{n} positions", n=len({reading.position for reading in one.readings})
+    )
+    said = tr(
+        "{error} mm at {position}, {positions}, {limit}",
+        error=_fixed(one.largest_error, 4, signed=True), position=one.worst.position, positions=positions, limit=limit,
+    )  # fmt: skip
+    return [(told(one.title), said + (f": {told(one.verdict)}" if one.verdict else ""))]

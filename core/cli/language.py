@@ -1,0 +1,143 @@
+"""The language of the command line: every text that it prints goes through here, from the catalogues of all rooms.
+
+It is chosen before anything is printed: by ``--language``, TRISECT_LANGUAGE, or the locale. What ``--json`` prints is
+English in every language. Light to import.
+"""
+
+from __future__ import annotations
+
+import inspect
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from copy import copy
+from typing import Annotated, Any
+
+import typer
+from typer.main import get_command
+
+from core.errors import InputError
+from core.messages import ENGLISH, Language, Message, label
+
+OPTION = "--language"
+HELP_OPTIONS = ["-h", "--help"]
+_HELP = label("Language of what is printed: {languages}; else TRISECT_LANGUAGE, or the locale's.")
+_TYPERS_OWN = {
+    "ARGUMENTS_PANEL_TITLE": label("Arguments"),
+    "OPTIONS_PANEL_TITLE": label("Options"),
+    "COMMANDS_PANEL_TITLE": label("Commands"),
+    "ERRORS_PANEL_TITLE": label("Error"),
+    "REQUIRED_LONG_STRING": label("[required]"),
+    "RICH_HELP": label("Try [blue]'{command_path} {help_option}'[/] for help."),
+}
+"""Words that Typer puts into help, by their names in its module; their places are Typer's to fill."""
+_DEFAULT = label("default")
+_SHOW_HELP = label("Show this message and exit.")
+
+_spoken: Language = ENGLISH
+
+
+def choose(words: Sequence[str]) -> None:
+    """Speak the language that was asked for in the words of a command line, or that of the surroundings.
+
+    Raises
+    ------
+    core.errors.InputError
+        If there is no such language.
+    """
+    global _spoken
+    _spoken = _named([os.environ.get("TRISECT_LANGUAGE", ""), _locale()])
+    if asked := _asked_for(words):
+        from core.cli.output import one_of
+        from core.translations import PSEUDO, languages
+
+        _spoken = _named([PSEUDO if asked == PSEUDO else one_of(asked, languages(), OPTION)])
+
+
+def _named(wanted: Sequence[str]) -> Language:
+    first = next(filter(None, wanted), "en")
+    if first in ("C", "POSIX") or first.startswith(("en_", "C.")) or first == "en":
+        return ENGLISH  # without Babel, which costs 0.05 s
+    from core.translations import language, preferred
+
+    return language(preferred(wanted))
+
+
+def _locale() -> str:
+    """The locale that texts are in, by the order of POSIX, without its encoding: 'zh_CN'."""
+    names = (os.environ.get(name, "") for name in ("LC_ALL", "LC_MESSAGES", "LANG"))
+    return next(filter(None, names), "").partition(".")[0].partition("@")[0]
+
+
+def _asked_for(words: Sequence[str]) -> str:
+    for place, word in enumerate(words):
+        if word == "--":
+            break
+        if word == OPTION:
+            return next(iter(words[place + 1 :]), "")
+        if word.startswith(f"{OPTION}="):
+            return word.partition("=")[2]
+    return ""
+
+
+def spoken() -> Language:
+    """The language that was chosen."""
+    return _spoken
+
+
+def tr(english: str, /, **values: Any) -> str:
+    """Fixed words of the command line, with values in their places: `tr("{n} triangles", n=3)`."""
+    return _spoken.label(english, **values)
+
+
+def told(said: Message | InputError | str) -> str:
+    """What core has to say; fixed words of its own where they are known; anything else as it is."""
+    if isinstance(said, InputError):
+        return said.told(_spoken)
+    return _spoken(said) if isinstance(said, Message) else _spoken.label(str(said))
+
+
+def speak(command: Any, values: Mapping[str, str]) -> Any:
+    """Put the help of a command, its options and all commands within it into the language; `values` fill its places."""
+    from core.translations import languages
+
+    values, option = {**values, "languages": ", ".join(languages())}, _option()
+    for one in _all_of(command):
+        if not any(OPTION in option.opts for option in one.params):
+            one.params.append(copy(option))
+        help_option = one.get_help_option(typer.Context(one, help_option_names=HELP_OPTIONS))
+        help_option.help = _SHOW_HELP
+        one.help, one.epilog = _helped(one.help, values), _helped(one.epilog, values)
+        for shown in (*one.params, help_option):
+            shown.help = _helped(shown.help, values)
+    if _spoken is not ENGLISH:
+        from typer import rich_utils
+
+        for name, english in _TYPERS_OWN.items():
+            setattr(rich_utils, name, tr(english))
+        rich_utils.DEFAULT_STRING = f"[{tr(_DEFAULT)}: {{}}]"
+    return command
+
+
+def _takes(
+    language: Annotated[str, typer.Option(OPTION, metavar="CODE", show_default=False, help=_HELP)] = "",
+) -> None:
+    """What every command takes, and `choose` has read already."""
+
+
+def _option() -> Any:
+    """The option of `_takes`, for commands that are not to be told of it."""
+    of_one = typer.Typer(add_completion=False)
+    of_one.command()(_takes)
+    option = get_command(of_one).params[0]
+    option.expose_value = False
+    return option
+
+
+def _all_of(command: Any) -> Iterator[Any]:
+    yield command
+    for one in getattr(command, "commands", {}).values():
+        yield from _all_of(one)
+
+
+def _helped(english: str | None, values: Mapping[str, str]) -> str | None:
+    return tr(inspect.cleandoc(english), **values) if english else english
