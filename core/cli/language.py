@@ -8,8 +8,10 @@ from __future__ import annotations
 
 import inspect
 import os
+import sys
 from collections.abc import Iterator, Mapping, Sequence
 from copy import copy
+from functools import cache
 from typing import Annotated, Any
 
 import typer
@@ -47,7 +49,7 @@ def choose(words: Sequence[str]) -> None:
     global _spoken
     _spoken = _named([os.environ.get("TRISECT_LANGUAGE", ""), _locale()])
     if asked := _asked_for(words):
-        from core.cli.output import one_of
+        from core.cli.options import one_of
         from core.translations import PSEUDO, languages
 
         _spoken = _named([PSEUDO if asked == PSEUDO else one_of(asked, languages(), OPTION)])
@@ -109,13 +111,33 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
         one.help, one.epilog = _helped(one.help, values), _helped(one.epilog, values)
         for shown in (*one.params, help_option):
             shown.help = _helped(shown.help, values)
-    if _spoken is not ENGLISH:
-        from typer import rich_utils
-
-        for name, english in _TYPERS_OWN.items():
-            setattr(rich_utils, name, tr(english))
-        rich_utils.DEFAULT_STRING = f"[{tr(_DEFAULT)}: {{}}]"
+    if _spoken is not ENGLISH or "typer.rich_utils" in sys.modules:  # which costs a start, and speaks English by itself
+        _name_panels()
     return command
+
+
+def _name_panels() -> None:
+    from typer import rich_utils
+
+    _fold_help()
+    for name, english in _TYPERS_OWN.items():
+        setattr(rich_utils, name, tr(english))
+    rich_utils.DEFAULT_STRING = f"[{tr(_DEFAULT)}: {{}}]"
+
+
+@cache
+def _fold_help() -> None:
+    """Help without spaces, as Chinese has it, is put on several lines; Rich would cut it at the end of the first."""
+    from typer import rich_utils
+
+    make: Any = rich_utils._make_rich_text
+
+    def folded(*given: Any, **named: Any) -> Any:
+        text = make(*given, **named)
+        text.overflow = "fold"
+        return text
+
+    rich_utils._make_rich_text = folded
 
 
 def _takes(

@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from enum import Enum, IntEnum
 from pathlib import Path
 from typing import Annotated
 
 import typer
 
-from core.messages import label
+from core.errors import InputError
+from core.messages import Message, label
 from core.scan.method import Method
 
 EPILOG = label(
@@ -131,3 +133,15 @@ Exclude = Annotated[
 Profile = Annotated[
     bool, typer.Option("--profile", help="Say on standard error what each stage has cost in processor time.")
 ]
+
+
+def one_of(chosen: str, known: Sequence[str], where: str) -> str:
+    """One of `known`, in any case of letters; nothing stays nothing."""
+    by_lower = {one.lower(): one for one in known}
+    if chosen and chosen.lower() not in by_lower:
+        raise InputError(
+            Message("export.no_such_choice", 'there is no "{chosen}"', chosen=chosen),
+            where=where,
+            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(known)),
+        )
+    return by_lower.get(chosen.lower(), "")

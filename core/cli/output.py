@@ -20,7 +20,6 @@ from core.calibrate.results import (
     Readjustment,
 )
 from core.cli.language import spoken, told, tr
-from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
 from core.files.results.fan_file import fan_id
@@ -436,15 +435,3 @@ def fan_json(calibration: FanCalibration) -> dict[str, Any]:
 def files_json(files: Mapping[str, Path]) -> dict[str, str]:
     """Paths as text."""
     return {name: str(path) for name, path in files.items()}
-
-
-def one_of(chosen: str, known: Sequence[str], where: str) -> str:
-    """One of `known`, in any case of letters; nothing stays nothing."""
-    by_lower = {one.lower(): one for one in known}
-    if chosen and chosen.lower() not in by_lower:
-        raise InputError(
-            Message("export.no_such_choice", 'there is no "{chosen}"', chosen=chosen),
-            where=where,
-            todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(known)),
-        )
-    return by_lower.get(chosen.lower(), "")

@@ -10,7 +10,7 @@ import typer
 
 from core.cli.bar import bar
 from core.cli.language import spoken, told, tr
-from core.cli.options import EPILOG, ExitCode, Json
+from core.cli.options import EPILOG, ExitCode, Json, one_of
 
 if TYPE_CHECKING:
     from core.files.project.audit import Entry
@@ -153,7 +153,6 @@ def people(
     from dataclasses import replace
 
     from core.cli.measuring import Shown
-    from core.cli.output import one_of
     from core.files.project.folder import read_project
     from core.files.project.people import ROLES, Role, person, read_rules, reset_rules, with_pin, write_rules
 

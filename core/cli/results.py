@@ -14,7 +14,7 @@ from rich.table import Table
 from core.cli import output
 from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, alone_with, exit_code
-from core.cli.options import ExitCode
+from core.cli.options import ExitCode, one_of
 from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
@@ -136,8 +136,8 @@ class ReportOptions:
     def said(self, content: ReportContent) -> ReportContent:
         """The content with all of it. InputError if a choice is not one, or the template cannot be read."""
         language, paper = (
-            output.one_of(self.language, LANGUAGES, "--language"),
-            output.one_of(self.paper, PAPERS, "--paper"),
+            one_of(self.language, LANGUAGES, "--language"),
+            one_of(self.paper, PAPERS, "--paper"),
         )
         if self.template is not None:
             content = with_template(content, read_report_template(self.template))

@@ -1,0 +1,139 @@
+"""What the command line prints is in the reader's language: `--language`, TRISECT_LANGUAGE, or the locale."""
+
+import json
+import re
+import shutil
+
+import pytest
+from typer.main import get_command
+
+from core.cli import language
+from core.cli.app import app
+from core.cli.simulating import HELP_VALUES
+from core.files.project.data import ProjectFile, new_project
+from core.files.project.folder import create_project
+from core.translations import PSEUDO
+from tests.report.test_report_pseudo import outside_brackets
+from tests.simulated import CUT, trisect
+from tests.study.grr_tables import AIAG
+
+SAME_EVERYWHERE = re.compile(
+    r"(/[\w.\-/…]+)+|[\w.\-]+\.(png|json|toml|pdf|csv|ply|stl|trisectz)\b|[0-9a-f]{6,}|E_n|ndc|Cgk?|ANOVA|RMS|RMSE|trisect|"
+    r"frame\d+|view\d+|pose\d+|alpha|beta|gamma"
+)
+"""Paths, names of files, hashes, symbols."""
+FOLDERS = {"camera", "planes", "scan"}
+"""Of a recording set, as `import` names them."""
+
+
+@pytest.fixture(autouse=True)
+def no_language_of_this_computer(monkeypatch):
+    for name in ("TRISECT_LANGUAGE", "LC_ALL", "LC_MESSAGES", "LANG"):
+        monkeypatch.delenv(name, raising=False)
+    yield
+    language.choose([])
+
+
+def left_in_english(*words):
+    """The words that a command prints in the pseudo-language outside its brackets: they are in no catalogue."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("TRISECT_LANGUAGE", PSEUDO)
+        said = trisect(*words)
+    assert said.code in (0, 1), said.err
+    text = outside_brackets(SAME_EVERYWHERE.sub(" ", f"{said.out}\n{said.err}"))
+    assert "⟦" in said.out + said.err
+    return set(re.findall(r"[^\W\d_]{3,}", text))
+
+
+@pytest.mark.parametrize("step", ["camera", "planes", "scan", "gauge", "report"])
+def test_no_step_of_a_measurement_prints_an_untranslated_word(simulated, measured, tmp_path, step):
+    out = shutil.copytree(measured, tmp_path / "out")
+    assert left_in_english(step, simulated, "--out", out, *(CUT if step == "scan" else ())) == set()
+
+
+def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_path):
+    out = shutil.copytree(measured, tmp_path / "out")
+    project = tmp_path / "project"
+    create_project(project, ProjectFile(new_project("2026")))
+    (tmp_path / "grr.csv").write_text(
+        "part;operator;value\n" + "".join(f"{p};{o};{AIAG[p, o, r]}\n" for p, o, r in cells(AIAG.shape))
+    )
+    (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n50.0;0.01\n")
+    limits = ("--nominal", 50, "--tolerance", 0.2)
+    commands = [
+        ("mesh", out, "--format", "stl", "--fill-holes", 2, "--triangles", 900),
+        ("export", out, "--format", "csv,json"),
+        ("target", "--out", tmp_path / "target.pdf", "charuco"),
+        ("plan", simulated, "--no-changes", "--scans", 1, "--bounds"),
+        ("import", tmp_path / "new", "--camera", simulated / "camera", "--dry-run"),
+        ("import", tmp_path / "new", "--camera", simulated / "camera"),
+        ("check", simulated, "--out", out, "--history"),
+        ("verify", out, "--set", simulated),
+        ("people", project),
+        ("pack", project, "--out", tmp_path / "p.trisectz"),
+        ("unpack", tmp_path / "p.trisectz", "--out", tmp_path / "again"),
+        ("study", "repeats", tmp_path / "repeats.csv", *limits),
+        ("study", "type1", tmp_path / "repeats.csv", *limits, "--resolution", 0.001),
+        ("study", "grr", tmp_path / "grr.csv", "--tolerance", 8),
+    ]
+    left = {
+        " ".join(map(str, words[:2])): left_in_english(*words) - (FOLDERS if words[0] == "import" else set())
+        for words in commands
+    }
+    assert {command: words for command, words in left.items() if words} == {}
+
+
+def cells(shape):
+    return [(p, o, r) for p in range(shape[0]) for o in range(shape[1]) for r in range(shape[2])]
+
+
+def test_all_help_is_in_the_catalogues():
+    language.choose([language.OPTION, PSEUDO])
+    command = language.speak(get_command(app), HELP_VALUES)
+    texts = [
+        text for one in language._all_of(command) for text in (one.help, one.epilog, *(p.help for p in one.params))
+    ]
+    assert len(texts) > 250
+    assert [text for text in texts if text and not text.startswith("⟦")] == []
+
+
+def test_chinese_help_is_not_cut_at_the_end_of_a_line():
+    said = trisect("check", "--language", "zh_CN", "--help").out
+    assert ("相机和激光器" in said, "…" in said) == (True, False)
+
+
+@pytest.mark.parametrize(
+    ("surroundings", "words", "expected"),
+    [
+        ({"LC_ALL": "C", "LANG": "de_DE.UTF-8"}, (), "there is no such folder"),
+        ({"LANG": "de_CH.UTF-8"}, (), "diesen Ordner gibt es nicht"),
+        ({"LC_ALL": "zh_CN.UTF-8"}, (), "没有这个文件夹"),
+        ({"LC_ALL": "zh_CN.UTF-8", "TRISECT_LANGUAGE": "de"}, (), "diesen Ordner gibt es nicht"),
+        ({"LANG": "de_DE.UTF-8"}, ("--language", "en"), "there is no such folder"),
+        ({}, ("--language=zh_CN",), "没有这个文件夹"),
+    ],
+)
+def test_a_refusal_is_told_in_the_language_asked_for_and_else_in_that_of_the_locale(
+    monkeypatch, tmp_path, surroundings, words, expected
+):
+    for name, value in surroundings.items():
+        monkeypatch.setenv(name, value)
+    said = trisect("gauge", tmp_path / "none", "--out", tmp_path, *words)
+    assert (said.code, expected in said.err) == (2, True), said.err
+
+
+def test_an_unknown_language_is_refused_with_those_there_are(tmp_path):
+    said = trisect("gauge", tmp_path, "--out", tmp_path, "--language", "fr")
+    assert (said.code, said.sentence) == (2, 'trisect: --language: there is no "fr"; choose among en, de, zh_CN.')
+
+
+def test_json_is_the_same_in_every_language(simulated, measured, tmp_path):
+    out = shutil.copytree(measured, tmp_path / "out")
+    told = [
+        json.loads(trisect("gauge", simulated, "--out", out, "--json", "--language", name).out) for name in ("en", "de")
+    ]
+    assert told[0] == told[1]
+    refused = [
+        trisect("gauge", tmp_path / "none", "--out", out, "--json", "--language", name).out for name in ("en", "de")
+    ]
+    assert refused[0] == refused[1]
