@@ -20,6 +20,7 @@ NOTICE = ROOT / "NOTICE"
 
 REASONS = {
     "certifi": "MPL-2.0 binds its own files only; they are used unchanged",
+    "pikepdf": "MPL-2.0 binds its own files only; they are used unchanged",
     "pyside6-essentials": "used under LGPL-3.0 by dynamic linking: installed as a package of its own, replaceable",
     "shiboken6": "used under LGPL-3.0 by dynamic linking: installed as a package of its own, replaceable",
 }
@@ -35,8 +36,8 @@ It stands on the packages below, installed beside it, each under its own licence
 Written by `make notice`.
 
 Some of them carry shared libraries of others, linked dynamically and unchanged: opencv-python-headless FFmpeg
-(LGPL-2.1); numpy, scipy and opencv-python-headless libquadmath (LGPL-2.1) and libgfortran, fast-simplification libgomp
-(GPL-3.0 with the GCC runtime library exception, which binds no program that uses them).
+(LGPL-2.1); numpy, scipy and opencv-python-headless libquadmath (LGPL-2.1) and libgfortran, fast-simplification libgomp,
+pikepdf those of GCC (GPL-3.0 with the GCC runtime library exception, which binds no program that uses them).
 """
 
 

@@ -75,13 +75,16 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     """The report as the bytes of a PDF; nothing is written to disk.
 
     The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
-    are embedded; where this computer has none for an East Asian text, a note says that the reader's program brings it.
+    are embedded, and the file is PDF/A-2b. Where this computer has no font for an East Asian text it is not, and a note
+    says that the reader's program brings it.
 
     Raises
     ------
     core.errors.Cancelled
         If `progress` asks to stop.
     """
+    from core.report.archival import archived  # its library is loaded by the first report
+
     prepare_reportlab()
     if note := font_note(_names(content)):
         content = replace(content, notes=(*content.notes, note))
@@ -109,6 +112,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
         break
     progress(step, total - 1, total)
     _, data = _typeset(look, content, pictures, limits, pages)
+    data = archived(data)
     progress(step, total, total)
     return data
 

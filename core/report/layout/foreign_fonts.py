@@ -6,6 +6,7 @@ that whether their characters are seen hangs on the program that shows it. What 
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Sequence
 from functools import cache
 from pathlib import Path
@@ -38,6 +39,19 @@ def system_fonts() -> Sequence[tuple[str, str]]:
     return tuple((name, path) for path, name in sorted(found.items(), key=lambda one: (rank[one[1]], one[0])))
 
 
+def truetype(name: str, path: str) -> TTFont:
+    """A font for reportlab, with the advances that the file has.
+
+    reportlab takes the advance that the last glyphs of a font share in thousandths of an em, and writes it as if it
+    were in the font's own units: a monospaced font would be embedded with widths that are not its own.
+    """
+    font = TTFont(name, path)
+    (full,) = struct.unpack(">H", font.face.get_table("hhea")[34:36])
+    metrics = font.face.hmetrics
+    metrics[full:] = [(metrics[full - 1][0], bearing) for _, bearing in metrics[full:]]
+    return font
+
+
 @cache
 def embedded_font(character: str) -> tuple[str, str]:
     """(name for reportlab, family for matplotlib) of a font of this computer that has `character`; ("", "") if none."""
@@ -46,7 +60,7 @@ def embedded_font(character: str) -> tuple[str, str]:
         if name in pdfmetrics.getRegisteredFontNames():
             return name, family
         try:
-            font = TTFont(name, path)
+            font = truetype(name, path)
         except (TTFError, OSError, ValueError):  # outlines or licences that cannot be embedded
             continue
         if ord(character) in font.face.charToGlyph:

@@ -17,11 +17,10 @@ from reportlab.lib.enums import TA_CENTER, TA_RIGHT
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase import pdfmetrics
-from reportlab.pdfbase.ttfonts import TTFont
 from reportlab.platypus import Paragraph
 
 from core.messages import Message
-from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian
+from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian, truetype
 from core.report.wording import Words
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
@@ -66,7 +65,7 @@ def _covered() -> frozenset[int]:
     folder = Path(matplotlib.get_data_path()) / "fonts" / "ttf"
     covered: frozenset[int] | None = None
     for name, file in _FILES.items():
-        font = TTFont(name, str(folder / file))
+        font = truetype(name, str(folder / file))
         pdfmetrics.registerFont(font)
         if name in (SANS, BOLD):
             points = frozenset(font.face.charToGlyph)

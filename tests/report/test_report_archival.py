@@ -1,0 +1,83 @@
+"""The report as PDF/A-2b: the rules of ISO 19005-2 that it could break, each on a report that has everything."""
+
+import io
+import re
+
+import pikepdf
+import pytest
+from fontTools.ttLib import TTFont
+from pikepdf import Name
+from PIL import ImageCms
+
+from core.report.archival import archived
+from core.report.pdf import build_report
+from tests.report.inspection_samples import whole_content
+
+
+@pytest.fixture(scope="module")
+def data():
+    return build_report(whole_content())
+
+
+@pytest.fixture
+def pdf(data):
+    with pikepdf.open(io.BytesIO(data)) as opened:
+        yield opened
+
+
+def fonts(pdf):
+    return {str(font.BaseFont): font for page in pdf.pages for font in page.resources.Font.values()}
+
+
+def test_the_file_says_what_it_is_and_its_metadata_agree(pdf):
+    meta = pdf.open_metadata()
+    assert (meta["pdfaid:part"], meta["pdfaid:conformance"]) == ("2", "B")
+    assert (meta["dc:title"], meta["xmp:CreatorTool"]) == (str(pdf.docinfo.Title), str(pdf.docinfo.Creator))
+    at = re.sub(r"\D", "", str(pdf.docinfo.CreationDate))[:14]
+    assert re.sub(r"\D", "", meta["xmp:CreateDate"])[:14] == at
+    assert Name.Filter not in pdf.Root.Metadata
+
+
+def test_its_colours_are_those_of_an_embedded_srgb_profile(pdf):
+    (intent,) = pdf.Root.OutputIntents
+    profile = intent.DestOutputProfile
+    assert (intent.S, profile.N) == (Name.GTS_PDFA1, 3)
+    read = ImageCms.ImageCmsProfile(io.BytesIO(profile.read_bytes()))
+    assert "sRGB" in ImageCms.getProfileDescription(read)
+    assert read.profile.xcolor_space.strip() == "RGB"
+
+
+def test_no_page_has_what_is_forbidden_and_links_are_printed(pdf):
+    assert not {"/AA", "/JavaScript", "/AcroForm"} & set(pdf.Root.keys())
+    assert all(Name.Trans not in page.obj and Name.AA not in page.obj for page in pdf.pages)
+    links = [link for page in pdf.pages for link in page.obj.get(Name.Annots, ())]
+    assert links
+    assert {int(link.F) for link in links} == {4}
+    assert not pdf.is_encrypted
+
+
+def test_every_font_is_embedded_with_the_widths_it_has(pdf):
+    found = fonts(pdf)
+    assert any("Mono" in name for name in found)
+    for name, font in found.items():
+        program = TTFont(io.BytesIO(font.FontDescriptor.FontFile2.read_bytes()))
+        glyphs, scale = program.getGlyphOrder(), 1000 / program["head"].unitsPerEm
+        codes = program["cmap"].tables[0].cmap
+        for code, width in enumerate(font.Widths, start=int(font.FirstChar)):
+            if codes.get(code, glyphs[0]) != glyphs[0]:
+                assert abs(float(width) - scale * program["hmtx"][codes[code]][0]) < 1, (name, code)
+
+
+def test_a_report_with_a_font_that_is_only_named_does_not_say_that_it_is_an_archive(data):
+    with pikepdf.open(io.BytesIO(data)) as pdf:
+        next(iter(fonts(pdf).values())).FontDescriptor.__delitem__(Name.FontFile2)
+        del pdf.Root.Metadata
+        stream = io.BytesIO()
+        pdf.save(stream)
+    assert archived(stream.getvalue()) == stream.getvalue()
+
+
+def test_the_validator_of_pikepdf_finds_nothing(data):
+    pytest.importorskip("jsonschema")
+    pdfa = pytest.importorskip("pikepdf.pdfa")
+    assert list(pdfa.validate_written(io.BytesIO(data), "2b").findings) == []
