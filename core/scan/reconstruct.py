@@ -21,7 +21,6 @@ from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
-from core.scan.features.reference import COMPRESSED
 from core.scan.method import Method
 from core.scan.network.datum import Datum, datum_of
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
@@ -112,9 +111,8 @@ def reconstruct(
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
     if not np.any(cloud.sweep >= 0):
-        compressed = [note for note in features.notes if note.code == COMPRESSED]
         raise InputError(
-            _no_points(options.sigma_cut_mm, (*compressed, *sweeps.notes)),
+            _no_points(options.sigma_cut_mm, sweeps.notes),
             where="scan",
             todo=Message(
                 "scan.advice_locate_better",

@@ -1,8 +1,8 @@
 """The hostile table: what each effect of a real rig does to a thickness, what U says of it, and what is told.
 
-What becomes of a scan is one of STATES. A note or a refusal counts only if its code is among those that name the cause
-of the effect (`tests.accuracy.hostile_cases.CAUSES`): a rig that warms and is refused because "something moved" has not
-been told.
+What becomes of a scan is one of STATES. A note or a refusal counts only if its code, or that of a note its text
+contains, is among those that name the cause of the effect (`tests.accuracy.hostile_cases.CAUSES`): a rig that warms and
+is refused because "something moved" has not been told.
 """
 
 from __future__ import annotations
@@ -23,6 +23,7 @@ from core.files.results.gauge_file import read_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.run_file import read_run
 from core.inspect.conformity import Verdict
+from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
@@ -81,7 +82,7 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
     try:
         calibrated = calibration_in(folder, case)
     except InputError as refused:
-        return {"refused": refused.code, "told": []}
+        return {"refused": refused.code, "told": codes_in(refused.what)}
     simulate_set(scenario, place, calibration_from=calibrated, rig=None)
     out = place.with_suffix(".out")
     shutil.copytree(calibrated.with_suffix(".out"), out)
@@ -90,7 +91,7 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         scan_step(work)
         gauge_step(work)
     except InputError as refused:
-        return {"refused": refused.code, "told": _told(out)}
+        return {"refused": refused.code, "told": sorted({*_told(out), *codes_in(refused.what)})}
     gauge = read_gauge(work.path("gauge"), read_cloud(work.path("cloud")).cloud)
     return {
         "error": gauge.thickness_mm - scenario.height_mm,
@@ -100,6 +101,15 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         "told": _told(out),
         "budget": {row.source.code: row.u_mm for row in gauge.budget},
     }
+
+
+def codes_in(what: Message) -> list[str]:
+    """Codes of a message and of all those that its text contains, in the order of its places."""
+    found = [what.code]
+    for value in what.values.values():
+        for one in value if isinstance(value, (list, tuple)) else (value,):
+            found += codes_in(one) if isinstance(one, Message) else []
+    return found
 
 
 def _told(out: Path) -> list[str]:
@@ -119,9 +129,10 @@ def calibration_in(folder: Path, case: HostileCase) -> Path:
     place = folder / f"calibrated-{scenario.key}{'' if case.states_size else '-unstated'}"
     out = place.with_suffix(".out")
     if not place.exists():
-        for earlier in folder.glob("calibrated-*"):  # calibrations come one after another, and are not needed twice
-            if calibration_count(folder) > KEPT_CALIBRATIONS:
-                shutil.rmtree(earlier)
+        for earlier in folder.glob("calibrated-*.out"):  # calibrations come one after another, and are not needed twice
+            if calibration_count(folder) >= KEPT_CALIBRATIONS:
+                for part in (earlier, earlier.with_suffix(""), earlier.with_suffix(".truth")):
+                    shutil.rmtree(part, ignore_errors=True)
         simulate_set(scenario, place)
         work = Workspace.open(_opened(case, place), out)
         camera_step(work)
@@ -129,13 +140,13 @@ def calibration_in(folder: Path, case: HostileCase) -> Path:
     return place
 
 
-KEPT_CALIBRATIONS = 60
-"""Files of calibrations kept at a time: three folders each."""
+KEPT_CALIBRATIONS = 20
+"""Calibrations kept at a time: three folders each, which go together."""
 
 
 def calibration_count(folder: Path) -> int:
-    """How many folders of calibrations there are."""
-    return len(list(folder.glob("calibrated-*")))
+    """How many calibrations there are."""
+    return len(list(folder.glob("calibrated-*.out")))
 
 
 def state_of(case: HostileCase, figures: Mapping[str, Any]) -> str:

@@ -6,8 +6,9 @@ import pytest
 
 from core.files.recording.rig import default_rig
 from core.inspect.uncertainty.part import Part
+from core.messages import Message
 from core.simulate.scenario import Scenario
-from tests.accuracy.hostile import figures_of, named, row_of, state_of, summary, table
+from tests.accuracy.hostile import codes_in, figures_of, named, row_of, state_of, summary, table
 from tests.accuracy.hostile_cases import (
     CAUSES,
     EFFECTS,
@@ -54,6 +55,13 @@ def test_a_refusal_is_told_only_if_it_names_the_cause():
     assert state_of(case(LIFTED), {**refused, "told": ["scan.moved"]}) == "told"
     assert state_of(case(LIFTED), {"refused": "scan.moved_too_much", "told": []}) == "told"
     assert state_of(case(WARM), {"refused": "scan.moved_too_much", "told": []}) == "not named"
+
+
+def test_a_cause_within_the_text_of_a_refusal_is_told():
+    jpeg = Message("scan.compressed", "the frames are JPEG")
+    refused = Message("scan.pictures_at_fault", "{faults:;} {reason}", faults=[jpeg], reason=Message("a.b", "why"))
+    assert codes_in(refused) == ["scan.pictures_at_fault", "scan.compressed", "a.b"]
+    assert state_of(case("JPEG"), {"refused": refused.code, "told": codes_in(refused)}) == "told"
 
 
 def test_an_error_within_u_of_which_nothing_is_said_is_a_state_of_its_own():

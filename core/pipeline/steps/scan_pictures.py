@@ -26,7 +26,8 @@ from core.scan.features.extraction import (
     extract_lines,
     read_reference,
 )
-from core.scan.features.reference import notes_on_compression, quantile_reference, sample_indices
+from core.scan.features.picture_faults import faults_of
+from core.scan.features.reference import quantile_reference, sample_indices
 from core.stage_times import StageTimes
 
 FEWEST_FOR_QUANTILE = 3
@@ -88,7 +89,7 @@ def look_at_scan(
     lines = extract_lines(reference, frames, total, looking, progress, show, times)
     averaged = lines.averaged(progress, times)
     of_width = told_width_notes(options.stripe, lines.stripes)
-    notes = (*channel.notes("scan"), *note, *of_width, *notes_on_compression(reference.noise))
+    notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference))
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
 

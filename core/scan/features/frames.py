@@ -24,6 +24,9 @@ LOST = Message(
 FEW_CROSSINGS = Message("scan.frame_few_crossings", "fewer than three crossings with the fan")
 NO_STRIPE = Message("scan.frame_without_stripe", "no stripe of the hand-held laser")
 
+LIGHT_CHANGED = "scan.room_light_changed"
+"""Code of the note on room light that changed within the scan."""
+
 WITHOUT_POINTS = ("scan.frames_without_points", "scan.many_frames_without_points")
 """Codes of `left_out_notes`."""
 _NAMED = 3

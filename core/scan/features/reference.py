@@ -86,10 +86,6 @@ STRETCH = 48
 enough that a sweep across it does not matter to its median."""
 
 
-COMPRESSED = "scan.compressed"
-"""Code of the note that compression rules the noise of the frames."""
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceCheck:
     """How far a frame has departed from the reference.
@@ -229,21 +225,6 @@ class ReferenceFeatures:
         if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
             return 0.0
         return grey / background
-
-
-def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
-    """A note on frames of this noise if what compression leaves them off is more than their noise."""
-    if noise.compression.grey <= noise.read_grey:
-        return ()
-    return (
-        Message(
-            "scan.compressed",
-            "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
-            "it; record PNG.",
-            grey=noise.compression.grey,
-            noise=noise.read_grey,
-        ),
-    )
 
 
 def read_reference(picture: Picture, options: FeatureOptions | None = None) -> ReferenceFeatures:

@@ -2,11 +2,8 @@ import numpy as np
 import pytest
 
 from core.image.stripes.centreline import Centreline
-from core.image.stripes.noise import Compression, NoiseModel
 from core.scan.features.reference import (
-    COMPRESSED,
     check_reference,
-    notes_on_compression,
     picture_difference,
     quantile_reference,
     sample_indices,
@@ -87,11 +84,3 @@ def test_a_picture_darker_than_the_reference_differs_by_less_than_nothing(levels
     found = picture_difference(one[:, ::2], other[:, ::2])
     assert found.dtype == kind
     assert np.array_equal(found, one[:, ::2].astype(float) - other[:, ::2])
-
-
-def test_frames_are_told_to_be_jpeg_where_that_rules_their_noise():
-    assert notes_on_compression(NoiseModel(1.0)) == ()
-    assert notes_on_compression(NoiseModel(1.0, compression=Compression(0.5))) == ()
-    (note,) = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    assert note.code == COMPRESSED
-    assert "loses 3.0 grey levels" in str(note)

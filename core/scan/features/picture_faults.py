@@ -1,0 +1,115 @@
+"""What is wrong with the pictures of a scan themselves: compression, a colour mosaic, speckle, changing room light.
+
+Each leaves stripes off, or less sure than what else is told of them; the sweeps then disagree as if something had
+moved. So a scan that is refused is told first what its pictures show.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+
+import numpy as np
+from scipy.ndimage import median_filter
+
+from core.errors import InputError
+from core.image.mosaic import PERIOD_PX, is_interpolated
+from core.image.stripes.centreline import Centreline
+from core.image.stripes.noise import NoiseModel
+from core.image.stripes.precision import response_noise
+from core.image.stripes.stripe import filter_for
+from core.messages import Message
+from core.model.arrays import Array
+from core.model.robust import MAD_TO_SD
+from core.scan.features.frames import LIGHT_CHANGED
+from core.scan.features.reference import ReferenceFeatures
+
+COMPRESSED, MOSAIC, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.speckled"
+FAULTS = frozenset({COMPRESSED, MOSAIC, SPECKLED, LIGHT_CHANGED})
+"""Codes of the notes on faults."""
+
+SPECKLED_SHARE = 0.125
+"""Scatter of the brightness along the fan's lines, as a share of it, from which on it is told. Fine stripes (σ 1.1 px)
+have 0.02 at a contrast of 0.18, 0.09 at 0.35 and 0.16 at 0.6 (tests/scan/features/test_picture_faults.py)."""
+_LEVEL_POINTS = 41
+"""Points of the running median by which brightness is levelled."""
+
+
+def faults_of(reference: ReferenceFeatures) -> tuple[Message, ...]:
+    """Notes on the faults that the picture with the fan alone shows."""
+    return (*notes_on_compression(reference.noise), *_notes_on_mosaic(reference), *_notes_on_speckle(reference))
+
+
+def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
+    """A note on frames of this noise if what compression leaves them off is more than their noise."""
+    if noise.compression.grey <= noise.read_grey:
+        return ()
+    return (
+        Message(
+            "scan.compressed",
+            "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
+            "it; record PNG.",
+            grey=noise.compression.grey,
+            noise=noise.read_grey,
+        ),
+    )
+
+
+def _notes_on_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
+    """A note on pictures interpolated from a colour mosaic, if their stripes are finer than its tiles."""
+    widths = np.concatenate([piece.width for piece in reference.fan])
+    width = float(np.median(widths))
+    if width >= PERIOD_PX or not is_interpolated(reference.base):
+        return ()
+    return (
+        Message(
+            "scan.colour_mosaic",
+            "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are finer than its "
+            "tiles and may be off by more than their σ. Use a grey camera, or stripes of σ {tile} px or more.",
+            width_px=width,
+            tile=PERIOD_PX,
+        ),
+    )
+
+
+def _notes_on_speckle(reference: ReferenceFeatures) -> tuple[Message, ...]:
+    """A note on brightness that scatters along the fan's lines more than their noise explains."""
+    shares = [_scatter(piece, reference.noise) for piece in reference.fan if len(piece) >= 2 * _LEVEL_POINTS]
+    if not shares or (share := float(np.median(shares))) <= SPECKLED_SHARE:
+        return ()
+    return (
+        Message(
+            "scan.speckled",
+            "The fan's light scatters by {percent:.0f} % from point to point beyond noise: strong speckle, or a grainy "
+            "surface. Open the lens's aperture, spray the part, or use wider lines.",
+            percent=100 * share,
+        ),
+    )
+
+
+def _scatter(piece: Centreline, noise: NoiseModel) -> float:
+    """Standard deviation of a line's brightness beyond noise, as a share of it."""
+    level: Array = median_filter(piece.strength, _LEVEL_POINTS, mode="nearest")
+    seen = MAD_TO_SD * float(np.median(np.abs(piece.strength / level - 1)))
+    width = float(np.median(piece.width))
+    by_noise = response_noise(noise.read_grey, width, filter_for(width)) / float(np.median(level))
+    return float(np.sqrt(max(seen**2 - by_noise**2, 0.0)))
+
+
+@contextmanager
+def told_first(notes: Sequence[Message]) -> Iterator[None]:
+    """A complaint about what was made of pictures begins with their faults, if `notes` tell any: that may be why."""
+    try:
+        yield
+    except InputError as error:
+        faults = [note for note in notes if note.code in FAULTS]
+        if not faults:
+            raise
+        what = Message(
+            "scan.pictures_at_fault",
+            "{faults:;} That may be why {reason}",
+            faults=faults,
+            reason=error.what,
+        )
+        todo = Message("scan.advice_better_pictures", "mend that first, then scan again")
+        raise InputError(what, where=error.where, todo=todo) from error

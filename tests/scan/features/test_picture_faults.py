@@ -1,0 +1,73 @@
+"""Faults of a scan's pictures are told, and come first where a scan is refused."""
+
+from dataclasses import replace
+
+import pytest
+
+from core.acquire.grey import to_grey
+from core.errors import InputError
+from core.image.stripes.noise import Compression, NoiseModel
+from core.messages import Message
+from core.scan.features.picture_faults import (
+    COMPRESSED,
+    MOSAIC,
+    SPECKLED,
+    faults_of,
+    notes_on_compression,
+    told_first,
+)
+from core.scan.features.reference import read_reference
+from core.simulate.effects.sensor import SensorEffects
+from core.simulate.recording import scan_of
+from core.simulate.scenario import Scenario
+
+RIG = Scenario(scale=0.25, frames=4, seed=1)
+MOVED = Message("scan.moved_too_much", "object or camera moved")
+
+
+def told_of(scenario):
+    picture = to_grey(scan_of(scenario)[0].reference(), "red")
+    return [note.code for note in faults_of(read_reference(picture))]
+
+
+@pytest.mark.parametrize(
+    ("scenario", "codes"),
+    [
+        (RIG, []),
+        (replace(RIG, speckle=0.35), []),
+        (replace(RIG, speckle=0.6), [SPECKLED]),
+        (replace(RIG, scale=0.5, speckle=0.6), [SPECKLED]),
+    ],
+)
+def test_strong_speckle_is_told_and_no_other(scenario, codes):
+    assert told_of(scenario) == codes
+
+
+def test_stripes_finer_than_the_mosaic_they_are_interpolated_from_are_told():
+    colour = replace(RIG, sensor=SensorEffects(colour=True))
+    assert told_of(colour) == [MOSAIC]
+    assert told_of(replace(colour, scale=1.0)) == [], "wide stripes lose nothing"
+
+
+def test_frames_are_told_to_be_jpeg_where_that_rules_their_noise():
+    assert notes_on_compression(NoiseModel(1.0)) == ()
+    assert notes_on_compression(NoiseModel(1.0, compression=Compression(0.5))) == ()
+    (note,) = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
+    assert note.code == COMPRESSED
+    assert "loses 3.0 grey levels" in str(note)
+
+
+def test_a_refusal_begins_with_the_faults_of_the_pictures():
+    faults = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
+    with pytest.raises(InputError) as refused, told_first((Message("scan.datum", "a datum"), *faults)):
+        raise InputError(MOVED, where="scan", todo=Message("x.y", "hold both still"))
+    assert refused.value.what.values["faults"] == faults
+    assert str(refused.value).startswith("scan: The frames are JPEG")
+    assert "may be why object or camera moved; mend that first" in str(refused.value)
+
+
+def test_a_refusal_of_faultless_pictures_stays_as_it_is():
+    error = InputError(MOVED, where="scan")
+    with pytest.raises(InputError) as refused, told_first((Message("scan.datum", "a datum"),)):
+        raise error
+    assert refused.value is error
