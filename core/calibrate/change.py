@@ -207,15 +207,19 @@ class Change:
 
 
 def judge(
-    camera: Camera, fan: Fan, deviations: Sequence[Deviation], evidence: Evidence, stated: Stability | None
+    camera: Camera,
+    fan: Fan,
+    deviations: Sequence[Deviation],
+    evidence: Evidence,
+    stated: Stability | None,
+    charted: Stability | None = None,
 ) -> Change:
     """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
 
-    `camera` and `fan` are those calibrated. Without a `stated` stability the default one is assumed, and what change
-    adds says so.
+    `camera` and `fan` are those calibrated. Without a `stated` stability that by the rig's checks counts, `charted`,
+    and without that one the default is assumed; what change adds says so.
     """
-    stability = stated or DEFAULT_STABILITY
-    source_of_change: Source = "change" if stated is not None else "assumed change"
+    stability, source_of_change = _counting(stated, charted)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
@@ -230,6 +234,13 @@ def judge(
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
     told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
     return Change((*told, *bent), p, times)
+
+
+def _counting(stated: Stability | None, charted: Stability | None) -> tuple[Stability, Source]:
+    """The stability that counts, and the source of what it adds."""
+    if stated is not None:
+        return stated, "change"
+    return (DEFAULT_STABILITY, "assumed change") if charted is None else (charted, "charted change")
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:

@@ -23,7 +23,9 @@ from core.calibrate.results import CameraCalibration, FanCalibration, Readjustme
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
-Source = Literal["camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change", "readjusted"]
+Source = Literal[
+    "camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change", "charted change", "readjusted"
+]
 SCALES: tuple[Source, ...] = ("scale", "assumed scale")
 """The sources that are the size of the plane target, which no picture of it shows."""
 UNEXPLAINED: Source = "bend"
@@ -41,7 +43,8 @@ class Deviation:
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
     "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`),
     "readjusted" (what a re-adjustment leaves uncertain of that). Where
-    nobody has stated how large the last two may be, their sources say that they are assumed.
+    nobody has stated how large scale or change may be, their sources say that they are assumed, or that the
+    change is by the rig's own checks ("charted change").
     """
 
     source: Source

@@ -12,7 +12,8 @@ from __future__ import annotations
 import math
 import os
 from dataclasses import asdict, dataclass
-from datetime import datetime
+from datetime import datetime, timedelta
+from itertools import pairwise
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,6 +21,7 @@ import numpy as np
 import platformdirs
 from pydantic import Field
 
+from core.calibrate.rig_spread import FACTORS, most_likely_factor
 from core.files.atomic import make_folder
 from core.files.complaints import checked
 from core.files.json_text import write_json
@@ -27,11 +29,12 @@ from core.files.reading import read_json
 from core.files.results.check_file import CheckVerdict, InterimCheck
 from core.files.tables import Finite, OrNan, ResultFile, Time
 from core.messages import Message
-from core.study.control_chart import ControlChart, control_chart
+from core.study.control_chart import FEWEST, ControlChart, control_chart
 
 DATA = "TRISECT_DATA"
 """Environment variable that names another folder than the user's own, as one that a laboratory shares."""
 
+_DAY = timedelta(days=1)
 _TODO = Message("advice.mend_history", "mend the file, or move it away: the history begins anew then")
 
 
@@ -41,6 +44,8 @@ class PastCheck:
 
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
+    `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, where no stripe was found, or where
+    rig.toml states how stable the rig is: without it `stated_mm` is by the default.
     """
 
     taken_at: datetime
@@ -57,14 +62,28 @@ class PastCheck:
     celsius: float | None = None
     artefact: str = ""
     e_n: float = math.nan
+    likelihoods: tuple[float, ...] | None = None
 
     @classmethod
-    def of(cls, check: InterimCheck, celsius: float | None = None) -> PastCheck:
+    def of(
+        cls, check: InterimCheck, celsius: float | None = None, likelihoods: tuple[float, ...] | None = None
+    ) -> PastCheck:
         """A check that has just been made."""
         return cls(
             check.taken_at, check.calibration_id, check.pictures_id, check.verdict, check.p, check.step_mm,
             check.offset_px, check.offset_mm, check.error_mm, check.unseen_mm, check.stated_mm, celsius,
+            likelihoods=likelihoods,
         )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class RigSpread:
+    """A rig changes `factor` times as much as by default, by checks on `days` days from the `first` to the `last`."""
+
+    factor: float
+    days: int
+    first: datetime
+    last: datetime
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +113,29 @@ class RigHistory:
             if one.taken_at < check.taken_at and one.verdict != "failed"
         ]
         return control_chart(np.array(before), math.hypot(check.stated_mm, check.unseen_mm / 2))
+
+    def spread(self, calibration_id: str, when: datetime) -> RigSpread | None:
+        """How much the rig changes, by the pictures of checks before the day of `when`; None where they do not say.
+
+        Checks of one day show one state of the rig, so that the last of each day counts, and failed ones too. It takes
+        as many days as the limits of the chart take values. One factor for all changes is small where a single one is
+        large: it is no less than what the errors of the charted step are, against those by default. Checks do not
+        speak for a time further from the last of them than they are from each other, nor for a rig whose fan was once
+        not found again.
+        """
+        before = [one for one in self.of_calibration(calibration_id) if not one.artefact and one.taken_at < when - _DAY]
+        if any(math.isnan(one.error_mm) for one in before):
+            return None
+        of_days = {one.taken_at.date(): one for one in before if one.likelihoods is not None}
+        if len(of_days) < FEWEST:
+            return None
+        taken = [one.taken_at for one in of_days.values()]
+        apart = max(later - earlier for earlier, later in pairwise(taken))
+        if when - taken[-1] > max(apart, 2 * _DAY):
+            return None
+        likely = most_likely_factor(np.array([one.likelihoods for one in of_days.values()]))
+        shown = math.sqrt(sum((one.error_mm / one.stated_mm) ** 2 for one in of_days.values()) / len(of_days))
+        return RigSpread(max(likely, shown), len(of_days), taken[0], taken[-1])
 
     def beyond(self, check: PastCheck) -> Message | None:
         """What to say of a check that lies outside its limits; None within them, or where no stripe was found."""
@@ -138,6 +180,9 @@ class _Check(ResultFile):
     celsius: Finite | None = None
     artefact: str = ""
     e_n: OrNan = math.nan
+    likelihoods: Annotated[list[Finite], Field(min_length=len(FACTORS), max_length=len(FACTORS))] | None = Field(
+        None, description=f"{len(FACTORS)} finite numbers"
+    )
 
 
 class _HistoryFile(ResultFile):
@@ -161,7 +206,13 @@ def read_history(name: str) -> RigHistory:
     if not path.exists():
         return RigHistory(name)
     file = checked(_HistoryFile, read_json(path, todo=_TODO), path)
-    return RigHistory(file.rig, tuple(PastCheck(**dict(check)) for check in file.checks))
+    return RigHistory(file.rig, tuple(map(_past, file.checks)))
+
+
+def _past(check: _Check) -> PastCheck:
+    """As the file has it; a list of likelihoods becomes a tuple."""
+    likelihoods = None if check.likelihoods is None else tuple(check.likelihoods)
+    return PastCheck(**{**dict(check), "likelihoods": likelihoods})
 
 
 def keep_check(name: str, check: PastCheck) -> RigHistory:

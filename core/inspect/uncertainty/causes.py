@@ -29,6 +29,7 @@ SCALE = Message("inspection.cause_scale", "scale of the targets")
 SCALE_ASSUMED = Message("inspection.cause_scale_assumed", "scale of the targets (assumed)")
 CHANGE = Message("inspection.cause_change", "change since the calibration")
 READJUSTED = Message("inspection.cause_readjusted", "change since the calibration, re-adjusted")
+CHANGE_CHARTED = Message("inspection.cause_change_charted", "change since the calibration (control chart of the rig)")
 CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
 
 PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
@@ -60,6 +61,7 @@ CALIBRATIONS: Mapping[str, Message] = {
     "assumed scale": SCALE_ASSUMED,
     "change": CHANGE,
     "assumed change": CHANGE_ASSUMED,
+    "charted change": CHANGE_CHARTED,
     "readjusted": READJUSTED,
 }
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""

@@ -24,17 +24,18 @@ from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
+from core.calibrate.rig_spread import log_likelihoods
 from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
-from core.files.results.rig_history import PastCheck, keep_check
+from core.files.results.rig_history import PastCheck, RigSpread, keep_check
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.planes_step import measure_poses
-from core.pipeline.steps.validity import history_name, stated_validity
+from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 from core.second_process import SecondProcess
@@ -97,7 +98,10 @@ def check_step(
             calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
         )  # fmt: skip
+        likelihoods: tuple[float, ...] | None = None
         if check.used:
+            if found.rig.stability is None:
+                likelihoods = tuple(map(float, log_likelihoods(deviations, evidence)))
             stability = found.rig.stability or DEFAULT_STABILITY
             by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
             estimate, covariance = lasting(deviations, evidence, stability)
@@ -109,7 +113,7 @@ def check_step(
                 stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
             )
         log.notes.append(check.sentence)
-        log.notes.extend(_kept(found, check, celsius))
+        log.notes.extend(_kept(found, PastCheck.of(check, celsius, likelihoods)))
         log.notes.extend(stated_validity(found.rig))
         log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
@@ -137,11 +141,10 @@ def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:
     return replace(found, check=tuple(pair for pair in found.check if file_hash(pair.on) not in used))
 
 
-def _kept(found: RecordingSet, check: InterimCheck, celsius: float | None) -> tuple[Message, ...]:
+def _kept(found: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
     """Keep a check in the rig's history; what that says of it, or why it could not be kept."""
-    past = PastCheck.of(check, celsius)
     try:
-        history = keep_check(history_name(found.rig, check.calibration_id), past)
+        history = keep_check(history_name(found.rig, past.calibration_id), past)
     except InputError as error:
         return (Message("check.not_kept", "The check is not in the rig's history: {reason}", reason=error.message),)
     outside = history.beyond(past)
@@ -206,6 +209,22 @@ def _stability(found: RecordingSet, calibration: Calibration) -> Stability | Non
     return STABLE if apart <= SAME_DAY else found.rig.stability
 
 
+def _spread(found: RecordingSet, calibration: Calibration) -> RigSpread | None:
+    """How much the rig changes, by the history of its checks; None where nothing is measured or it does not say."""
+    if not found.frames:
+        return None
+    try:
+        return history_of(found.rig, calibration.id).spread(calibration.id, taken_at(found.frames))
+    except InputError:
+        return None  # doubt_of_the_day tells that it cannot be read
+
+
+def _charted(found: RecordingSet, calibration: Calibration) -> Stability | None:
+    """The stability by the history of the rig's checks."""
+    spread = _spread(found, calibration)
+    return None if spread is None else DEFAULT_STABILITY.times(*[spread.factor] * 4)
+
+
 class Judged(NamedTuple):
     """What the pictures of a set prove of the rig since its calibration."""
 
@@ -237,7 +256,7 @@ def judged(
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
-    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration))
+    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration), _charted(found, calibration))
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)
@@ -248,10 +267,22 @@ def judged(
     return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
-def assumed_stability(found: RecordingSet) -> tuple[Message, ...]:
-    """A note on what is assumed of a rig of which nothing is stated."""
+def assumed_stability(found: RecordingSet, calibration: Calibration) -> tuple[Message, ...]:
+    """A note on what is assumed of a rig of which nothing is stated, or taken from the history of its checks."""
     if found.rig.stability is not None:
         return ()
+    if (spread := _spread(found, calibration)) is not None:
+        return (
+            Message(
+                "scan.stability_charted",
+                "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
+                "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}.",
+                times=spread.factor,
+                days=spread.days,
+                first=spread.first.astimezone(),
+                last=spread.last.astimezone(),
+            ),
+        )
     size = DEFAULT_STABILITY
     return (
         Message(

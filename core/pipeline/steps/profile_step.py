@@ -135,7 +135,7 @@ def profile_step(
             *change.notes,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
-            *assumed_stability(found),
+            *assumed_stability(found, calibration),
         )
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))

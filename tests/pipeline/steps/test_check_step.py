@@ -5,17 +5,20 @@ import os
 import re
 import shutil
 from dataclasses import replace
+from datetime import timedelta
 
 import numpy as np
 import pytest
 
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
-from core.calibrate.change import PROVES_NOTHING, displaced_fan
+from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
+from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
+from core.files.results.rig_history import history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
 from core.pipeline.run import run
@@ -69,7 +72,7 @@ def turned(tmp_path_factory):
 def work_in(folder, tmp_path, *, with_check: bool = True) -> Workspace:
     found = open_set(folder / "set")
     out = tmp_path / "out"
-    out.mkdir()
+    out.mkdir(parents=True)
     for name in ("camera.json", "planes.json", "planes.npz"):
         (out / name).write_bytes((folder / "out" / name).read_bytes())
     return Workspace.open(found if with_check else replace(found, check=()), out)
@@ -307,6 +310,53 @@ def test_each_check_is_in_the_history_of_the_rig_and_is_shown(unchanged, tmp_pat
     assert "passed" in said.out and "by its stated stability, 21.5 °C" in said.out
     (one,) = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
     assert one["limits"]["lower_mm"] < one["error_mm"] < one["limits"]["upper_mm"]
+
+
+def charted(checked, work, tmp_path, days=8, last=1):
+    """Deviations by a change of the rig in `work` if the checks on so many days before the scan saw `checked`."""
+    name = work.calibration().id
+    seen = work_in(checked, tmp_path / "checked")
+    check_step(seen)
+    (one,) = read_history(seen.calibration().id).checks
+    history_file(seen.calibration().id).unlink()
+    when = taken_at(work.found.frames) - timedelta(hours=1)
+    for day in range(days):
+        at = when - timedelta(days=last + day)
+        keep_check(name, replace(one, calibration_id=name, pictures_id=f"day {day}", taken_at=at))
+    change = since_calibration(work.found, work.calibration(), Options())
+    of_change = [one for one in change.deviations if "change" in one.source]
+    (source,) = {one.source for one in of_change}
+    here = work.calibration().fan.fan.pis
+    return source, float(np.sqrt(sum(np.sum((one.fan.pis - here) ** 2) for one in of_change)))
+
+
+def test_a_steady_history_makes_the_row_of_change_smaller_and_one_of_a_turned_mount_larger(unchanged, turned, tmp_path):
+    work = work_in(unchanged, tmp_path, with_check=False)
+    assumed = charted(unchanged, work, tmp_path / "none", days=0)
+    steady = charted(unchanged, work, tmp_path / "steady")
+    assert assumed[0] == "assumed change" and steady[0] == "charted change"
+    assert steady[1] < 0.6 * assumed[1]
+    notes = {note.code: str(note) for note in scan_step(work, COARSE).scan.notes}
+    assert "on 8 days from" in notes["scan.stability_charted"] and "scan.stability_assumed" not in notes
+    (row,) = [row for row in gauge_step(work).budget if "change" in row.source.code]
+    assert row.source.code == "inspection.cause_change_charted" and row.u_mm > 0
+    history_file(work.calibration().id).unlink()
+    moved = charted(turned, work, tmp_path / "moved")
+    assert moved[0] == "charted change" and moved[1] > 1.1 * assumed[1]
+
+
+def test_a_stated_stability_stands_whatever_the_history(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path, with_check=False)
+    stated = replace(work.found, rig=replace(work.found.rig, stability=DEFAULT_STABILITY))
+    without = charted(unchanged, replace(work, found=stated), tmp_path / "none", days=0)
+    assert charted(unchanged, replace(work, found=stated), tmp_path / "kept") == without
+
+
+@pytest.mark.parametrize(("days", "last"), [(7, 1), (8, 4), (8, 0)], ids=["too few", "too long ago", "the day itself"])
+def test_a_history_that_does_not_reach_the_scan_changes_nothing(unchanged, tmp_path, days, last):
+    work = work_in(unchanged, tmp_path, with_check=False)
+    without = charted(unchanged, work, tmp_path / "none", days=0)
+    assert charted(unchanged, work, tmp_path / "kept", days, last) == without
 
 
 def test_an_artefact_is_held_to_its_certificate_and_kept_in_the_same_history(measured, simulated, tmp_path):

@@ -1,0 +1,52 @@
+"""How much a rig changes between its checks, by what these have shown: a factor on its stability by default.
+
+Each check gives normal equations N x = g of x = (z, m), the calibrations' errors and the changes since then
+(`core.calibrate.change`). If the rig changes t times as much as by default, with S = diag(1, t² s²), the logarithm of
+their likelihood is, but for a constant::
+
+    l(t) = ½ gᵀ (N + S⁻¹)⁻¹ g − ½ ln det(1 + N S)
+
+Those of checks on different days add up, and with a prior about t = 1 give t. One factor is common to turn, shift,
+drift of the picture and focal length, whose proportions stay as by default: few checks could not tell them apart. The
+calibrations' errors, the same in each check, are looked for anew in each: that leaves a little more to t.
+
+References
+----------
+Rasmussen, C. E., Williams, C. K. I., Gaussian Processes for Machine Learning (2006), 5.4.1 (marginal likelihood).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.calibrate.change import DEFAULT_STABILITY, Evidence
+from core.calibrate.deviations import UNEXPLAINED, Deviation
+from core.model.arrays import Array
+
+FACTORS = 2.0 ** (0.5 * np.arange(-8, 9))
+"""(F,) Factors t that are looked at."""
+
+
+def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Array:
+    """Logarithm (F,) of the likelihood of a check for each of `FACTORS`; its evidence is of the K `deviations`."""
+    of_change = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
+    sd = np.array([one.source != UNEXPLAINED for one in deviations], dtype=np.float64)
+    likelihoods = []
+    for factor in FACTORS:
+        sd[of_change] = factor * DEFAULT_STABILITY.over_default
+        scaled = sd * evidence.gradient
+        square = np.eye(len(sd)) + evidence.information * np.outer(sd, sd)
+        likelihoods.append(0.5 * (scaled @ np.linalg.solve(square, scaled) - np.linalg.slogdet(square)[1]))
+    return np.array(likelihoods)
+
+
+def most_likely_factor(likelihoods: Array) -> float:
+    """The factor by the likelihoods (n, F) of n checks: the mean of its logarithm; 1 where they say nothing.
+
+    Before any check it is within a factor of two of 1 (one standard deviation): the default is an honest guess.
+    """
+    log = np.sum(likelihoods, axis=0) - 0.5 * np.log2(FACTORS) ** 2
+    weight = np.exp(log - log.max())
+    return float(np.exp(weight @ np.log(FACTORS) / weight.sum()))
