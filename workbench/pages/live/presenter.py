@@ -48,6 +48,7 @@ from core.pipeline.live.events import (
 from core.scan.preview.preflight import Check
 from workbench.bench import Bench
 from workbench.language import number, text_of, tr
+from workbench.pages.live.buttons import LiveButtons, LiveFacts, live_buttons
 from workbench.pages.live.ending import LiveEnding, calibrated_s, new_folder
 from workbench.pages.live.settings import LiveSettings
 from workbench.pages.sources import folder_of
@@ -199,6 +200,11 @@ class LivePresenter(QObject):
                 self.gone = True
             case LiveBack():
                 self.gone = False
+
+    @property
+    def buttons(self) -> LiveButtons:
+        """Which of its buttons can be pressed."""
+        return live_buttons(LiveFacts(self.running, self.name != "", self.stopping, self.cannot_start()))
 
     def state_text(self) -> str:
         """What goes on, in a few words."""

@@ -15,6 +15,7 @@ from core.pipeline.live.events import Detail, PlanesDetail
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
+from workbench.pages.scan.side_buttons import CheckButtons, CheckFacts, check_buttons
 from workbench.pages.words import capital, mm, px
 from workbench.theme import icon, shades
 from workbench.views import ask
@@ -81,38 +82,50 @@ class CheckCard(QFrame):
         checking = stage is CheckStage.CHECKING
         self.take.setText(tr("Stop") if taking else tr("Take pictures"))
         self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
-        why_not = tr("Stopping …") if self._live.stopping else "" if taking else self._live.cannot_start()
+        can = self._buttons()
         enable(
             self.take,
-            why_not,
+            can.take,
             tr("Check with the pictures taken so far")
             if taking
             else tr("Hold the plane target into the fan: up to three pictures are taken by themselves, then checked"),
         )
-        self.choose.setEnabled(not taking)
-        self.choose.setToolTip(
+        enable(
+            self.choose,
+            can.choose,
             tr("Choose the folder with pictures of the plane target in the fan, taken today (now: {folder})",
-               folder=check.folder or tr("none"))
+               folder=check.folder or tr("none")),
         )  # fmt: skip
         self.run.setText(tr("Cancel") if checking else tr("Check again") if shown else tr("Check"))
         self.run.setIcon(icon("mdi6.stop" if checking else "mdi6.play"))
         tip = tr("Stop checking; the result before is kept") if checking else tr(
             "Compare the stripes in the pictures with where the calibrations have them"
         )  # fmt: skip
-        cannot = tr("Pictures of the check are being taken.") if taking else check.cannot_check
-        enable(self.run, "" if checking else cannot, tip)
+        enable(self.run, can.run, tip)
+        self._refresh_readjust(can.readjust)
 
-        self._refresh_readjust(taking=taking)
+    def _buttons(self) -> CheckButtons:
+        """What can be done now."""
+        check, live = self._check, self._live
+        facts = CheckFacts(
+            taking=live.running,
+            stopping=live.stopping,
+            cannot_take=live.cannot_start(),
+            checking=check.stage is CheckStage.CHECKING,
+            cannot_check=check.cannot_check,
+            cannot_readjust=check.cannot_readjust,
+            moved=check.valid is not None and not check.valid.passed,
+        )
+        return check_buttons(facts)
 
-    def _refresh_readjust(self, *, taking: bool) -> None:
+    def _refresh_readjust(self, why_not: str | None) -> None:
         """The button is there where a check says that something has changed."""
-        check = self._check
         self.readjust.setText(tr("Re-adjust …"))
         self.readjust.setIcon(icon("mdi6.tune"))
-        self.readjust.setVisible(not taking and check.valid is not None and not check.valid.passed)
+        self.readjust.setVisible(why_not is not None)
         enable(
             self.readjust,
-            check.cannot_readjust,
+            why_not or "",
             tr("Work out by how much laser and camera would have to be moved to fit the check, and decide"),
         )
 

@@ -14,10 +14,11 @@ from core.files.recording.options import StatedTilt
 from core.report.wording import thickness_line
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.scan.side_buttons import ProfilesFacts, why_not_profiles
 from workbench.pages.words import wording
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import muted
+from workbench.views.layouts import enable, muted
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -49,7 +50,6 @@ class ProfilesPanel(QWidget):
         )
         self.form.edited.connect(self._edited)
         self.measure = QPushButton(tr("Measure by the fixed lines"))
-        self.measure.setToolTip(tr("Each picture shows the fan alone and the part; no hand-held laser is needed"))
         self.measure.clicked.connect(self._measure)
         self.open = QPushButton(tr("Open its report"))
         self.open.clicked.connect(self._open)
@@ -85,24 +85,27 @@ class ProfilesPanel(QWidget):
             self._sd_deg = value if isinstance(value, float) else 0.0
 
     def _measure(self) -> None:
-        if self._model.folder is None:
+        if self._model.folder is None or self._task is not None:
             return
         self._say(tr("The pictures are being measured …"))
-        self._task = self._bench.run_long(
+        task: Task = self._bench.run_long(
             self,
             jobs.MEASURE_PROFILES,
             self._model.folder,
             self._model.project,
             self.tilt(),
             label=tr("Measuring by the fixed lines"),
-            on_done=self._done,
-            on_failed=lambda _: self._ended(),
-            on_cancelled=self._ended,
+            on_done=lambda summary: self._done(task, summary),
+            on_failed=lambda _: self._ended(task),
+            on_cancelled=lambda: self._ended(task),
         )
+        self._task = task
         self._enable()
 
-    def _done(self, summary: ProfilesSummary) -> None:
-        self._ended()
+    def _done(self, task: Task, summary: ProfilesSummary) -> None:
+        if task is not self._task:
+            return  # of the project before
+        self._ended(task)
         used = [one for one in summary.pictures if one.reason is None]
         lines = [
             thickness_line(summary.gauge, wording()),
@@ -112,16 +115,25 @@ class ProfilesPanel(QWidget):
         ]
         self._say("\n".join(lines), summary.report)
 
-    def _ended(self) -> None:
+    def _ended(self, task: Task) -> None:
+        if task is not self._task:
+            return
         self._task = None
         self._enable()
         self._say("")
 
     def _enable(self) -> None:
-        self.measure.setEnabled(not self._cannot and self._task is None)
+        enable(
+            self.measure,
+            why_not_profiles(ProfilesFacts(self._task is not None, self._cannot)),
+            tr("Each picture shows the fan alone and the part; no hand-held laser is needed"),
+        )
 
     def _forget(self) -> None:
         self._stage, self._sd_deg = "", 0.0
+        if self._task is not None:
+            self._task.cancel()
+            self._task = None
         self._say("")
 
     def _say(self, text: str, report: Path | None = None) -> None:

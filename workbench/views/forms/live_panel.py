@@ -23,7 +23,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.live_form import SourceForm
-from workbench.views.layouts import in_column, in_row
+from workbench.views.layouts import enable, in_column, in_row
 
 GO_ON, PAUSE = QKeySequence(Qt.Key.Key_PageDown), QKeySequence(Qt.Key.Key_PageUp)
 """The two keys of presenters and of most foot switches; they mean something only while a source is live."""
@@ -60,29 +60,29 @@ class LivePanel(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         live = self.live
-        running, going = live.running, live.live
+        running = live.running
         self.form.refresh()
         self.start.setText(tr("Stop") if running else tr("Start live"))
         self.start.setIcon(
             icon("mdi6.stop" if running else "mdi6.play", colour="on_accent" if self.start.property("primary") else "")
         )
-        cannot = "" if running else live.cannot_start()
-        self.start.setEnabled(not live.stopping and not cannot)
-        self.start.setToolTip(
+        can = live.buttons
+        enable(
+            self.start,
+            can.start,
             tr("Finish; what is recorded is kept (Ctrl+L)")
             if running
-            else cannot or tr("Open the source and show its pictures (Ctrl+L)")
+            else tr("Open the source and show its pictures (Ctrl+L)"),
         )
         self.pause.setText(tr("Resume") if live.paused else tr("Pause"))
         self.pause.setIcon(icon("mdi6.record" if live.paused else "mdi6.pause"))
-        why_not = "" if going else tr("Start the live source first.")
         for button, does in (
             (self.pause, tr("Record nothing for a while (Page Up)")),
             (self.take, tr("Take this picture now, whatever is thought of it (Ctrl+Space, Page Down)")),
             (self.mark, tr("Mark this frame, to find it again among the others (B)")),
         ):
-            button.setEnabled(going)
-            button.setToolTip(why_not or does)
+            enable(button, can.steer, does)
+        going = not can.steer
         for key in (self._go_on, self._pause_key):
             key.setEnabled(going)
         for key in self._mark_keys:
@@ -169,7 +169,7 @@ class LivePanel(QWidget):
 def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
     """Another recording runs: ask whether it is to be stopped for that of `live`."""
     answers = [tr("Stop it and start here"), tr("Leave it running")]
-    if ask.ask(parent, tr("Live source"), question, answers) == 0:
+    if ask.ask(parent, tr("Live source"), question, answers, destructive=True) == 0:
         live.start(stop_other=True)
 
 

@@ -177,6 +177,7 @@ def test_the_live_picture_shows_the_target_and_what_to_do(taking, lane):
     assert card.take.text() == "Stop" and card.word.text() == "1 poses taken · 12 frames/s"
     assert "Hold still." in card.sentence.text()
     assert {"target", "stripe 0"} <= set(taking.picture.image.layer_names())
+    assert not card.choose.isEnabled() and "being taken" in card.choose.toolTip()
     assert "being taken" in card.run.toolTip() and not taking.live_panel.start.isEnabled()
 
 

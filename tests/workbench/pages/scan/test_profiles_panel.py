@@ -88,3 +88,28 @@ def test_without_calibrations_nothing_is_measured(panel: ProfilesPanel, bench: B
     opened(panel, bench, tmp_path / "one", 1)
     panel.refresh("Accept a camera calibration first.")
     assert not panel.measure.isEnabled()
+    assert panel.measure.toolTip() == "Accept a camera calibration first."
+
+
+def test_a_result_of_the_project_before_is_not_told_in_another(
+    panel: ProfilesPanel, bench: Bench, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened(panel, bench, tmp_path / "one", 3)
+    given: dict[str, Any] = {}
+
+    class Job:
+        def cancel(self) -> None:
+            given["cancelled"] = True
+
+    def run_long(_self: Bench, *_args: Any, **more: Any) -> Job:
+        given.update(more)
+        return Job()
+
+    monkeypatch.setattr(type(bench), "run_long", run_long)
+    panel.measure.click()
+    opened(panel, bench, tmp_path / "two", 3)
+    assert panel.measure.isEnabled(), "the job of the project before is not this one's"
+    assert given["cancelled"]
+    given["on_done"](ProfilesSummary(gauge(), (), (), tmp_path / "report.pdf"))
+    assert panel.said.text() == ""
+    assert not panel.open.isVisible()
