@@ -178,6 +178,11 @@ def _spoilt(array: Any, draw: Draw) -> Any:
     return changed
 
 
+def _cast(array: Any, dtype: str) -> Any:
+    with np.errstate(invalid="ignore"):  # of NaN as a whole number, say
+        return array.astype(dtype)
+
+
 _ARRAYS: tuple[Callable[[Any, Draw], Any], ...] = (
     _spoilt, _spoilt, _spoilt, _spoilt,
     lambda array, draw: array[: len(array) // 2] if array.ndim else array[None],
@@ -186,7 +191,7 @@ _ARRAYS: tuple[Callable[[Any, Draw], Any], ...] = (
     lambda array, draw: array.reshape(-1),
     lambda array, draw: array[..., None],
     lambda array, draw: array.T,
-    lambda array, draw: array.astype(_one_of(("U5", "f4", "i1", "?"), draw)),
+    lambda array, draw: _cast(array, _one_of(("U5", "f4", "i1", "?"), draw)),
     lambda array, draw: np.array(_one_of((0, -1, 1e300, "x", True, 2**62), draw)),
 )  # fmt: skip
 
