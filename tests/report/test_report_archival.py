@@ -6,7 +6,7 @@ import re
 import pikepdf
 import pytest
 from fontTools.ttLib import TTFont
-from pikepdf import Name
+from pikepdf import Name, pdfa
 from PIL import ImageCms
 
 from core.report.archival import archived
@@ -78,6 +78,4 @@ def test_a_report_with_a_font_that_is_only_named_does_not_say_that_it_is_an_arch
 
 
 def test_the_validator_of_pikepdf_finds_nothing(data):
-    pytest.importorskip("jsonschema")
-    pdfa = pytest.importorskip("pikepdf.pdfa")
     assert list(pdfa.validate_written(io.BytesIO(data), "2b").findings) == []
