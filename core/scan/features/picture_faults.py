@@ -30,8 +30,9 @@ FAULTS = frozenset({COMPRESSED, MOSAIC, SPECKLED, LIGHT_CHANGED})
 
 SPECKLED_SHARE = 0.125
 """Scatter of the brightness along the fan's lines, as a share of it, from which on it is told. Fine stripes (σ
-1.1 px) scatter by 0.045, 0.097 and 0.169 with their noise at a contrast of 0.18, 0.35 and 0.6; of two scans at 0.35 one is
-told, beside a right result. 0.6 is told, and a clean scan is not, in tests/scan/features/test_picture_faults.py."""
+1.1 px) scatter by 0.045, 0.097 and 0.169 with their noise at a contrast of 0.18, 0.35 and 0.6; of two scans at 0.35
+one is told, beside a right result. 0.6 is told, and a clean scan is not, in
+tests/scan/features/test_picture_faults.py."""
 _LEVEL_POINTS = 41
 """Points of the running median by which brightness is levelled."""
 
