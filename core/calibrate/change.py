@@ -23,6 +23,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import datetime
 from typing import Self
 
 import numpy as np
@@ -104,6 +105,21 @@ STABLE = Stability(0.0, 0.0, 0.0, 0.0)
 """Of a rig that nothing can change, as a simulated one."""
 
 
+@dataclass(frozen=True, slots=True)
+class RigSpread:
+    """A rig changes `factor` times as much as by default, by checks on `days` days from the `first` to the `last`."""
+
+    factor: float
+    days: int
+    first: datetime
+    last: datetime
+
+    @property
+    def stability(self) -> Stability:
+        """That by default, times the factor."""
+        return DEFAULT_STABILITY.times(*[self.factor] * 4)
+
+
 def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
     """The nine changes that are reckoned with, each one standard deviation of the default stability large.
 
@@ -171,12 +187,15 @@ class Change:
         far from where it was calibrated that its lines are not known again.
     left_out
         Why pictures of an interim check say nothing.
+    spread
+        What the rig's own checks say of how much it changes, where that is reckoned with.
     """
 
     deviations: tuple[Deviation, ...]
     p: float
     times: float
     left_out: tuple[Message, ...] = ()
+    spread: RigSpread | None = None
 
     @property
     def notes(self) -> tuple[Message, ...]:
@@ -212,35 +231,31 @@ def judge(
     deviations: Sequence[Deviation],
     evidence: Evidence,
     stated: Stability | None,
-    charted: Stability | None = None,
+    charted: RigSpread | None = None,
 ) -> Change:
     """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
 
     `camera` and `fan` are those calibrated. Without a `stated` stability that by the rig's checks counts, `charted`,
     and without that one the default is assumed; what change adds says so.
     """
-    stability, source_of_change = _counting(stated, charted)
+    spread = charted if stated is None else None
+    stability = stated or (DEFAULT_STABILITY if spread is None else spread.stability)
+    unstated: Source = "assumed change" if spread is None else "charted change"
+    source_of_change = unstated if stated is None else "change"
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
     p = float(chdtrc(freedom, squares)) if freedom else 1.0
     times = float(np.sqrt(squares / max(freedom, 1)))
     if not stability.over_default.any():
-        return Change(tuple(one for one in deviations if one.source != "change"), p, times)
+        return Change(tuple(one for one in deviations if one.source != "change"), p, times, spread=spread)
     x, estimate, root = _lasting(deviations, evidence, stability)
     free = [one for one, there in zip(deviations, x, strict=True) if there]
     steps = np.array([_vector(one.camera, one.fan) for one in free]) - _vector(camera, fan)
     sources = [source_of_change if one.source == "change" else one.source for one in free] + [source_of_change]
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
     told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
-    return Change((*told, *bent), p, times)
-
-
-def _counting(stated: Stability | None, charted: Stability | None) -> tuple[Stability, Source]:
-    """The stability that counts, and the source of what it adds."""
-    if stated is not None:
-        return stated, "change"
-    return (DEFAULT_STABILITY, "assumed change") if charted is None else (charted, "charted change")
+    return Change((*told, *bent), p, times, spread=spread)
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:

@@ -21,6 +21,7 @@ import numpy as np
 import platformdirs
 from pydantic import Field
 
+from core.calibrate.change import RigSpread
 from core.calibrate.rig_spread import FACTORS, most_likely_factor
 from core.files.atomic import make_folder
 from core.files.complaints import checked
@@ -34,6 +35,9 @@ from core.study.control_chart import FEWEST, ControlChart, control_chart
 DATA = "TRISECT_DATA"
 """Environment variable that names another folder than the user's own, as one that a laboratory shares."""
 
+QUIET_DAYS = 59
+"""Days of checks from which on a rig may be said to change less than by default. Before, a knock that happens on one
+day of twenty is not excluded (0.95⁵⁹ < 0.05), and it turns a mount as far as the default has it."""
 _DAY = timedelta(days=1)
 _TODO = Message("advice.mend_history", "mend the file, or move it away: the history begins anew then")
 
@@ -77,16 +81,6 @@ class PastCheck:
 
 
 @dataclass(frozen=True, slots=True)
-class RigSpread:
-    """A rig changes `factor` times as much as by default, by checks on `days` days from the `first` to the `last`."""
-
-    factor: float
-    days: int
-    first: datetime
-    last: datetime
-
-
-@dataclass(frozen=True, slots=True)
 class RigHistory:
     """The checks of the rig called `name`, in the order their pictures were taken."""
 
@@ -119,14 +113,14 @@ class RigHistory:
 
         Checks of one day show one state of the rig, so that the last of each day counts, and failed ones too. It takes
         as many days as the limits of the chart take values. One factor for all changes is small where a single one is
-        large: it is no less than what the errors of the charted step are, against those by default. Checks do not
-        speak for a time further from the last of them than they are from each other, nor for a rig whose fan was once
-        not found again.
+        large: it is no less than what the errors of the charted step are, against those by default. It is less than 1
+        from `QUIET_DAYS` on. Checks do not speak for a time further from the last of them than they are from each
+        other, nor for a rig whose fan was once not found again.
         """
         before = [one for one in self.of_calibration(calibration_id) if not one.artefact and one.taken_at < when - _DAY]
         if any(math.isnan(one.error_mm) for one in before):
             return None
-        of_days = {one.taken_at.date(): one for one in before if one.likelihoods is not None}
+        of_days = {one.taken_at.date(): one for one in before if one.likelihoods is not None and one.stated_mm > 0}
         if len(of_days) < FEWEST:
             return None
         taken = [one.taken_at for one in of_days.values()]
@@ -135,7 +129,10 @@ class RigHistory:
             return None
         likely = most_likely_factor(np.array([one.likelihoods for one in of_days.values()]))
         shown = math.sqrt(sum((one.error_mm / one.stated_mm) ** 2 for one in of_days.values()) / len(of_days))
-        return RigSpread(max(likely, shown), len(of_days), taken[0], taken[-1])
+        factor = max(likely, shown)
+        if factor < 1 and len(of_days) < QUIET_DAYS:
+            return None
+        return RigSpread(factor, len(of_days), taken[0], taken[-1])
 
     def beyond(self, check: PastCheck) -> Message | None:
         """What to say of a check that lies outside its limits; None within them, or where no stripe was found."""

@@ -15,6 +15,7 @@ from core.calibrate.change import (
     STABLE,
     Change,
     Evidence,
+    RigSpread,
     Stability,
     changes,
     judge,
@@ -31,7 +32,7 @@ from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
-from core.files.results.rig_history import PastCheck, RigSpread, keep_check
+from core.files.results.rig_history import PastCheck, keep_check
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.planes_step import measure_poses
@@ -219,12 +220,6 @@ def _spread(found: RecordingSet, calibration: Calibration) -> RigSpread | None:
         return None  # doubt_of_the_day tells that it cannot be read
 
 
-def _charted(found: RecordingSet, calibration: Calibration) -> Stability | None:
-    """The stability by the history of the rig's checks."""
-    spread = _spread(found, calibration)
-    return None if spread is None else DEFAULT_STABILITY.times(*[spread.factor] * 4)
-
-
 class Judged(NamedTuple):
     """What the pictures of a set prove of the rig since its calibration."""
 
@@ -256,7 +251,7 @@ def judged(
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
-    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration), _charted(found, calibration))
+    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration), _spread(found, calibration))
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)
@@ -267,16 +262,17 @@ def judged(
     return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
-def assumed_stability(found: RecordingSet, calibration: Calibration) -> tuple[Message, ...]:
+def assumed_stability(found: RecordingSet, change: Change) -> tuple[Message, ...]:
     """A note on what is assumed of a rig of which nothing is stated, or taken from the history of its checks."""
     if found.rig.stability is not None:
         return ()
-    if (spread := _spread(found, calibration)) is not None:
+    if (spread := change.spread) is not None:
         return (
             Message(
                 "scan.stability_charted",
                 "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
-                "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}.",
+                "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}. What has "
+                "knocked it since then is not in that: only a check of the day shows it.",
                 times=spread.factor,
                 days=spread.days,
                 first=spread.first.astimezone(),

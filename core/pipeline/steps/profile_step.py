@@ -135,7 +135,7 @@ def profile_step(
             *change.notes,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
-            *assumed_stability(found, calibration),
+            *assumed_stability(found, change),
         )
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))

@@ -114,7 +114,7 @@ def scan_step(
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
-        scan = replace(scan, notes=(*notes, *assumed_stability(found, calibration), *_assumed_shutter(found, scan)))
+        scan = replace(scan, notes=(*notes, *assumed_stability(found, change), *_assumed_shutter(found, scan)))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)
         log.notes.extend((*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes))

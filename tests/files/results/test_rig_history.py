@@ -6,7 +6,16 @@ from datetime import timedelta
 import pytest
 
 from core.errors import InputError
-from core.files.results.rig_history import PastCheck, RigHistory, history_file, keep_check, read_history
+from core.calibrate.rig_spread import FACTORS
+from core.files.results.rig_history import (
+    FEWEST,
+    QUIET_DAYS,
+    PastCheck,
+    RigHistory,
+    history_file,
+    keep_check,
+    read_history,
+)
 from tests.check_cases import check, nowhere
 
 FIRST = PastCheck.of(check(), 21.5)
@@ -79,3 +88,27 @@ def test_an_artefact_has_a_chart_of_its_own():
     assert not history.chart(block).own and history.chart(later(11)).own
     keep_check("bench", block)
     assert read_history("bench").checks == (block,)
+
+
+def spread(days, error_mm=0.0, stated_mm=0.04):
+    """How much a rig changes by checks on so many days that say nothing of the factor but by the charted step."""
+    more = {"likelihoods": (0.0,) * len(FACTORS), "stated_mm": stated_mm}
+    history = RigHistory("bench", tuple(later(day, error_mm, **more) for day in range(days)))
+    return history.spread(FIRST.calibration_id, FIRST.taken_at + timedelta(days=days, hours=1))
+
+
+def test_few_checks_may_say_that_a_rig_changes_more_but_only_many_that_it_changes_less():
+    quiet = tuple(-10.0 * factor for factor in FACTORS)
+    history = RigHistory(
+        "bench", tuple(later(day, 0.0, likelihoods=quiet, stated_mm=0.04) for day in range(QUIET_DAYS))
+    )
+    when = FIRST.taken_at + timedelta(days=QUIET_DAYS, hours=1)
+    assert history.spread(FIRST.calibration_id, when).factor < 0.2
+    assert replace(history, checks=history.checks[1:]).spread(FIRST.calibration_id, when) is None
+    assert spread(FEWEST, error_mm=0.12).factor == pytest.approx(3.0)
+    assert spread(FEWEST - 1, error_mm=0.12) is None
+
+
+@pytest.mark.parametrize("stated_mm", [0.0, float("nan")])
+def test_a_check_by_which_no_step_is_assumed_wrong_says_nothing_of_the_rig(stated_mm):
+    assert spread(QUIET_DAYS, error_mm=0.12, stated_mm=stated_mm) is None

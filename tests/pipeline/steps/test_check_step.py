@@ -18,7 +18,7 @@ from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
 from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
-from core.files.results.rig_history import history_file, keep_check, read_history
+from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
 from core.inspect.conformity import Verdict
 from core.pipeline.run import run
@@ -333,16 +333,27 @@ def charted(checked, work, tmp_path, days=8, last=1):
 def test_a_steady_history_makes_the_row_of_change_smaller_and_one_of_a_turned_mount_larger(unchanged, turned, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
     assumed = charted(unchanged, work, tmp_path / "none", days=0)
-    steady = charted(unchanged, work, tmp_path / "steady")
+    steady = charted(unchanged, work, tmp_path / "steady", days=QUIET_DAYS)
     assert assumed[0] == "assumed change" and steady[0] == "charted change"
     assert steady[1] < 0.6 * assumed[1]
     notes = {note.code: str(note) for note in scan_step(work, COARSE).scan.notes}
-    assert "on 8 days from" in notes["scan.stability_charted"] and "scan.stability_assumed" not in notes
+    assert f"on {QUIET_DAYS} days from" in notes["scan.stability_charted"]
+    assert "only a check of the day shows it" in notes["scan.stability_charted"]
+    assert "scan.stability_assumed" not in notes
     (row,) = [row for row in gauge_step(work).budget if "change" in row.source.code]
     assert row.source.code == "inspection.cause_change_charted" and row.u_mm > 0
     history_file(work.calibration().id).unlink()
     moved = charted(turned, work, tmp_path / "moved")
     assert moved[0] == "charted change" and moved[1] > 1.1 * assumed[1]
+
+
+def test_a_mount_that_turned_after_quiet_days_is_within_u(unchanged, turned, tmp_path):
+    work = work_in(turned, tmp_path, with_check=False)
+    without = charted(unchanged, work, tmp_path / "none", days=0)
+    assert charted(unchanged, work, tmp_path / "quiet", days=QUIET_DAYS - 1) == without
+    scan_step(work, COARSE)
+    gauge = gauge_step(work)
+    assert abs(gauge.thickness_mm - RIG.height_mm) < gauge.U_mm
 
 
 def test_a_stated_stability_stands_whatever_the_history(unchanged, tmp_path):
