@@ -48,7 +48,8 @@ def bar(job: str = "") -> Iterator[Progress]:
                 check()
                 with telling:
                     remaining.tell(step, done, total)
-                drawn.update(shown, description=told(step), refresh=told(step) != drawn.tasks[0].description)
+                said = told(step)
+                drawn.update(shown, description=said, refresh=said != drawn.tasks[0].description)
 
             yield show
 

@@ -14,7 +14,7 @@ from rich.table import Table
 from core.acquire.grey import Channel
 from core.calibrate.camera.adjustment import CameraOptions
 from core.cli import output
-from core.cli.language import spoken, told, tr
+from core.cli.language import told, tr
 from core.cli.options import ChannelName, ExitCode
 from core.errors import InputError
 from core.files.folder_lock import alone_in
@@ -42,7 +42,7 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
 from core.progress import Progress
-from core.report.wording import Words, grouped, with_uncertainty
+from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
@@ -320,7 +320,7 @@ def _set_row(result: SetResult) -> tuple[str, ...]:
         return result.folder.name, "", "", tr("not measured"), "", "", seconds
     thickness = U = ""
     if result.thickness_mm is not None and result.U_mm is not None:
-        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm, Words(spoken())))
+        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm, output.words()))
     frames = tr("{used} of {all}", used=result.frames_used, all=result.frames)
     return (
         result.folder.name,

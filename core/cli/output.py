@@ -84,10 +84,15 @@ def print_times(seconds: Mapping[str, float], wall_s: float) -> None:
         table.add_column(title, justify="right")
     total = sum(seconds.values())
     for name, spent in seconds.items():
-        table.add_row(told(name), tr("{seconds:.2f}", seconds=spent), f"{spent / total:.0%}")
+        table.add_row(told(name), spoken().number(spent, ".2f"), f"{spent / total:.0%}")
     busy = tr("{n:.1f} processors busy for {seconds:.1f} s", n=total / wall_s, seconds=wall_s)
-    table.add_row(tr("all"), tr("{seconds:.2f}", seconds=total), busy)
+    table.add_row(tr("all"), spoken().number(total, ".2f"), busy)
     Console(stderr=True, highlight=False).print(table)
+
+
+def words() -> Words:
+    """Numbers, and what core.report says, in the language that was chosen."""
+    return Words(spoken())
 
 
 def camera_rows(calibration: CameraCalibration) -> Rows:
@@ -95,7 +100,7 @@ def camera_rows(calibration: CameraCalibration) -> Rows:
     camera = calibration.camera
     values = [*camera.matrix[[0, 1, 0, 0, 1], [0, 1, 1, 2, 2]], *camera.distortion]
     rows = [
-        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name], _words())))
+        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name], words())))
         for name, value in zip(CAMERA_PARAMETERS, values, strict=True)
         if calibration.sd[name] > 0
     ]
@@ -126,7 +131,7 @@ def fan_rows(calibration: FanCalibration) -> Rows:
     """Every plane, the angles between them, and whether the pencil suits the laser."""
     rows = []
     for number, (plane, rms) in enumerate(zip(calibration.fan.planes, calibration.rms_mm, strict=True), start=1):
-        normal = ", ".join(_words().fixed(float(part), 5) for part in plane.normal)
+        normal = ", ".join(words().fixed(float(part), 5) for part in plane.normal)
         said = tr("normal ({normal}), d {d:.3f} mm, RMS {rms:.3f} mm", normal=normal, d=plane.d_mm, rms=rms)
         rows.append((tr("plane {n}", n=number), said))
     if calibration.angles:
@@ -156,10 +161,6 @@ def fan_summary(calibration: FanCalibration) -> str:
     )
 
 
-def _words() -> Words:
-    return Words(spoken())
-
-
 def _angles(angles: Sequence[float]) -> str:
     return ", ".join(f"{spoken().number(math.degrees(angle), '.3f')}°" for angle in angles)
 
@@ -173,11 +174,11 @@ def _poses_used(used: int, poses: int) -> str:
 
 def gauge_rows(gauge: GaugeResult) -> Rows:
     """Thickness, deviation, verdict and the faces."""
-    rows = [(tr("thickness"), thickness_line(gauge, _words()))]
+    rows = [(tr("thickness"), thickness_line(gauge, words()))]
     if gauge.nominal_mm is not None and gauge.tolerance_mm is not None and gauge.deviation_mm is not None:
         limits = tr("{nominal:g} mm ± {tolerance:g} mm", nominal=gauge.nominal_mm, tolerance=gauge.tolerance_mm)
         rows.append((tr("nominal"), limits))
-        rows.append((tr("deviation"), f"{_words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
+        rows.append((tr("deviation"), f"{words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
     verdict = told(gauge.verdict) if gauge.verdict else tr("none: rig.toml states no nominal value")
     rows.append((tr("verdict"), verdict))
     upper, lower = gauge.points_used
@@ -287,7 +288,7 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
             tr("certified"),
             tr("{value:.4f} mm ± {U:.4f} mm (k = {k:g})", value=known.value_mm, U=known.U_mm, k=known.k),
         ),
-        (tr("measured"), f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm, _words()))} mm (k = 2)"),
+        (tr("measured"), f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm, words()))} mm (k = 2)"),
         ("E_n", spoken().number(check.e_n, ".2f")),
         (tr("detects"), tr("errors from {U:.3f} mm (k = 2)", U=2 * check.u_error_mm)),
         (tr("verdict"), told(check.sentence)),

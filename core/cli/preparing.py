@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from core.cli import output
-from core.cli.language import spoken, told, tr
+from core.cli.language import told, tr
 from core.cli.measuring import Shown
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
@@ -21,7 +21,7 @@ from core.plan.bounds import Bound
 from core.plan.predict import Prediction
 from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
-from core.report.wording import Words, grouped, target_in_words
+from core.report.wording import grouped, target_in_words
 
 
 def target_of_words(
@@ -95,7 +95,7 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
         output.print_json({"target": target_in_words(target), "paper": name, "file": str(out)})
         return
     output.print_rows(
-        [(tr("target"), target_in_words(target, Words(spoken()))), (tr("paper"), sheet), (tr("written"), str(out))],
+        [(tr("target"), target_in_words(target, output.words())), (tr("paper"), sheet), (tr("written"), str(out))],
         [
             Message(
                 "target.print_to_size",

@@ -12,7 +12,7 @@ from typing import cast
 from rich.table import Table
 
 from core.cli import output
-from core.cli.language import spoken, told, tr
+from core.cli.language import told, tr
 from core.cli.measuring import Shown, alone_with, exit_code
 from core.cli.options import ExitCode, one_of
 from core.errors import InputError
@@ -32,7 +32,7 @@ from core.pipeline.steps.report_step import report_step, with_studies
 from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.template import LANGUAGES, PAPERS, Paper
-from core.report.wording import Words, decimals_of, grouped, shown_name
+from core.report.wording import decimals_of, grouped, shown_name
 
 _COLUMNS = (
     label("characteristic"), label("measured"), label("U"), label("nominal"), label("limits"), label("deviation"),
@@ -74,7 +74,7 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
 def _cells(row: Characteristic) -> tuple[str, ...]:
     """One line of the table; an angle in degrees."""
     scale, unit = (math.degrees(1.0), "°") if row.quantity == "angle" else (1.0, " mm")
-    words, decimals = Words(spoken()), decimals_of(row.U * scale)
+    words, decimals = output.words(), decimals_of(row.U * scale)
     name = shown_name(row, words)
 
     def text(value: float, *, signed: bool = False) -> str:

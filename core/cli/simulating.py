@@ -13,7 +13,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
-from core.cli.language import spoken, tr
+from core.cli.language import tr
 from core.cli.measuring_commands import TAKEN_OVER
 from core.cli.options import EPILOG, Json
 from core.progress import Progress
@@ -167,15 +167,15 @@ def demo(
 ) -> None:
     """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
-        from core.cli import measuring
-        from core.report.wording import Words, thickness_line
+        from core.cli import measuring, output
+        from core.report.wording import thickness_line
 
         options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
         with bar("run") as progress, _sample(progress, quick=quick) as folder:
             result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)
     if result.gauge is not None and not json:
-        line = thickness_line(result.gauge, Words(spoken()))
+        line = thickness_line(result.gauge, output.words())
         report = str(result.files["report"])
         told = tr("The sample block measures {thickness}; the report is {path}.", thickness=line, path=report)
         sys.stdout.write(f"\n{told}\n")

@@ -11,14 +11,14 @@ import typer
 
 from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, exit_code
-from core.cli.output import Rows
+from core.cli.output import Rows, words
 from core.errors import InputError
 from core.files.study.input import read_crossed, read_readings, read_repeats
 from core.files.study.study_file import Study, study_values, write_study
 from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
-from core.report.wording import Words, decimals_of
+from core.report.wording import decimals_of
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
 from core.study.grr import ACCEPTABLE, AnovaRow, Component, GrrStudy, grr_study
@@ -272,7 +272,7 @@ def _expanded(budget: UncertaintyBudget, digits: int) -> str:
 
 
 def _fixed(value: float, decimals: int, *, signed: bool = False) -> str:
-    return Words(spoken()).fixed(value, decimals, signed=signed)
+    return words().fixed(value, decimals, signed=signed)
 
 
 def _sources(budget: UncertaintyBudget, digits: int) -> str:

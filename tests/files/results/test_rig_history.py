@@ -5,17 +5,10 @@ from datetime import timedelta
 
 import pytest
 
-from core.errors import InputError
 from core.calibrate.rig_spread import FACTORS
-from core.files.results.rig_history import (
-    FEWEST,
-    QUIET_DAYS,
-    PastCheck,
-    RigHistory,
-    history_file,
-    keep_check,
-    read_history,
-)
+from core.errors import InputError
+from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
+from core.study.control_chart import FEWEST
 from tests.check_cases import check, nowhere
 
 FIRST = PastCheck.of(check(), 21.5)
