@@ -22,7 +22,7 @@ from core.model.arrays import Array
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
-from core.scan.features.picture_faults import told_first
+from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
 
 PART = "part"
@@ -49,7 +49,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.found.rig.gauge or GaugeSpec(), work.found.rig.part
-        with said_first(scan), told_first(scan.features.notes):
+        with movement_first(scan), faults_first(scan.features.notes):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -76,7 +76,7 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
 
 
 @contextmanager
-def said_first(scan: ScanFile) -> Iterator[None]:
+def movement_first(scan: ScanFile) -> Iterator[None]:
     """A complaint about faces begins with what moved or drifted in the scan, if anything did: that is why."""
     try:
         yield

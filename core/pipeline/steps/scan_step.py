@@ -29,7 +29,7 @@ from core.scan.common_errors import solve_common
 from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.features.frames import left_out_notes
-from core.scan.features.picture_faults import told_first
+from core.scan.features.picture_faults import faults_first
 from core.scan.method import Method
 from core.scan.network.adjustment import SILENCED
 from core.scan.preview.frames import Preview
@@ -101,7 +101,7 @@ def scan_step(
             features = _features(found, looked, camera, progress)
         log.settings.update(found.laser_channel("scan").settings)
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
-        with told_first(features.notes):
+        with faults_first(features.notes):
             even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         shaped = _begin((scan.cloud, camera.image_size), progress, beside)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None

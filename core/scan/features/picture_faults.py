@@ -99,7 +99,7 @@ def _scatter(piece: Centreline, noise: NoiseModel) -> float:
 
 
 @contextmanager
-def told_first(notes: Sequence[Message]) -> Iterator[None]:
+def faults_first(notes: Sequence[Message]) -> Iterator[None]:
     """A complaint about what was made of pictures begins with their faults, if `notes` tell any: that may be why."""
     try:
         yield

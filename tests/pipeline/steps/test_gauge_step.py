@@ -21,7 +21,7 @@ NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are 
     ],
 )
 def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(doubt, code, todo):
-    with pytest.raises(InputError) as refused, gauge_step.said_first(SimpleNamespace(doubt=doubt)):
+    with pytest.raises(InputError) as refused, gauge_step.movement_first(SimpleNamespace(doubt=doubt)):
         raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
     assert refused.value.code == code
     assert "no two are parallel" in str(refused.value)

@@ -12,9 +12,9 @@ from core.scan.features.picture_faults import (
     COMPRESSED,
     MOSAIC,
     SPECKLED,
+    faults_first,
     faults_of,
     notes_on_compression,
-    told_first,
 )
 from core.scan.features.reference import read_reference
 from core.simulate.effects.sensor import SensorEffects
@@ -59,7 +59,7 @@ def test_frames_are_told_to_be_jpeg_where_that_rules_their_noise():
 
 def test_a_refusal_begins_with_the_faults_of_the_pictures():
     faults = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    with pytest.raises(InputError) as refused, told_first((Message("scan.datum", "a datum"), *faults)):
+    with pytest.raises(InputError) as refused, faults_first((Message("scan.datum", "a datum"), *faults)):
         raise InputError(MOVED, where="scan", todo=Message("x.y", "hold both still"))
     assert refused.value.what.values["faults"] == faults
     assert str(refused.value).startswith("scan: The frames are JPEG")
@@ -68,6 +68,6 @@ def test_a_refusal_begins_with_the_faults_of_the_pictures():
 
 def test_a_refusal_of_faultless_pictures_stays_as_it_is():
     error = InputError(MOVED, where="scan")
-    with pytest.raises(InputError) as refused, told_first((Message("scan.datum", "a datum"),)):
+    with pytest.raises(InputError) as refused, faults_first((Message("scan.datum", "a datum"),)):
         raise error
     assert refused.value is error
