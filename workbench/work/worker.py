@@ -251,3 +251,5 @@ if __name__ == "__main__":
     from workbench.work import worker  # what is pickled has this module's name, not "__main__"
 
     worker.main(sys.argv[1:])
+    sys.stderr.flush()
+    os._exit(0)  # a thread that warms up may be in OpenCV, which aborts when the interpreter is taken away beneath it

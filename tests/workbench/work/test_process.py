@@ -19,6 +19,7 @@ import pytest
 from tests.workbench.work.test_tasks import Answers, finish
 from workbench.bench import Bench
 from workbench.work import wire
+from workbench.work.jobs import Job
 from workbench.work.process import ENDS_WITHIN_MS
 from workbench.work.tasks import Lane, Task
 from workbench.work.wire import Kind
@@ -188,6 +189,16 @@ def test_a_window_that_is_killed_ends_its_workers_which_keep_what_they_have(tmp_
     _until(kept.exists)
     _until(lambda: not Path(f"/proc/{worker}").exists())
     assert not memory.exists()
+
+
+def test_a_worker_whose_threads_still_compute_ends_without_a_crash(tmp_path: Path) -> None:
+    said = wire.frame(Kind.SETUP, 0, ((), None)) + wire.frame(
+        Kind.RUN, 1, (Job("tests.workbench.lane_jobs:leaves_threads_that_compute"), (), {})
+    )
+    worker = [sys.executable, "-m", "workbench.work.worker", "alone", str(tmp_path / "memory")]
+    for _ in range(3):
+        ended = subprocess.run(worker, input=said, capture_output=True, timeout=30)
+        assert (ended.returncode, ended.stderr) == (0, b"")
 
 
 @pytest.mark.slow
