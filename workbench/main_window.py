@@ -21,6 +21,7 @@ from PySide6.QtWidgets import (
 
 from core.remaining import USUAL_S, Remaining, in_words
 from core.translations import own_name
+from workbench import first_measurement
 from workbench.bench import Bench
 from workbench.language import spoken, tr
 from workbench.menus import Menus
@@ -34,6 +35,7 @@ from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
 from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
+from workbench.views.instruction_bar import InstructionBar
 from workbench.views.layouts import STRETCH, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
@@ -65,6 +67,8 @@ class MainWindow(QMainWindow):
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
         self.rail = StepRail([(step.name, tr(step.title), step.icon) for step in STEPS])
         self.banner, self.notice_list, self.task_bar = Banner(), NoticeList(), TaskBar()
+        self.instructions = InstructionBar()
+        self._led_in: Path | None = None
         self.welcome = WelcomePage(self.projects)
         self._title, self._help = QLabel(), QLabel()
         self._title.setObjectName("title")
@@ -195,7 +199,7 @@ class MainWindow(QMainWindow):
     def _wizard(self) -> QWidget:
         head = in_column(self._title, self._help, margins=(14, 8, 14, 2), spacing=1)
         foot = in_row(self.back, STRETCH, self.missing, self.next, margins=(14, 6, 14, 8))
-        column = in_column(head, self.banner, (self._pages, 1), foot, spacing=2)
+        column = in_column(head, self.instructions, self.banner, (self._pages, 1), foot, spacing=2)
         whole = QWidget()
         in_row(self.rail, (column, 1), on=whole, spacing=0)
         return whole
@@ -242,6 +246,7 @@ class MainWindow(QMainWindow):
             **{f"step {step.name}": partial(self.go_to, step.name) for step in STEPS},
             "messages": self._toggle_messages,
             "manual": self._open_manual,
+            "first measurement": projects.begin_first_measurement,
             "double click": partial(choose_double_click, self, self.bench.notices),
             "log": self._open_log,
         }
@@ -272,6 +277,9 @@ class MainWindow(QMainWindow):
         self.task_bar.cancel_pressed.connect(self.cancel_task)
         self.task_bar.tick.connect(self._show_progress)
         self.projects.go_to.connect(self.go_to)
+        self.projects.first_measurement_begun.connect(self._begin_instructions)
+        self.instructions.left.connect(self._leave_instructions)
+        self.instructions.show_me.connect(self._show_where)
 
     def _project_opened(self) -> None:
         self.banner.hide()
@@ -286,10 +294,42 @@ class MainWindow(QMainWindow):
         self._show_name()
         self._refresh()
 
+    def _begin_instructions(self) -> None:
+        self._led_in = self.model.folder
+        self._refresh()
+
+    def _leave_instructions(self) -> None:
+        self._led_in = None
+        self.instructions.hide()
+
+    def _instruction(self) -> first_measurement.Instruction:
+        """What to do next in the first measurement."""
+        solved = (name for name, presenter in self.presenters.items() if presenter.waits_to_be_accepted)
+        states = {name: state.state for name, state in self.model.states.items()}
+        facts = first_measurement.Facts(self._current, states, frozenset(solved), self._task is not None)
+        return first_measurement.instruction(facts)
+
+    def _show_instruction(self) -> None:
+        if self._led_in is None or self._led_in != self.model.folder:
+            self._leave_instructions()
+            return
+        now, waiting = self._instruction(), self._task is not None
+        number, count = first_measurement.ORDER.index(now) + 1, len(first_measurement.ORDER)
+        text = tr(first_measurement.WAIT if waiting else now.text)
+        can_show = not waiting and now is not first_measurement.FINISHED
+        self.instructions.show_instruction(number, count, text, can_show=can_show)
+
+    def _show_where(self) -> None:
+        """Go to what the instruction means, and have it under the keyboard."""
+        now = self._instruction()
+        self.go_to(now.page)
+        (self.pages[now.page].card.buttons[now.button] if now.button else self.next).setFocus()
+
     def _refresh(self) -> None:
         self.menus.refresh(is_open=self.model.is_open)
         if not self.model.is_open:
             return
+        self._show_instruction()
         states = self.model.states
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
         last = self._current == STEPS[-1].name
@@ -345,6 +385,7 @@ class MainWindow(QMainWindow):
         task.progressed.connect(self._task_progressed)
         task.done.connect(self._task_done)
         self.task_bar.begin(task.label)
+        self._refreshing.soon()
 
     def _task_progressed(self, stage: str, done: int, total: int) -> None:
         self._stage = stage
@@ -366,6 +407,7 @@ class MainWindow(QMainWindow):
         if task is self._task:
             self._task = None
             self.task_bar.end()
+            self._refreshing.soon()
 
 
 def _dropped(event: QDragEnterEvent | QDropEvent) -> Path | None:

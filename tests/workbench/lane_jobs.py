@@ -13,6 +13,7 @@ import cv2
 import numpy as np
 
 from core.errors import InputError
+from core.files.project.data import Project, new_project
 from core.progress import Progress
 
 
@@ -136,3 +137,7 @@ def leaves_threads_that_compute() -> None:
 
     for _ in range(4):
         threading.Thread(target=compute, daemon=True).start()
+
+
+def project_to_measure(progress: Progress) -> Project:
+    return new_project("Sample")

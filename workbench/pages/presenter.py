@@ -44,6 +44,11 @@ class StepPresenter(QObject):
         """One sentence saying what is missing before Next makes sense, or ""."""
         return ""
 
+    @property
+    def waits_to_be_accepted(self) -> bool:
+        """Whether a calibration is there that could be accepted."""
+        return False
+
     def opened(self) -> None:
         """Another project is open (or none): forget what belonged to the last one, load what this one has."""
 

@@ -14,6 +14,7 @@ from workbench.pages.presenter import StepPresenter
 from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views.layouts import UpAndDown, holding, in_column
+from workbench.views.stage_card import StageCard
 
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 """Pixels of the panel at the side: at first, and at least."""
@@ -26,8 +27,10 @@ class StepPage(QWidget):
 
     `refresh` is called once in the turn of the event loop after its presenter has changed, however often it did, and
     only while the page is visible. A page that was hidden meanwhile is refreshed before it is shown, by whoever shows
-    it with `prepare`; never while Qt is showing it, widget by widget.
+    it with `prepare`; never while Qt is showing it, widget by widget. `card` has the buttons of what is done here.
     """
+
+    card: StageCard
 
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)

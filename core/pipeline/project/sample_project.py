@@ -33,19 +33,30 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
             where=folder,
             todo=Message("advice.choose_another_name", "choose another name"),
         )
-    for place in (folder, sample_folder()):
-        remove_leftovers(place)
-    compile_ahead(progress)
-    pictures = sample_set(progress)
+    remove_leftovers(folder)
+    unmeasured = sample_to_measure(progress)
     make_folder(folder.parent)
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
             made = make_folder(Path(beside) / "project")
-            create_project(made, finished_project(made, _described(project_from_set(pictures, "Sample")), progress))
+            create_project(made, finished_project(made, unmeasured, progress))
             made.rename(folder)
     except OSError as error:
         raise cannot_write(folder, error) from error
     return folder
+
+
+def sample_to_measure(progress: Progress = silent) -> Project:
+    """Describe the sample's pictures as a project with nothing measured; they are rendered if they are not there yet.
+
+    Raises
+    ------
+    InputError
+        If the cache folder cannot be written to.
+    """
+    remove_leftovers(sample_folder())
+    compile_ahead(progress)
+    return _described(project_from_set(sample_set(progress), "Sample"))
 
 
 def clear_unfinished(folder: Path) -> None:

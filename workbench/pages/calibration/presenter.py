@@ -149,6 +149,10 @@ class CalibrationPresenter(StepPresenter):
         return self._sentence(buttons_of(self._facts()).accept)
 
     @property
+    def waits_to_be_accepted(self) -> bool:
+        return not self.can_accept
+
+    @property
     def can_reject(self) -> str:
         """Why nothing can be rejected now, or ""."""
         return self._sentence(buttons_of(self._facts()).reject)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 from PySide6.QtCore import QObject, Qt, Signal
 from PySide6.QtWidgets import QWidget
@@ -27,6 +28,8 @@ from workbench.pages.project.states import StateChoice, choose_access, choose_st
 from workbench.pages.sources import put_source
 from workbench.project_model import Access
 from workbench.views import ask
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 PROJECT, BACKUPS, SET = "project.json", "backups", "rig.toml"
 
@@ -35,6 +38,8 @@ class ProjectActions(QObject):
     """Opens and closes projects; asks where something could be lost, and only there."""
 
     go_to = Signal(str)
+    first_measurement_begun = Signal()
+    """Its project is open: the instructions can be shown."""
 
     def __init__(self, bench: Bench, window: QWidget) -> None:
         super().__init__(window)
@@ -43,6 +48,7 @@ class ProjectActions(QObject):
         self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
         self.pack = ProjectPack(bench, window, self.save, self.open_project, self)
         self._when_left: Callable[[], object] | None = None
+        self._preparing: Task | None = None
         # Queued: a recording that ends is at its end then, and not in the midst of telling it.
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
@@ -160,10 +166,43 @@ class ProjectActions(QObject):
 
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""
-        base = self.bench.settings.projects_folder
-        names = (tr("Simulated rig") + (f" {number}" if number > 1 else "") for number in range(1, 1000))
-        name = next(name for name in names if not (base / name).exists())
-        self._create(base / name, simulated_project, name, then=lambda: self.go_to.emit("camera"))
+        folder = self._free_folder(tr("Simulated rig"))
+        self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
+
+    def begin_first_measurement(self) -> None:
+        """A new project of the sample's pictures, with nothing measured, for the instructions to lead through.
+
+        If another project is opened while the pictures are rendered, it stays open.
+        """
+        name, asked_in = tr("First measurement"), self.model.folder
+        if self._preparing is not None:
+            self.bench.notices.info(tr("Its pictures are being prepared; the status bar says how far that is."))
+            return
+
+        def make(project: Project) -> None:
+            self._prepared()
+            if self.model.folder != asked_in:
+                self.bench.notices.info(tr("The pictures are ready: Help, First measurement."))
+                return
+            made, folder = replace(project, info=replace(project.info, operator="")), self._free_folder(name)
+            self._create(folder, lambda _: made, folder.name, then=self.first_measurement_begun.emit)
+
+        self._preparing = self.bench.run_long(
+            self,
+            jobs.SAMPLE_TO_MEASURE,
+            label=tr("Preparing the first measurement"),
+            on_done=make,
+            on_failed=self._prepared,
+            on_cancelled=self._prepared,
+        )
+
+    def _prepared(self, *_: Any) -> None:
+        self._preparing = None
+
+    def _free_folder(self, name: str) -> Path:
+        """A folder that is not there yet, for a project of this name or of the name with a number."""
+        names = (name + (f" {number}" if number > 1 else "") for number in range(1, 1000))
+        return next(place for one in names if not (place := self.bench.settings.projects_folder / one).exists())
 
     def show_audit_trail(self) -> None:
         """Show who did what in the open project, and when; what is being changed is saved before."""

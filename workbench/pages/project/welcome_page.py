@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QListWidget,
     QListWidgetItem,
+    QPushButton,
     QSizePolicy,
     QWidget,
 )
@@ -95,7 +96,12 @@ class WelcomePage(QWidget):
         card.setObjectName("card")
         card.setMaximumWidth(1080)
         card.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
-        inside = in_column(_with_mark(title), claim, on=card, margins=(36, 28, 36, 28))
+        self.first = QPushButton(tr("First measurement, step by step"))
+        self.first.setIcon(icon("mdi6.school-outline"))
+        self.first.setToolTip(tr("Measure the pictures of a gauge block; each step is explained and waits for you."))
+        self.first.clicked.connect(projects.begin_first_measurement)
+        head = in_row((_with_mark(title), 1), self.first)
+        inside = in_column(head, claim, on=card, margins=(36, 28, 36, 28))
         inside.addSpacing(18)
         columns = QHBoxLayout()
         columns.setSpacing(28)

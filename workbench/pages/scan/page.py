@@ -47,6 +47,7 @@ class ScanPage(StepPage):
     """Record, measure, look through the frames, measure again."""
 
     presenter: ScanPresenter
+    card: ScanCard
 
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
@@ -66,8 +67,8 @@ class ScanPage(StepPage):
         self.below.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Fixed)
         self.centre.addWidget(self.below)
 
-        self.stage = ScanCard(presenter)
-        self.add_to_side(self.stage)
+        self.card = ScanCard(presenter)
+        self.add_to_side(self.card)
         self.check = CheckCard(presenter.check, presenter.check_live)
         self.add_to_side(self.check)
         self.checks = ChecksCard()
@@ -91,7 +92,7 @@ class ScanPage(StepPage):
     def refresh(self) -> None:
         p, stage = self.presenter, self.presenter.stage
         live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
-        self.stage.refresh()
+        self.card.refresh()
         self.check.refresh()
         before = p.live_stage in STAGES_BEFORE
         self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])

@@ -464,6 +464,21 @@ def test_the_sample_is_made_once_and_opened_when_it_is_ready(projects: ProjectAc
     assert measuring.ran == [jobs.SAMPLE_PROJECT]
 
 
+def test_a_first_measurement_is_prepared_once_and_leaves_a_project_alone_that_was_opened_meanwhile(
+    projects: ProjectActions, qtbot: Any, tmp_path: Path
+) -> None:
+    measuring = cast(HandLane, projects.bench.measuring)
+    measuring.held = {jobs.SAMPLE_TO_MEASURE}
+    for _ in range(2):
+        projects.begin_first_measurement()
+    assert len(measuring.waiting) == 1
+    other = project(tmp_path / "other", "Other")
+    projects.open_project(other)
+    measuring.finish(new_project("Sample"))
+    assert projects.model.project.info.name == "Other"
+    assert "Help, First measurement" in projects.bench.notices.all[-1].text
+
+
 @pytest.mark.parametrize(("inspected", "expected"), [(True, ["inspect"]), (False, [])])
 def test_an_inspected_sample_opens_at_its_result(
     projects: ProjectActions, inspected: bool, expected: list[str]

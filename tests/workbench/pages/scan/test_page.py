@@ -59,7 +59,7 @@ def recorded(page, scan_folder, qtbot):
 
 @pytest.fixture
 def measured(recorded, measuring, qtbot):
-    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     measuring.finish(cases.summary())
     qtbot.waitUntil(lambda: recorded.presenter.work.look is not None)
     qtbot.waitUntil(lambda: recorded.presenter.scrub.up_to_date and not recorded.presenter.bench.quick.busy)
@@ -79,7 +79,7 @@ def start_live(page, lane, qtbot):
 def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, scan_folder):
     image = page.picture.image
     assert "Record a scan with a live source" in image.empty_state.message
-    assert page.stage.title.text() == "No recording yet"
+    assert page.card.title.text() == "No recording yet"
     assert page.below.isHidden() and page.result_fold.isHidden() and page.frames_fold.isHidden()
     assert page.live_panel.start.property("primary")
     monkeypatch.setattr(ask, "choose_folder", lambda *_: scan_folder)
@@ -88,13 +88,13 @@ def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypat
 
 
 def test_greyed_buttons_say_why(page):
-    for button in page.stage.buttons.values():
+    for button in page.card.buttons.values():
         assert not button.isEnabled() and button.toolTip()
 
 
 def test_a_recording_can_be_looked_through_before_it_is_measured(recorded):
-    assert recorded.stage.title.text() == "6 frames, not measured yet"
-    assert recorded.stage.buttons["run"].property("primary") and not recorded.live_panel.start.property("primary")
+    assert recorded.card.title.text() == "6 frames, not measured yet"
+    assert recorded.card.buttons["run"].property("primary") and not recorded.live_panel.start.property("primary")
     assert recorded.source.detail.text() == "6 frames, with a reference"
     assert not recorded.bar.isHidden() and recorded.picture.image.has_picture
     assert recorded.bar.said.text() == "Frame 4 of 6 (frame0003.png): 3 crossings by itself; not measured yet."
@@ -111,11 +111,11 @@ def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(
     assert reasons.text_of("Its light plane is too uncertain for any point to pass the σ cut") == "1"
     assert "relief" in measured.result.notes.text()
     assert not measured.source_fold.isExpanded() and measured.result_fold.isExpanded()
-    assert not any(button.property("primary") for button in measured.stage.buttons.values())
+    assert not any(button.property("primary") for button in measured.card.buttons.values())
 
 
 def test_a_scan_without_thickness_says_so(recorded, measuring, qtbot):
-    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     measuring.finish(cases.summary(gauge=None))
     qtbot.waitUntil(lambda: recorded.presenter.work.look is not None)
     assert "There are no two parallel faces" in recorded.result.notes.text()
@@ -129,12 +129,12 @@ def test_the_cloud_is_shown_in_3d_coloured_by_sigma_up_to_the_cut(measured):
 
 def test_a_failed_measurement_is_told_on_the_page(recorded, measuring, qtbot):
     recorded.refreshing.at_once()
-    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     measuring.fail(InputError("no sweep can be located"))
     recorded.refreshing.at_once()
-    assert recorded.stage.title.text() == "Not measured"
-    assert "no sweep can be located" in recorded.stage.words.text()
-    assert recorded.stage.buttons["run"].property("primary")
+    assert recorded.card.title.text() == "Not measured"
+    assert "no sweep can be located" in recorded.card.words.text()
+    assert recorded.card.buttons["run"].property("primary")
 
 
 # ---- frames
@@ -182,12 +182,12 @@ def test_unchecking_a_frame_in_the_list_leaves_it_out_and_undo_lets_it_in(measur
     qtbot.mouseClick(table.viewport(), LEFT, pos=place.topLeft() + type(place.topLeft())(12, place.height() // 2))
     measured.refreshing.at_once()
     assert measured.presenter.project.options.excluded == {cases.name_of(1)}
-    assert measured.stage.title.text() == "Measured, but out of date"
-    assert measured.stage.words.text() == "Out of date: changed since: left-out frames. Measure again."
-    assert measured.stage.buttons["run"].text() == "Measure again" and measured.stage.buttons["run"].property("primary")
+    assert measured.card.title.text() == "Measured, but out of date"
+    assert measured.card.words.text() == "Out of date: changed since: left-out frames. Measure again."
+    assert measured.card.buttons["run"].text() == "Measure again" and measured.card.buttons["run"].property("primary")
     measured.presenter.model.undo_stack.undo()
     measured.refreshing.at_once()
-    assert measured.frames.rows()[1].used and measured.stage.title.text() == "Measured"
+    assert measured.frames.rows()[1].used and measured.card.title.text() == "Measured"
 
 
 def test_the_box_by_the_slider_leaves_out_the_frame_that_is_shown(measured, qtbot):
@@ -271,7 +271,7 @@ def test_settings_are_changed_in_the_form_and_undone(measured, qtbot):
     form.edited.emit("sigma_cut_mm", 0.2)
     qtbot.waitUntil(lambda: measured.presenter.project.options.sigma_cut_mm == 0.2)
     measured.refreshing.at_once()
-    assert measured.stage.title.text() == "Measured, but out of date"
+    assert measured.card.title.text() == "Measured, but out of date"
     measured.presenter.model.undo_stack.undo()
     measured.refreshing.at_once()
     assert form.values()["sigma_cut_mm"] == 0.05
@@ -298,10 +298,10 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
     quick = cast(HandLane, recorded.presenter.bench.quick)
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
     recorded.refreshing.at_once()
-    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     recorded.refreshing.at_once()
     assert recorded.bar.isHidden() and not recorded.running.isHidden()
-    cancel = recorded.stage.buttons["cancel"]
+    cancel = recorded.card.buttons["cancel"]
     recorded.refreshing.at_once()
     assert cancel.isEnabled() and not cancel.property("primary"), "to wait is what there is to do"
     assert recorded.running.hints._label.text() == "What could be better is said here."
@@ -328,22 +328,22 @@ def test_a_cancelled_measurement_shows_the_result_before_again(measured, measuri
     quick = cast(HandLane, measured.presenter.bench.quick)
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
     measured.refreshing.at_once()
-    qtbot.mouseClick(measured.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(measured.card.buttons["run"], LEFT)
     measured.refreshing.at_once()
     assert measured.cloud.scene.state().points == 1500
     measuring.current.reported.emit(cases.detail(0, renewed=True))
     qtbot.waitUntil(lambda: measured.cloud.scene.state().points == 30)
     measured.refreshing.at_once()
-    qtbot.mouseClick(measured.stage.buttons["cancel"], LEFT)
+    qtbot.mouseClick(measured.card.buttons["cancel"], LEFT)
     measured.refreshing.at_once()
     assert measured.cloud.scene.state().points == 1500
 
 
 def test_cancel_leaves_the_recording_as_it_was(recorded, measuring, qtbot):
     recorded.refreshing.at_once()
-    qtbot.mouseClick(recorded.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     recorded.refreshing.at_once()
-    qtbot.mouseClick(recorded.stage.buttons["cancel"], LEFT)
+    qtbot.mouseClick(recorded.card.buttons["cancel"], LEFT)
     recorded.refreshing.at_once()
     assert recorded.presenter.stage is Stage.RECORDED and not measuring.busy
     assert not recorded.bar.isHidden()
@@ -356,7 +356,7 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     start_live(page, lane, qtbot)
     lane.current.view.emit(cases.live_view(0, stage="reference"))
     page.refreshing.at_once()
-    assert page.stage.title.text() == "Taking the reference"
+    assert page.card.title.text() == "Taking the reference"
     assert page.running.condition.said == "–"
     lane.current.reported.emit(LiveAsk(plain("Switch the hand-held laser on, press Start."), "Start", Resume()))
     page.refreshing.at_once()
@@ -367,7 +367,7 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     assert [type(sent) for sent in lane.sent[-2:]] == [Resume, Resume]
     lane.current.view.emit(cases.live_view(1, renewed=True, condition=np.inf))
     page.refreshing.at_once()
-    assert page.stage.title.text() == "Scanning"
+    assert page.card.title.text() == "Scanning"
     assert {"covered", "fan 3", "sweep", "good", "weak", "left out"} <= set(page.picture.image.layer_names())
     assert page.running.condition.said == "∞ · poor"
     assert "2 frames recorded" in page.live_panel.counts.text()
@@ -375,8 +375,8 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     assert lane.sent.count("shown") == 2
     lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
     page.refreshing.at_once()
-    assert page.stage.title.text() == "Measuring the recording …"
-    assert "by itself" in page.stage.words.text()
+    assert page.card.title.text() == "Measuring the recording …"
+    assert "by itself" in page.card.words.text()
     assert page.picture.image.has_picture and page.cloud.scene.state().points == 30
     measuring.finish(cases.summary())
     qtbot.waitUntil(lambda: page.presenter.stage is Stage.MEASURED and page.presenter.scrub.up_to_date)
@@ -420,7 +420,7 @@ def test_while_paused_no_sweep_and_no_crossings_are_shown(page, lane, qtbot):
     lane.current.view.emit(cases.live_view(0, stage="paused"))
     page.refreshing.at_once()
     assert "good" not in page.picture.image.layer_names()
-    assert page.running.condition.said == "–" and page.stage.title.text() == "Paused"
+    assert page.running.condition.said == "–" and page.card.title.text() == "Paused"
 
 
 def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
@@ -465,7 +465,7 @@ def test_an_empty_3d_view_says_what_to_do(page, recorded):
 
 def test_a_result_without_points_says_what_to_change(measured, scan_bench, measuring, qtbot):
     cast(HandLane, scan_bench.quick).answers[jobs.SHOW_SCAN] = lambda folder: cases.look(points=0)
-    qtbot.mouseClick(measured.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(measured.card.buttons["run"], LEFT)
     measuring.finish(cases.summary(gauge=None))
     qtbot.waitUntil(lambda: "larger σ" in measured.cloud.scene._message)
 
@@ -475,4 +475,4 @@ def test_a_result_whose_calibration_is_out_of_date_is_not_told_to_be_measured_ag
     camera = finished("camera", measured.presenter.project, {})
     model.record("camera", replace(camera, rests_on={**camera.rests_on, "left-out views": "others"}))
     measured.refreshing.at_once()
-    assert measured.stage.words.text() == "Out of date, because this is: calibrate the camera."
+    assert measured.card.words.text() == "Out of date, because this is: calibrate the camera."
