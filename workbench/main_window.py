@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.remaining import USUAL_S, Remaining, in_words
-from core.translations import own_name
+from core.translations import languages, own_name
 from workbench import first_measurement
 from workbench.bench import Bench
 from workbench.language import spoken, tr
@@ -35,12 +35,14 @@ from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
 from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
+from workbench.views import ask
 from workbench.views.instruction_bar import InstructionBar
 from workbench.views.layouts import STRETCH, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import TaskBar
+from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
 
@@ -247,6 +249,7 @@ class MainWindow(QMainWindow):
             "messages": self._toggle_messages,
             "manual": self._open_manual,
             "first measurement": projects.begin_first_measurement,
+            "quick card": self._print_quick_card,
             "double click": partial(choose_double_click, self, self.bench.notices),
             "log": self._open_log,
         }
@@ -255,6 +258,22 @@ class MainWindow(QMainWindow):
         """The manual, at the page of the step one is at."""
         page = next((step.manual for step in STEPS if step.name == self._current), "index")
         self.manual.open_page(page)
+
+    def _print_quick_card(self) -> None:
+        """The page to hang beside the rig, in the language of the window."""
+        start = Path.home() / tr("Trisect quick card.pdf")
+        path = ask.choose_file_to_save(self, tr("Quick card"), start, tr("PDF (*.pdf)"))
+        if path is not None:
+            name = spoken() if spoken() in languages() else "en"
+            self.bench.run_quick(
+                self,
+                jobs.QUICK_CARD,
+                path,
+                name,
+                label=tr("Drawing the quick card"),
+                on_done=lambda done: self.bench.notices.info(tr("The quick card was written to {path}.", path=done)),
+                offers={},
+            )
 
     def _connect(self) -> None:
         self.rail.chosen.connect(self.go_to)

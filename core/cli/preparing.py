@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 
 from core.cli import output
 from core.cli.language import told, tr
 from core.cli.measuring import Shown
+from core.cli.options import one_of
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
 from core.files.recording.rig import read_rig, require_tables
@@ -17,10 +19,12 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
 from core.pipeline.steps.plan_step import PlanResult, plan, plan_values, write_plan
+from core.pipeline.steps.prints import write_quick_card
 from core.plan.bounds import Bound
 from core.plan.predict import Prediction
 from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
+from core.report.template import PAPERS, Paper
 from core.report.wording import grouped, target_in_words
 
 
@@ -105,6 +109,20 @@ def show_sheet(target: Target, paper: str, out: Path, *, as_json: bool) -> None:
             )
         ],
     )
+
+
+def write_card(paper: str, out: Path) -> None:
+    """Write the quick card as a PDF."""
+    chosen = cast(Paper, one_of(paper, PAPERS, "--paper") or "A4")
+    write_quick_card(out, output.words().language.name, chosen)
+
+
+def show_card(out: Path, *, as_json: bool) -> None:
+    """Say where it is."""
+    if as_json:
+        output.print_json({"file": str(out)})
+    else:
+        output.print_rows([(tr("written"), str(out))])
 
 
 def _paper(name: str) -> SheetPaper:

@@ -53,6 +53,19 @@ def target(
 
 
 @commands.command()
+def card(
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
+    paper: Annotated[str, typer.Option(help="A4 or Letter.")] = "A4",
+    json: Json = False,
+) -> None:
+    """Write the quick card as a PDF: one page to hang beside the rig, in the language of this command."""
+    from core.cli import preparing
+
+    preparing.write_card(paper, out)
+    preparing.show_card(out, as_json=json)
+
+
+@commands.command()
 def plan(
     rig: Annotated[Path, typer.Argument(metavar="RIG", help="A rig.toml, or the recording set that holds it.")],
     out: Annotated[

@@ -1,4 +1,4 @@
-"""The PDF of a target to print."""
+"""What is printed before anything is measured: a target to scale, and the quick card."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from pathlib import Path
 from core.files.atomic import write_bytes
 from core.image.targets import Target
 from core.progress import Progress, silent
+from core.report.quick_card import quick_card
 from core.report.target_sheet import SheetPaper, target_sheet
+from core.report.template import Paper
 
 
 def write_target_sheet(
@@ -22,4 +24,16 @@ def write_target_sheet(
     """
     progress("drawing the target", 0, 1)
     write_bytes(path, target_sheet(target, paper, title=title))
+    return path
+
+
+def write_quick_card(path: Path, language: str = "en", paper: Paper = "A4") -> Path:
+    """Write the page to hang beside the rig, and return where.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    write_bytes(path, quick_card(language, paper))
     return path
