@@ -46,6 +46,12 @@ def test_a_text_twice_as_long_is_refused_by_this_test_and_not_lost(monkeypatch: 
         quick_card()
 
 
+def test_no_chinese_line_begins_with_a_stop() -> None:
+    page = PdfReader(io.BytesIO(quick_card("zh_CN"))).pages[0]
+    lines = [line.strip() for line in page.extract_text().splitlines()]
+    assert [line for line in lines if line.startswith(("。", "、", "，"))] == []
+
+
 def test_its_keys_are_those_of_the_window() -> None:
     window = ", ".join(WINDOW_KEYS.values())
     for key, _ in KEYS:

@@ -146,9 +146,15 @@ def _style(name: str, size: float, leading: float, **options: object) -> Paragra
     return ParagraphStyle(name, fontSize=size, leading=leading, **(defaults | options))
 
 
+EAST_ASIAN = ("zh", "ja", "ko")
+"""Languages whose lines break between any two characters but before a full stop or after a bracket."""
+
+
 @cache
-def styles_of(accent: str) -> Mapping[str, ParagraphStyle]:
-    """Every type style of the report, by name; headings in `accent`."""
+def styles_of(accent: str, *, east_asian: bool = False) -> Mapping[str, ParagraphStyle]:
+    """Every type style of the report, by name; headings in `accent`; `east_asian` lines do not begin with a stop."""
+    if east_asian:
+        return {name: style.clone(name, wordWrap="CJK") for name, style in styles_of(accent).items()}
     return {
         "title": _style("title", 20, 24, fontName=BOLD, textColor=color(accent)),
         "laboratory": _style("laboratory", 8.5, 11, alignment=TA_RIGHT, textColor=color(MUTED)),
@@ -197,7 +203,7 @@ class ReportLook:
 
     def style(self, name: str) -> ParagraphStyle:
         """A type style by its name."""
-        return styles_of(self.accent)[name]
+        return styles_of(self.accent, east_asian=self.words.language.name.startswith(EAST_ASIAN))[name]
 
     def text(self, plain: str, style: str = "body") -> Paragraph:
         """A paragraph of plain words: whatever they hold is printed, never taken for markup."""
