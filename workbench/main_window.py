@@ -233,6 +233,7 @@ class MainWindow(QMainWindow):
             "sample": projects.open_sample,
             "simulated": projects.try_simulated,
             "save": projects.save,
+            "next part": projects.begin_next_part,
             "copy": projects.copy.save_copy,
             "pack": projects.pack.pack,
             "unpack": projects.pack.choose,

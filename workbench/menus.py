@@ -22,6 +22,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("new", "Ctrl+N", label("New project")),
     ("open", "Ctrl+O", label("Open project")),
     ("save", "Ctrl+S", label("Save project")),
+    ("next part", "Ctrl+Shift+N", label("Next part of the series")),
     ("close", "Ctrl+W", label("Close project")),
     ("quit", "Ctrl+Q", label("Quit")),
     ("undo", "Ctrl+Z", label("Undo")),
@@ -54,6 +55,7 @@ KEYS = {name: key for name, key, _ in SHORTCUTS}
 
 NEED_A_PROJECT = (
     "save",
+    "next part",
     "copy",
     "pack",
     "audit",
@@ -119,6 +121,7 @@ class Menus(QObject):
         self._add(file, "simulated", tr("&Try with the simulated rig"))
         file.addSeparator()
         self._add(file, "save", tr("&Save"))
+        self._add(file, "next part", tr("Next pa&rt …"))
         self._add(file, "copy", tr("Save a c&opy …"))
         self._add(file, "pack", tr("Pac&k into one file …"))
         self._add(file, "unpack", tr("&Unpack a project …"))

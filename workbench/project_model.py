@@ -270,6 +270,11 @@ class ProjectModel(QObject):
         self.signed_in = with_pin(self.rules, name, pin)
         self.undo_stack.clear()
 
+    def stay_signed_in(self, person: Person | None) -> None:
+        """Keep signed in who was so in the project before, if this one knows the same person with the same PIN."""
+        if person is not None and person in self.rules.people:
+            self.signed_in = person
+
     def sign_out(self) -> None:
         """Sign out: what follows is recorded without a person's name."""
         self.signed_in = None

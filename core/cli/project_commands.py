@@ -34,6 +34,23 @@ def pack(
     Shown(rows, {"files_packed": made.files, "bytes": made.bytes}, files={"packed": made.path}).show(as_json=json)
 
 
+@commands.command("next-part")
+def next_part(
+    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of the last part's project.")],
+    serial: Annotated[str, typer.Option(metavar="NUMBER", help="Serial number of the next part.")],
+    operator: Annotated[str, typer.Option(metavar="NAME", help="Who measures it.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="The folder to make.")],
+    json: Json = False,
+) -> None:
+    """Make the project of the next part of a series: the same calibrations, plan and report, nothing measured."""
+    from core.cli.measuring import Shown
+    from core.files.project import next_part as series
+
+    with bar() as progress:
+        folder = series.next_part(project, out, serial, operator, progress=progress)
+    Shown([(tr("project"), str(folder))], {"project": str(folder)}).show(as_json=json)
+
+
 @commands.command()
 def unpack(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A packed project: NAME.trisectz.")],

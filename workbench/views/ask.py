@@ -77,6 +77,56 @@ def ask_name_and_pin(parent: QWidget | None, title: str, names: Sequence[str]) -
     return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
 
 
+def ask_next_part(parent: QWidget | None, part: str, operator: str, folder: Path) -> tuple[str, str, Path] | None:
+    """Ask for the serial number of the next part and who measures it: both, and the project's folder; or None."""
+    dialog = _NextPart(parent, part, operator, folder)
+    return dialog.answer() if dialog.exec() == QDialog.DialogCode.Accepted else None
+
+
+class _NextPart(QDialog):
+    """The serial number comes first: a scanner types it and presses Return."""
+
+    def __init__(self, parent: QWidget | None, part: str, operator: str, folder: Path) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("Next part"))
+        self.setMinimumWidth(480)
+        self._part, self._folder = part, folder
+        self.serial, self.operator, self._will = QLineEdit(), QLineEdit(operator), QLabel()
+        self._will.setObjectName("muted")
+        self._will.setWordWrap(True)
+        self.buttons = QDialogButtonBox(
+            QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel, self
+        )
+        self.buttons.accepted.connect(self.accept)
+        self.buttons.rejected.connect(self.reject)
+        form = QFormLayout(self)
+        form.addRow(tr("Serial number"), self.serial)
+        form.addRow(tr("Operator"), self.operator)
+        form.addRow(self._will)
+        form.addRow(self.buttons)
+        for field in (self.serial, self.operator):
+            field.textChanged.connect(self._check)
+        self._check()
+
+    def answer(self) -> tuple[str, str, Path]:
+        """Serial number, operator and the project's folder."""
+        serial = self.serial.text().strip()
+        return serial, self.operator.text().strip(), self._folder / file_name(f"{self._part} {serial}".strip())
+
+    def _check(self) -> None:
+        serial, operator, target = self.answer()
+        if not serial:
+            problem = tr("Scan or type the serial number.")
+        elif not operator:
+            problem = tr("Say who measures.")
+        elif target.exists():
+            problem = tr("{folder} exists already: was this part measured before?", folder=target)
+        else:
+            problem = ""
+        self.buttons.button(QDialogButtonBox.StandardButton.Ok).setEnabled(not problem)
+        self._will.setText(problem or tr("The project will be the folder {folder}.", folder=target))
+
+
 class _NameAndPin(QDialog):
     def __init__(self, parent: QWidget | None, title: str, names: Sequence[str]) -> None:
         super().__init__(parent)

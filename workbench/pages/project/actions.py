@@ -22,6 +22,7 @@ from workbench.language import spoken, text_of, tr
 from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copying import ProjectCopy
 from workbench.pages.project.import_dialog import ImportDialog
+from workbench.pages.project.next_part import NextPart
 from workbench.pages.project.packing import PACKED, ProjectPack
 from workbench.pages.project.sample import SampleProject
 from workbench.pages.project.states import StateChoice, choose_access, choose_state
@@ -46,6 +47,7 @@ class ProjectActions(QObject):
         self.bench, self.model, self._window = bench, bench.model, window
         self.sample = SampleProject(bench, self._open_at_result, self)
         self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
+        self.next = NextPart(bench, window, self.save, self._open, self)
         self.pack = ProjectPack(bench, window, self.save, self.open_project, self)
         self._when_left: Callable[[], object] | None = None
         self._preparing: Task | None = None
@@ -203,6 +205,10 @@ class ProjectActions(QObject):
         """A folder that is not there yet, for a project of this name or of the name with a number."""
         names = (name + (f" {number}" if number > 1 else "") for number in range(1, 1000))
         return next(place for one in names if not (place := self.bench.settings.projects_folder / one).exists())
+
+    def begin_next_part(self) -> None:
+        """The next part of the series, in a project of its own, at its scan."""
+        self.next.begin(lambda: self.go_to.emit("scan"))
 
     def show_audit_trail(self) -> None:
         """Show who did what in the open project, and when; what is being changed is saved before."""
