@@ -19,10 +19,11 @@ from PySide6.QtWidgets import (
 from core.inspect.shown.shown_scan import DEPTH
 from workbench.language import tr
 from workbench.views.common import SpinBox
-from workbench.views.layouts import Folding, in_row
+from workbench.views.layouts import Folding, enable, in_row
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
+    from workbench.pages.inspect.buttons import SurfaceButtons
 
 STEPS = 200
 """Of the slider from the smallest σ to the largest."""
@@ -42,6 +43,7 @@ class SurfaceChoices(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
+        self._tips: dict[Shape, str] = {}
         self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
         look, limit = in_row(spacing=4), in_row(spacing=4)
         self._make_shapes(look)
@@ -66,14 +68,14 @@ class SurfaceChoices(QWidget):
         """Colour by something else."""
         self.colours.setCurrentIndex(self.colours.findData(name))
 
-    def show_view(self, view: InspectionView | None, clip_mm: float | None) -> None:
+    def show_view(self, view: InspectionView | None, can: SurfaceButtons, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
-        for widget in (*self.shapes.values(), self.colours, self.limit, self.slider):
+        for name, button in self.shapes.items():
+            enable(button, can.use if name == "points" else can.mesh, self._tips[name])
+        for widget in (self.colours, self.limit, self.slider):
             widget.setEnabled(view is not None)
         if view is None:
             return
-        for name in ("mesh", "both"):
-            self.shapes[name].setEnabled(view.mesh is not None)
         if view.mesh is None and self.shape != "points":
             self.shapes["points"].setChecked(True)
         self._name_colours(view)
@@ -88,7 +90,7 @@ class SurfaceChoices(QWidget):
         )
         for name, text, tip in entries:
             button = QPushButton(text)
-            button.setToolTip(tip)
+            self._tips[name] = tip
             button.setCheckable(True)
             group.addButton(button)
             bar.addWidget(button)
@@ -145,7 +147,9 @@ class SurfaceChoices(QWidget):
         self.colours.setItemText(place, tr("depth") if view.height_is == DEPTH else tr("height"))
         model: Any = self.colours.model()
         for name in ("faces", "deviation"):
-            model.item(self.colours.findData(name)).setEnabled(view.gauge is not None)
+            item = model.item(self.colours.findData(name))
+            item.setEnabled(view.gauge is not None)
+            item.setToolTip("" if view.gauge is not None else tr("Measure the thickness first."))
         if view.gauge is None and self.colour in ("faces", "deviation"):
             self.choose_colour("height")
 

@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.recording.rig import GaugeSpec
 from core.model.arrays import Array
 from workbench.language import tr
+from workbench.pages.inspect.buttons import FacesButtons, FacesFacts, faces_buttons
 from workbench.pages.inspect.scan import InspectScan
 from workbench.project_model import ProjectModel
 
@@ -125,20 +126,10 @@ class InspectFaces(QObject):
         self.changed.emit()
 
     @property
-    def can_take_found(self) -> str:
-        """Why there are no outlines to begin with, or ""."""
-        if self.own:
-            return tr("The faces are regions of your own already: drag their corners in the picture.")
-        if self._found("upper") is None:
-            return tr("Measure the thickness first, so that there are faces to begin with.")
-        return ""
-
-    @property
-    def can_find(self) -> str:
-        """Why there is nothing to go back to, or ""."""
-        if self.own or self._regions:
-            return ""
-        return tr("The faces are found automatically already.")
+    def buttons(self) -> FacesButtons:
+        """What can be done with the regions."""
+        found = self._found("upper") is not None
+        return faces_buttons(FacesFacts(self._scan.buttons.use, found, self.own, self.missing()))
 
     def missing(self) -> str:
         """What keeps the thickness from being measured, or ""."""

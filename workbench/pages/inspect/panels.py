@@ -135,22 +135,18 @@ class FacesPanel(QWidget):
                 state = tr("own region, {count} corners", count=len(region))
             colour = FACE_UPPER if face == "upper" else FACE_LOWER
             label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
-        why_not = "" if self._presenter.scan.view is not None else tr("There is no surface to draw on yet.")
+        can = faces.buttons
         for (face, kind), button in self.tools.items():
-            enable(button, why_not, self._tip(face, kind))
+            enable(button, can.draw, self._tip(face, kind))
         self.words.setText(faces.missing())
         self.words.setVisible(bool(faces.missing()))
-        enable(self.own, faces.can_take_found, tr("Make the outlines of the faces found regions you can change"))
+        enable(self.own, can.take_found, tr("Make the outlines of the faces found regions you can change"))
         enable(
             self.automatic,
-            faces.can_find,
+            can.automatic,
             tr("Remove the regions: the two largest parallel faces are looked for again"),
         )
-        enable(
-            self.exchange,
-            "" if faces.own else tr("The faces are found automatically: there is nothing to exchange."),
-            tr("Exchange the upper and the lower region"),
-        )
+        enable(self.exchange, can.exchange, tr("Exchange the upper and the lower region"))
 
     def _rows(self) -> QGridLayout:
         grid = QGridLayout()

@@ -7,10 +7,11 @@ from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushBu
 
 from workbench.language import tr
 from workbench.pages.inspect import words
+from workbench.pages.inspect.buttons import PicksFacts, picks_buttons
 from workbench.pages.inspect.picks import Mode, Pick
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.theme import icon
-from workbench.views.layouts import in_column, muted
+from workbench.views.layouts import enable, in_column, muted
 
 
 class PicksPanel(QWidget):
@@ -54,15 +55,9 @@ class PicksPanel(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        picks, ready = self._presenter.picks, self._presenter.scan.view is not None
-        tips: dict[Mode, str] = {
-            "point": tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
-            "distance": tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
-        }
+        picks = self._presenter.picks
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)
-            button.setEnabled(ready)
-            button.setToolTip(tips[mode] if ready else tr("There is no surface to pick on yet."))
         names = [item.name for item in picks.items]
         if names != self._names:
             self._names = names
@@ -77,12 +72,15 @@ class PicksPanel(QWidget):
         for widget in (self.list, self.remove, self.clear):
             widget.setVisible(bool(self._names))
         chosen = 0 <= self.list.currentRow() < len(self._names)
-        for button, possible, tip in (
-            (self.remove, chosen, tr("Take the chosen one off the list")),
-            (self.clear, bool(self._names), tr("Take all points and distances off the list")),
-        ):
-            button.setEnabled(possible)
-            button.setToolTip(tip if possible else tr("Nothing is picked yet."))
+        can = picks_buttons(PicksFacts(self._presenter.scan.buttons.use, bool(self._names), chosen))
+        tips: dict[Mode, str] = {
+            "point": tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
+            "distance": tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
+        }
+        for mode, button in self.tools.items():
+            enable(button, can.pick, tips[mode])
+        enable(self.remove, can.remove, tr("Take the chosen one off the list"))
+        enable(self.clear, can.clear, tr("Take all points and distances off the list"))
 
     def _remove(self) -> None:
         row = self.list.currentRow()

@@ -10,6 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import Project
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.inspect.buttons import SurfaceButtons, SurfaceFacts, surface_buttons
 from workbench.step_state import State
 from workbench.work import jobs
 
@@ -46,6 +47,19 @@ class InspectScan(QObject):
     def gauge(self) -> GaugeResult | None:
         """The thickness that is shown."""
         return self.view.gauge if self.view is not None else None
+
+    @property
+    def buttons(self) -> SurfaceButtons:
+        """What can be done with what is shown."""
+        view = self.view
+        return surface_buttons(
+            SurfaceFacts(
+                scan="scan" in self._model.results,
+                unreadable=bool(self.problem),
+                shown=view is not None,
+                mesh=view is not None and view.mesh is not None,
+            )
+        )
 
     @property
     def is_old(self) -> bool:

@@ -21,7 +21,7 @@ from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.refresh import Refresh
 from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, PROPOSED, to_rgba
-from workbench.views.layouts import in_column
+from workbench.views.layouts import enable, in_column
 from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
@@ -90,6 +90,7 @@ class SurfaceTab(QWidget):
                 tr("Click two faces to measure from one to the other"), "Shift+C", "mdi6.stairs"
             ),
         }
+        self._tips = {mode: action.toolTip() for mode, action in self.clicks.items()}
         for mode, action in self.clicks.items():
             action.triggered.connect(lambda on, mode=mode: presenter.start_clicking(mode if on else ""))
         presenter.measured.connect(self._show_faces)
@@ -100,9 +101,9 @@ class SurfaceTab(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
         p, view = self._presenter, self._presenter.scan.view
-        self.choices.show_view(view, p.clip_mm)
-        for action in self.clicks.values():
-            action.setEnabled(view is not None)
+        self.choices.show_view(view, p.scan.buttons, p.clip_mm)
+        for mode, action in self.clicks.items():
+            enable(action, p.scan.buttons.use, self._tips[mode])
         if view is None:
             self._clear()
             return

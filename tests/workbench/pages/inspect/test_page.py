@@ -115,6 +115,84 @@ def test_greyed_buttons_say_why(page):
     assert page.card.buttons["measure"].toolTip() == "Scan the part first."
 
 
+def stands_as(button, why_not):
+    """Whether a button, or a tool of the 3D view, is on, or grey with this reason."""
+    return button.isEnabled() if not why_not else not button.isEnabled() and button.toolTip() == why_not
+
+
+def stand_as_the_facts_say(page):
+    """The buttons of the surface, the faces and the picks."""
+    page.refreshing.at_once()
+    surface, faces = page.presenter.scan.buttons, page.presenter.faces.buttons
+    choices = page.surface.choices.shapes
+    for button, why_not in (
+        (choices["points"], surface.use), (choices["mesh"], surface.mesh), (choices["both"], surface.mesh),
+        *((tool, surface.use) for tool in page.surface.clicks.values()),
+        *((tool, surface.use) for tool in page.picks.tools.values()),
+        *((tool, faces.draw) for tool in page.faces.tools.values()),
+        (page.faces.own, faces.take_found), (page.faces.automatic, faces.automatic),
+        (page.faces.exchange, faces.exchange),
+    ):  # fmt: skip
+        assert stands_as(button, why_not), (button.text(), button.toolTip(), why_not)
+    return surface, faces
+
+
+def test_the_buttons_of_surface_and_faces_follow_the_page_from_state_to_state(page, quick, qtbot):
+    assert stand_as_the_facts_say(page)[0].use == "Scan the part first."
+    quick.held = {jobs.INSPECTION_VIEW}
+    page.presenter.model.record("scan", cases.results(page.presenter.project)["scan"])
+    assert stand_as_the_facts_say(page)[0].use == "The scan is being read."
+    quick.fail(InputError("broken"))
+    assert stand_as_the_facts_say(page)[0].use == "The scan cannot be read."
+    quick.held = set()
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(mesh=False)
+    page.presenter.scan.forget()
+    page.presenter.entered()
+    qtbot.waitUntil(lambda: page.presenter.scan.view is not None)
+    surface, faces = stand_as_the_facts_say(page)
+    assert surface == ("", "This scan has no mesh.") and faces.take_found.startswith("Measure the thickness first")
+    page.presenter.faces.set_region("lower", OUTLINE)
+    _, faces = stand_as_the_facts_say(page)
+    assert faces.exchange.startswith("Draw the upper face too") and not faces.automatic
+    page.presenter.faces.set_region("upper", OUTLINE)
+    _, faces = stand_as_the_facts_say(page)
+    assert faces.exchange == faces.automatic == "" and "already" in faces.take_found
+
+
+@pytest.mark.parametrize("half", ["", "upper"])
+@pytest.mark.parametrize("own", [False, True])
+@pytest.mark.parametrize("outlines", [False, True])
+def test_a_button_of_the_faces_that_is_on_changes_the_regions(page, quick, qtbot, outlines, own, half):
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge() if outlines else None)
+    scan(page, qtbot)
+    faces = page.presenter.faces
+    for face in ("upper", "lower") if own else (half,) if half else ():
+        faces.set_region(face, OUTLINE + (5 if face == "lower" else 0))
+
+    def regions():
+        return [None if (one := faces.region(face)) is None else one.tolist() for face in ("upper", "lower")]
+
+    for button in (page.faces.own, page.faces.automatic, page.faces.exchange):
+        page.refreshing.at_once()
+        before, could = regions(), button.isEnabled()
+        button.click()
+        assert (regions() != before) == could, button.toolTip()
+
+
+def test_what_is_picked_is_chosen_before_it_is_removed(shown, qtbot):
+    p, panel = shown.presenter, shown.picks
+    p.picks.start("point")
+    for point in (3, 5):
+        p.picks.pick(point)
+    shown.refreshing.at_once()
+    assert panel.remove.isEnabled() and panel.clear.isEnabled()
+    panel.list.setCurrentRow(-1)
+    assert stands_as(panel.remove, "Choose a point or a distance in the list first.") and panel.clear.isEnabled()
+    press(qtbot, panel.clear)
+    shown.refreshing.at_once()
+    assert stands_as(panel.remove, "Nothing is picked yet.") and stands_as(panel.clear, "Nothing is picked yet.")
+
+
 def test_everything_has_a_name_for_those_who_do_not_see_it(shown):
     for kind in (QAbstractButton, QComboBox, QDoubleSpinBox, QSlider):
         for part in (shown.surface, shown.picture, shown.series, shown.card, shown.faces, shown.picks):

@@ -268,20 +268,20 @@ def test_without_a_thickness_the_first_region_waits_for_the_second(unmeasured):
 def test_a_waiting_region_can_be_given_up(unmeasured):
     unmeasured.faces.set_region("upper", TRIANGLE)
     assert unmeasured.can_measure.startswith("Draw the lower face too")
-    assert unmeasured.faces.can_find == ""
+    assert unmeasured.faces.buttons.automatic == ""
     unmeasured.faces.find_automatically()
     assert unmeasured.faces.region("upper") is None and unmeasured.can_measure == ""
 
 
 def test_faces_found_become_regions_and_go_again(shown):
-    assert shown.faces.can_take_found == ""
+    assert shown.faces.buttons.take_found == ""
     shown.faces.take_found()
     assert np.array_equal(shown.faces.region("upper"), cases.UPPER_OUTLINE)
-    assert "already" in shown.faces.can_take_found
+    assert "already" in shown.faces.buttons.take_found
     shown.faces.set_region("lower", TRIANGLE)
     assert shown.model.undo_stack.undoText() == "change the lower face"
     shown.faces.find_automatically()
-    assert not shown.faces.own and "automatically already" in shown.faces.can_find
+    assert not shown.faces.own and "automatically already" in shown.faces.buttons.automatic
     undo(shown)
     assert np.array_equal(shown.faces.region("lower"), TRIANGLE)
     undo(shown)

@@ -203,7 +203,6 @@ class FeatureForm(QWidget):
             self._edit.set_nominal(path)
 
     def _show_tools(self) -> None:
-        why_not = "" if self._scan.view is not None else tr("There is no surface to draw on yet.")
         more = tr("In the picture, or in 3D: what is drawn round there is outlined in the picture.")
         tips = {
             "polygon": tr("Draw the region corner by corner.") + " " + more,
@@ -211,7 +210,7 @@ class FeatureForm(QWidget):
             CLICK: tr("Click the face in 3D: the region is all of it."),
         }
         for (_, kind), button in self.tools.items():
-            enable(button, why_not, tips[kind])
+            enable(button, self._scan.buttons.use, tips[kind])
 
 
 def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:
