@@ -13,6 +13,7 @@ from workbench.pages.inspect.buttons import (
     picks_buttons,
     surface_buttons,
 )
+from workbench.pages.inspect.repeats.buttons import RepeatsFacts, repeats_buttons
 
 BOOLS, WHY = (False, True), ("", "Why not.")
 
@@ -74,3 +75,22 @@ def test_what_was_picked_is_removed_and_one_of_it_once_it_is_chosen(facts: Picks
     assert (can.remove == "") == facts.chosen
     if facts.some and not facts.chosen:
         assert can.remove.startswith("Choose")
+
+
+REPEATS = [
+    facts
+    for facts in (RepeatsFacts(why, *flags) for why in WHY for flags in product(BOOLS, repeat=7))
+    if not (facts.no_surface and facts.thickness) and (facts.some or not (facts.among or facts.chosen))
+]
+
+
+def test_a_repeat_is_added_once_and_only_what_is_shown_and_up_to_date() -> None:
+    for facts in REPEATS:
+        can = repeats_buttons(facts)
+        assert are_sentences(can), facts
+        good = facts.thickness and not (facts.stale or facts.scan_old or facts.outdated or facts.among)
+        assert (can.add == "") == good, facts
+        if facts.no_surface:
+            assert can.add == facts.no_surface, "nothing can be measured before there is a surface"
+        assert (can.remove == "") == facts.chosen, facts
+        assert (can.copy == "") == facts.some, facts

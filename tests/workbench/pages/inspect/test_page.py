@@ -526,6 +526,35 @@ def test_repeats_are_removed_and_copied(shown, qtbot):
     assert shown.series.rows.text_of("Largest error") == "0.0400 mm"
 
 
+def test_the_buttons_of_the_repeats_follow_the_page_from_state_to_state(page, quick, qtbot):
+    p, series = page.presenter, page.series
+    page.tabs.setCurrentWidget(series)
+
+    def reason():
+        page.refreshing.at_once()
+        can = p.repeats.buttons(chosen=series.table.current_row() >= 0)
+        assert stands_as(series.add, can.add) and stands_as(page.card.buttons["repeat"], can.add)
+        assert stands_as(series.remove, can.remove) and stands_as(series.copy, can.copy)
+        return can.add
+
+    assert reason() == "Scan the part first."
+    quick.held = {jobs.INSPECTION_VIEW}
+    for step, done in cases.results(p.project).items():
+        p.model.record(step, done)
+    assert reason() == "The scan is being read.", "its thickness is measured"
+    qtbot.waitUntil(lambda: len(quick.waiting) == 2)
+    for _ in range(2):
+        quick.finish(cases.view(cases.gauge()))
+    assert reason() == "" and series.copy.toolTip() == series.remove.toolTip() == "There are no repeats yet."
+    press(qtbot, series.add)
+    assert reason().startswith("This scan is among the repeats already.")
+    assert series.copy.isEnabled() and stands_as(series.remove, "Choose a repeat in the table first.")
+    series.table.set_current_row(0)
+    assert series.remove.isEnabled()
+    p.model.record("inspect", replace(p.model.results["inspect"], at=p.model.results["inspect"].at.replace(year=2026)))
+    assert reason() == "The scan is being read.", "it was measured again; what is shown is the thickness before"
+
+
 def test_repeats_of_several_calibrations_are_pointed_out(shown):
     repeats = (cases.repeat(2, 50.0), cases.repeat(3, 50.1, calibration="cal-2"))
     shown.presenter.model.edit("repeats", replace(shown.presenter.project, repeats=repeats))

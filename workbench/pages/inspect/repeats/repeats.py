@@ -14,6 +14,7 @@ from core.study.repeats import RepeatStatistics, repeat_statistics
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.inspect.faces import InspectFaces
+from workbench.pages.inspect.repeats.buttons import RepeatsButtons, RepeatsFacts, repeats_buttons
 from workbench.pages.inspect.scan import InspectScan
 from workbench.step_state import State
 from workbench.work import jobs
@@ -47,18 +48,23 @@ class InspectRepeats(QObject):
     @property
     def can_add(self) -> str:
         """Why the thickness shown cannot be added, or ""."""
-        if self._scan.gauge is None:
-            return tr("Measure the thickness first.")
-        if self._scan.is_old:
-            return tr("The scan is out of date: measure it again first, on the page before.")
-        if self._model.states["inspect"].state is not State.DONE or self._scan.stale:
-            return tr("The thickness is out of date: measure it again first.")
-        if any(repeat.scan == self._scan.recording for repeat in self.all):
-            return tr(
-                "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
-                "pictures again says nothing about how well the measurement repeats."
+        return self.buttons().add
+
+    def buttons(self, *, chosen: bool = False) -> RepeatsButtons:
+        """What can be done with them, where one of them is `chosen` or none."""
+        scan = self._scan
+        return repeats_buttons(
+            RepeatsFacts(
+                no_surface=scan.buttons.use,
+                stale=scan.stale,
+                thickness=scan.gauge is not None,
+                scan_old=scan.is_old,
+                outdated=self._model.states["inspect"].state is not State.DONE,
+                among=any(repeat.scan == scan.recording for repeat in self.all),
+                some=bool(self.all),
+                chosen=chosen,
             )
-        return ""
+        )
 
     def add(self) -> None:
         """Add the thickness of this scan to the series; undoable. The same scan twice is refused with a sentence."""

@@ -113,19 +113,10 @@ class RepeatsTab(QWidget):
 
     def _show_buttons(self) -> None:
         repeats = self._repeats
-        why_not = repeats.can_add
-        enable(self.add, why_not, tr("Add the thickness of this scan to the series"))
-        chosen = 0 <= self.table.current_row() < len(repeats.all)
-        self.remove.setEnabled(chosen)
-        self.remove.setToolTip(
-            tr("Take the chosen repeat out of the series") if chosen else tr("Choose a repeat in the table first.")
-        )
-        self.copy.setEnabled(bool(repeats.all))
-        self.copy.setToolTip(
-            tr("Copy the whole series with its statistics, tabs between the columns")
-            if repeats.all
-            else tr("There are no repeats yet.")
-        )
+        can = repeats.buttons(chosen=0 <= self.table.current_row() < len(repeats.all))
+        enable(self.add, can.add, tr("Add the thickness of this scan to the series"))
+        enable(self.remove, can.remove, tr("Take the chosen repeat out of the series"))
+        enable(self.copy, can.copy, tr("Copy the whole series with its statistics, tabs between the columns"))
 
     def _sentence(self) -> str:
         repeats = self._repeats
