@@ -8,6 +8,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject
 
+from workbench.language import tr
 from workbench.notices import Notices
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
@@ -34,6 +35,11 @@ class Bench:
     measuring: Lane
     quick: Lane
     live: Lane
+
+    @property
+    def cannot_write(self) -> str:
+        """Why nothing can be measured into the open project, or ""."""
+        return tr("The project is read-only: go on in a copy (File, Save a copy).") if self.model.is_read_only else ""
 
     def run_long(self, receiver: QObject, job: jobs.Job, *args: Any, label: str, **more: Any) -> Task:
         """Run a long job, as `Lane.run` does; the status bar shows how far it is, a notice what went wrong."""

@@ -108,6 +108,8 @@ class FeatureKind:
         What other features can be measured from it as; None: as nothing.
     made_of
         Of how many other features it is made instead of points.
+    of_directions
+        Whether those must be planes or axes: a point has no direction.
     automatic
         What its region is where none is drawn.
     most_regions
@@ -132,6 +134,7 @@ class FeatureKind:
     results: tuple[ResultKind, ...] = ()
     element: ElementKind | None = None
     made_of: int = 0
+    of_directions: bool = False
     automatic: Automatic = "searched"
     most_regions: int = 1
     region_titles: tuple[str, ...] = ()

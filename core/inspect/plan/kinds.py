@@ -156,6 +156,7 @@ KINDS: tuple[FeatureKind, ...] = (
         "mdi6.angle-acute",
         results=(ResultKind(label("angle"), "angle"),),
         made_of=2,
+        of_directions=True,
     ),
     FeatureKind(
         "section",

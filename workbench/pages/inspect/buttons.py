@@ -31,17 +31,17 @@ class SurfaceButtons(NamedTuple):
     """Show the points; draw, pick and click on them."""
     mesh: str
     """Show the mesh."""
+    measure: str
+    """Measure on it: it need not be shown."""
 
 
 def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
     """What can be done with the surface."""
     if facts.shown:
-        return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."))
-    if not facts.scan:
-        why = tr("Scan the part first.")
-    else:
-        why = tr("The scan cannot be read.") if facts.unreadable else tr("The scan is being read.")
-    return SurfaceButtons(why, why)
+        return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."), "")
+    none = tr("The scan cannot be read.") if facts.unreadable else "" if facts.scan else tr("Scan the part first.")
+    why = none or tr("The scan is being read.")
+    return SurfaceButtons(why, why, none)
 
 
 @dataclass(frozen=True, slots=True)

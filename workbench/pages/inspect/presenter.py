@@ -63,7 +63,7 @@ class InspectPresenter(StepPresenter):
         self.part = InspectPart(self.model)
         self.repeats = InspectRepeats(bench, self.scan, self.faces)
         self.studies = InspectStudies(bench, self.repeats)
-        self.features = InspectFeatures(bench)
+        self.features = InspectFeatures(bench, self.scan)
         self.feature = InspectFeatureEdit(self.features, self.scan)
         self.clicked = InspectClicked(self.features, self.scan)
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
@@ -94,6 +94,7 @@ class InspectPresenter(StepPresenter):
             thickness=scan.gauge is not None,
             outdated=self.state.state is not State.DONE,
             face_missing=bool(self.faces.missing()),
+            read_only=self.model.is_read_only,
         )
 
     def blocker(self) -> str:
@@ -121,6 +122,7 @@ class InspectPresenter(StepPresenter):
             WhyNot.NOTHING: "",
             WhyNot.NO_SCAN: tr("Scan the part first."),
             WhyNot.UNREADABLE: tr("The scan cannot be read."),
+            WhyNot.READ_ONLY: self.bench.cannot_write,
             WhyNot.MEASURING: tr("The thickness is being measured."),
             WhyNot.FACE_MISSING: self.faces.missing(),
         }[why_not_measure(self._facts())]

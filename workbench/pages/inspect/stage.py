@@ -25,6 +25,7 @@ class WhyNot(StrEnum):
     NOTHING = ""
     NO_SCAN = "no scan"
     UNREADABLE = "unreadable"
+    READ_ONLY = "read-only"
     MEASURING = "measuring"
     FACE_MISSING = "face missing"
 
@@ -48,6 +49,8 @@ class Facts(NamedTuple):
     """It is not what the project would give now."""
     face_missing: bool
     """Only one of the two faces is drawn."""
+    read_only: bool
+    """Nothing can be kept in the project."""
 
 
 def stage_of(facts: Facts) -> Stage:
@@ -73,6 +76,8 @@ def why_not_measure(facts: Facts) -> WhyNot:
         return WhyNot.NO_SCAN
     if facts.unreadable:
         return WhyNot.UNREADABLE
+    if facts.read_only:
+        return WhyNot.READ_ONLY
     if facts.measuring:
         return WhyNot.MEASURING
     return WhyNot.FACE_MISSING if facts.face_missing else WhyNot.NOTHING

@@ -13,6 +13,7 @@ from workbench.pages.inspect.buttons import (
     picks_buttons,
     surface_buttons,
 )
+from workbench.pages.inspect.features.buttons import FeaturesFacts, features_buttons
 from workbench.pages.inspect.repeats.buttons import RepeatsFacts, repeats_buttons
 
 BOOLS, WHY = (False, True), ("", "Why not.")
@@ -37,6 +38,7 @@ def test_the_surface_is_used_once_it_is_shown_and_its_mesh_where_it_has_one(fact
     assert are_sentences(can)
     assert (can.use == "") == facts.shown
     assert (can.mesh == "") == (facts.shown and facts.mesh)
+    assert (can.measure == "") == (facts.scan and not facts.unreadable), "it need not be shown"
     if not facts.shown:
         said = "first" if not facts.scan else "cannot be read" if facts.unreadable else "being read"
         assert said in can.use and can.mesh == can.use
@@ -94,3 +96,25 @@ def test_a_repeat_is_added_once_and_only_what_is_shown_and_up_to_date() -> None:
             assert can.add == facts.no_surface, "nothing can be measured before there is a surface"
         assert (can.remove == "") == facts.chosen, facts
         assert (can.copy == "") == facts.some, facts
+
+
+FEATURES = [
+    FeaturesFacts(no_scan, cannot_write, measured, measuring, count, place, cannot_remove)
+    for no_scan, cannot_write, cannot_remove in product(WHY, repeat=3)
+    for measured, measuring in product(BOOLS, repeat=2)
+    for count in range(4)
+    for place in range(-1, count)
+    if place >= 0 or not cannot_remove
+]
+
+
+def test_features_are_measured_removed_moved_and_saved_where_there_are_some() -> None:
+    for facts in FEATURES:
+        can = features_buttons(facts)
+        assert are_sentences(can), facts
+        possible = not (facts.no_scan or facts.cannot_write) and (facts.count > 0 or facts.measured)
+        assert (can.measure == "") == (possible and not facts.measuring), facts
+        assert (can.remove == "") == (facts.place >= 0 and not facts.cannot_remove), facts
+        for reason, there in ((can.up, facts.place - 1), (can.down, facts.place + 1)):
+            assert (reason == "") == (facts.place >= 0 and 0 <= there < facts.count), facts
+        assert (can.save == "") == (facts.count > 0), facts

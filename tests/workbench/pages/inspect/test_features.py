@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import replace
+from itertools import combinations_with_replacement
 from typing import cast
 
 import numpy as np
@@ -31,6 +32,8 @@ from workbench.work import jobs
 
 __all__ = ["toy"]
 
+ELEMENTS = ("plane", "sphere", "cylinder", "point")
+"""Kinds that others are made of."""
 CORNERS = [(10.0, 10.0), (30.0, 10.0), (20.0, 30.0)]
 
 
@@ -178,7 +181,7 @@ def test_a_region_drawn_in_3d_is_outlined_and_taken(presenter, features, qtbot):
 
 
 def test_why_nothing_can_be_measured_is_told(features):
-    assert features.cannot_measure == "Add a feature first."
+    assert features.buttons.measure == "Add a feature first."
 
 
 def test_the_plan_is_measured_and_stays_so_after_opening_again(presenter, features, measuring, qtbot):
@@ -299,6 +302,81 @@ def test_without_features_the_panel_is_one_button(page):
     assert not any(one.isVisibleTo(page) for one in (panel.list, panel.measure, panel.remove, panel.form))
     assert not panel.kinds["distance"].isEnabled()
     assert "made of two other features" in panel.kinds["distance"].toolTip()
+
+
+@pytest.mark.parametrize("made", [one for n in (0, 1, 2) for one in combinations_with_replacement(ELEMENTS, n)])
+def test_a_kind_can_be_added_once_there_is_what_it_is_made_of(presenter, page, features, made):
+    for kind in made:
+        presenter.feature.add(kind)
+    page.refreshing.at_once()
+    useful = {"distance": len(made), "angle": sum(kind in ("plane", "cylinder") for kind in made)}
+    for name, action in page.features.kinds.items():
+        assert action.isEnabled() == (useful.get(name, 2) == 2) and action.toolTip()
+        if not action.isEnabled():
+            assert action.toolTip().startswith("It is made of two other features: add planes")
+
+
+def test_an_angle_is_made_of_the_last_two_that_have_a_direction(presenter, page, features):
+    for kind in ("plane", "cylinder", "sphere", "angle"):
+        presenter.feature.add(kind)
+    assert features.plan.feature("angle 1").of == ("plane 1", "cylinder 1")
+    page.refreshing.at_once()
+    chosen = page.features.form.where.editor("of 0")
+    assert [chosen.itemText(place) for place in range(chosen.count())] == ["plane 1", "cylinder 1"]
+
+
+def test_the_buttons_of_the_features_follow_the_panel_from_state_to_state(presenter, page, features, measuring, qtbot):
+    panel = page.features
+
+    def follow():
+        page.refreshing.at_once()
+        can = features.buttons
+        for button, why_not in (
+            (panel.measure, can.measure), (panel.remove, can.remove), (panel.up, can.up), (panel.down, can.down),
+            (panel.templates.save, can.save),
+        ):  # fmt: skip
+            assert button.isEnabled() if not why_not else not button.isEnabled() and button.toolTip() == why_not
+        return can
+
+    assert follow().measure == follow().save == "Add a feature first."
+    for kind in ("plane", "plane", "distance"):
+        presenter.feature.add(kind)
+    assert follow() == ("", "", "", "It is the last.", "")
+    features.choose("plane 1")
+    assert follow().up == "It is the first." and follow().remove.endswith("distance 1 rests on it.")
+    features.choose("")
+    assert follow()[1:4] == ("Choose a feature first.",) * 3
+    measuring.held = {jobs.MEASURE_FEATURES}
+    panel.measure.click()
+    assert follow().measure == "The features are being measured."
+    qtbot.waitUntil(lambda: measuring.busy)
+    measuring.finish(shown_of(features.model.project))
+    assert follow().measure == ""
+
+
+def test_a_scan_that_cannot_be_read_has_no_features_measured(presenter, page, features, hand_bench, qtbot):
+    presenter.feature.add("plane")
+    quick = cast(HandLane, hand_bench.quick)
+    quick.held = {jobs.INSPECTION_VIEW}
+    presenter.scan.forget()
+    presenter.entered()
+    page.refreshing.at_once()
+    assert page.features.measure.isEnabled(), "it need not be shown"
+    quick.fail(InputError("broken"))
+    page.refreshing.at_once()
+    assert not page.features.measure.isEnabled()
+    assert page.features.measure.toolTip() == "The scan cannot be read."
+
+
+def test_nothing_is_measured_into_a_project_that_is_read_only(presenter, page, features, measuring, monkeypatch):
+    presenter.feature.add("plane")
+    monkeypatch.setattr(type(features.model), "is_read_only", property(lambda _: True))
+    page.refresh()
+    for button in (page.features.measure, page.card.buttons["measure"]):
+        assert not button.isEnabled() and button.toolTip().startswith("The project is read-only: go on in a copy")
+    features.measure()
+    presenter.do_run()
+    assert not measuring.busy and not presenter.bench.notices.all
 
 
 def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qtbot):

@@ -24,7 +24,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
     for facts in every_state():
         stage, why_not = stage_of(facts), why_not_measure(facts)
         reached.add(stage)
-        if not facts.scan or facts.unreadable or facts.measuring or facts.face_missing:
+        if not facts.scan or facts.unreadable or facts.read_only or facts.measuring or facts.face_missing:
             assert why_not, facts
         if stage in (Stage.NO_SCAN, Stage.MEASURING, Stage.UNREADABLE):
             assert why_not, facts
@@ -36,7 +36,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
 def test_in_every_state_the_next_thing_to_do_can_be_done():
     for facts in every_state():
         stage, why_not = stage_of(facts), why_not_measure(facts)
-        if stage in (Stage.UNMEASURED, Stage.FAILED, Stage.OUTDATED) and not facts.unreadable:
+        if stage in (Stage.UNMEASURED, Stage.FAILED, Stage.OUTDATED) and not (facts.unreadable or facts.read_only):
             assert why_not in (WhyNot.NOTHING, WhyNot.FACE_MISSING), facts
             assert bool(why_not) == facts.face_missing, facts
 

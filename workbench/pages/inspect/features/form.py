@@ -94,7 +94,7 @@ class FeatureForm(QWidget):
     def _add_where(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
         form = self.where
         form.add_text("name", tr("Name"), tr("As it is called in the list and in the report."))
-        others = [(name, name) for name in fields.elements(plan)]
+        others = [(name, name) for name in fields.elements(plan, kind_of(spec))]
         for place in range(kind_of(spec).made_of):
             title = tr("First feature") if place == 0 else tr("Second feature")
             form.add_choice(f"of {place}", title, others, tr("A plane, sphere, cylinder or point of the list."))

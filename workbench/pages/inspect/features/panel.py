@@ -222,22 +222,16 @@ class FeaturesPanel(QWidget):
         self.down.clicked.connect(lambda: self._features.move(self._features.chosen, 1))
 
     def _show_buttons(self) -> None:
-        features, plan = self._features, self._features.plan
         for name, action in self.kinds.items():
-            why_not = fields.why_not(name, plan)
-            enable(action, why_not, tr(kind_named(name).help))
+            enable(action, fields.why_not(name, self._features.plan), tr(kind_named(name).help))
         self.add.setToolTip(tr("Measure something beside the thickness"))
-        why_not = features.cannot_measure
-        enable(self.measure, why_not, tr("Measure all features on this scan"))
-        place = plan.names.index(features.chosen) if features.chosen in plan.names else -1
-        choose = tr("Choose a feature first.")
+        can = self._features.buttons
+        enable(self.measure, can.measure, tr("Measure all features on this scan"))
         for button, why_not, tip in (
-            (self.remove, features.cannot_remove(features.chosen), tr("Take the chosen feature out (Delete)")),
-            (self.up, choose if place < 0 else tr("It is the first.") if not place else "",
-             tr("Move the chosen feature up (Alt+Up)")),
-            (self.down, choose if place < 0 else tr("It is the last.") if place == len(plan.names) - 1 else "",
-             tr("Move the chosen feature down (Alt+Down)")),
-        ):  # fmt: skip
+            (self.remove, can.remove, tr("Take the chosen feature out (Delete)")),
+            (self.up, can.up, tr("Move the chosen feature up (Alt+Up)")),
+            (self.down, can.down, tr("Move the chosen feature down (Alt+Down)")),
+        ):
             enable(button, why_not, tip)
             button.setAccessibleName(tip)
 
@@ -253,7 +247,7 @@ class FeaturesPanel(QWidget):
         if features.measuring or features.shown is not None:
             shown = features.shown
             return "" if shown is None else "\n".join(map(text_of, shown.notes))
-        return features.cannot_measure or tr("The features have changed or are not measured yet: measure them.")
+        return features.buttons.measure or tr("The features have changed or are not measured yet: measure them.")
 
     def _add(self, kind: FeatureKind) -> None:
         if not kind.nominal_file:

@@ -15,6 +15,8 @@ from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.inspect.features.buttons import FeaturesButtons, FeaturesFacts, features_buttons
+from workbench.pages.inspect.scan import InspectScan
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -32,9 +34,9 @@ class InspectFeatures(QObject):
 
     changed = Signal()
 
-    def __init__(self, bench: Bench) -> None:
+    def __init__(self, bench: Bench, scan: InspectScan) -> None:
         super().__init__()
-        self.bench, self.model = bench, bench.model
+        self.bench, self.model, self._scan = bench, bench.model, scan
         self._measuring: Task | None = None
         self._shown: ShownInspection | None = None
         self._shown_for: tuple[InspectionPlan, object] | None = None
@@ -89,9 +91,7 @@ class InspectFeatures(QObject):
         self.put_plan(replace(self.plan, features=kept, master=master), tr("remove {name}", name=name))
 
     def cannot_remove(self, name: str) -> str:
-        """Why a feature cannot be taken out, or ""."""
-        if name not in self.plan.names:
-            return tr("Choose a feature first.")
+        """Why a feature cannot be taken out, or "": what rests on it."""
         frame = self.plan.frame.names if self.plan.frame is not None else ()
         resting = [one.name for one in self.plan.features if name in one.needs]
         if name in frame:
@@ -125,15 +125,20 @@ class InspectFeatures(QObject):
         return self._measuring is not None
 
     @property
-    def cannot_measure(self) -> str:
-        """Why the plan cannot be measured now, or ""."""
-        if "scan" not in self.model.results:
-            return tr("Scan the part first.")
-        if not self.plan.features and "features" not in self.model.results:
-            return tr("Add a feature first.")
-        if self.measuring:
-            return tr("The features are being measured.")
-        return ""
+    def buttons(self) -> FeaturesButtons:
+        """What can be done with the features and the chosen one."""
+        names = self.plan.names
+        return features_buttons(
+            FeaturesFacts(
+                no_scan=self._scan.buttons.measure,
+                cannot_write=self.bench.cannot_write,
+                measured="features" in self.model.results,
+                measuring=self.measuring,
+                count=len(names),
+                place=names.index(self.chosen) if self.chosen in names else -1,
+                cannot_remove=self.cannot_remove(self.chosen),
+            )
+        )
 
     @property
     def up_to_date(self) -> bool:
@@ -143,7 +148,7 @@ class InspectFeatures(QObject):
     def measure(self) -> None:
         """Measure the whole plan on the scan among the results."""
         model, project, folder = self.model, self.model.project, self.model.folder
-        if folder is None or self.cannot_measure:
+        if folder is None or self.buttons.measure:
             return
         self.problem, wanted, results = "", self._wanted(), model.results
 

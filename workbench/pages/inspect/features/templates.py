@@ -33,7 +33,7 @@ class InspectTemplates:
     @property
     def cannot_save(self) -> str:
         """Why there is no template to be made of this plan, or ""."""
-        return "" if self._features.plan.features else tr("Add a feature first.")
+        return self._features.buttons.save
 
     def place(self) -> Path:
         """Where a template is proposed to be saved: beside the last one, or beside the projects."""

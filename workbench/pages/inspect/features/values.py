@@ -8,7 +8,7 @@ from dataclasses import replace
 from typing import Any
 
 from core.inspect.characteristic import Limits
-from core.inspect.plan.feature_kind import ResultKind
+from core.inspect.plan.feature_kind import FeatureKind, ResultKind
 from core.inspect.plan.feature_spec import (
     Auto,
     Cut,
@@ -36,7 +36,7 @@ def new_feature(kind: str, name: str, plan: InspectionPlan, size: tuple[int, int
     """A feature with what is usual: a cut across the middle of the picture (`size`), the last two elements."""
     made, found = FeatureSpec(name, kind), kind_named(kind)
     if found.made_of:
-        return replace(made, of=elements(plan)[-found.made_of :])
+        return replace(made, of=elements(plan, found)[-found.made_of :])
     match found.settings:
         case "section":
             middle = float(size[1] // 2)
@@ -46,16 +46,20 @@ def new_feature(kind: str, name: str, plan: InspectionPlan, size: tuple[int, int
     return made
 
 
-def elements(plan: InspectionPlan) -> tuple[str, ...]:
-    """Names of the features that others can be made from."""
-    return tuple(one.name for one in plan.features if kind_of(one).element is not None)
+def elements(plan: InspectionPlan, kind: FeatureKind) -> tuple[str, ...]:
+    """Names of the features that one of a kind can be made of."""
+    useless = (None, "point") if kind.of_directions else (None,)
+    return tuple(one.name for one in plan.features if kind_of(one).element not in useless)
 
 
 def why_not(kind: str, plan: InspectionPlan) -> str:
     """Why a feature of this kind cannot be added to the plan, or ""."""
-    if len(elements(plan)) < kind_named(kind).made_of:
-        return tr("It is made of two other features: add planes, spheres, cylinders or points first.")
-    return ""
+    found = kind_named(kind)
+    if len(elements(plan, found)) >= found.made_of:
+        return ""
+    if found.of_directions:
+        return tr("It is made of two other features: add planes or cylinders first.")
+    return tr("It is made of two other features: add planes, spheres, cylinders or points first.")
 
 
 def values_of(spec: FeatureSpec) -> dict[str, Any]:
