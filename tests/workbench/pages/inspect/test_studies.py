@@ -173,3 +173,52 @@ def test_every_button_says_what_it_does_or_why_it_cannot(tab, studies, presenter
     buttons = [tab.editor.open, tab.editor.add, tab.editor.make, tab.editor.cancel]
     tab.window().refreshing.at_once()
     assert all(button.toolTip() for button in buttons) and "certificate" in tab.editor.help.text()
+
+
+def test_the_buttons_of_the_studies_follow_the_tab_from_state_to_state(tab, studies, presenter, hand_bench, qtbot):
+    quick, editor = cast(HandLane, hand_bench.quick), tab.editor
+
+    def follow():
+        tab.window().refreshing.at_once()
+        can = studies.buttons
+        making = ((editor.open, can.read), (editor.add, can.read), (editor.make, can.make))
+        kept = (
+            (tab.buttons["grr"], can.begin), (tab.buttons["acceptance"], can.begin), (tab.buttons["type1"], can.type1),
+            (tab.buttons["remove"], can.remove), (tab.buttons["export"], can.export),
+        )  # fmt: skip
+        for button, why_not in kept if studies.draft is None else making:
+            assert button.isEnabled() if not why_not else not button.isEnabled() and button.toolTip() == why_not
+        return can
+
+    assert follow()[:3] == ("", "", "Choose a study in the list first.")
+    tab.buttons["grr"].click()
+    assert follow().make == "Enter or paste measurements into the table first."
+    editor.text.appendPlainText(ROWS)
+    assert editor.make.isEnabled(), "as soon as it is typed"
+    assert follow()[4:] == ("", "")
+    quick.held = {jobs.KEEP_STUDY}
+    editor.make.click()
+    assert follow().read == "Wait for what is under way: Making the study."
+
+
+def test_a_study_that_is_given_up_while_it_is_made_is_not_kept(tab, studies, presenter, hand_bench, qtbot):
+    quick = cast(HandLane, hand_bench.quick)
+    quick.held = {jobs.KEEP_STUDY}
+    tab.buttons["grr"].click()
+    tab.window().refreshing.at_once()
+    tab.editor.text.appendPlainText(ROWS)
+    tab.editor.make.click()
+    tab.window().refreshing.at_once()
+    tab.editor.cancel.click()
+    quick.held = set()
+    qtbot.waitUntil(lambda: not studies.working)
+    tab.window().refreshing.at_once()
+    assert studies.all == () and studies.draft is None and tab.buttons["grr"].isEnabled()
+
+
+def test_no_study_is_begun_in_a_project_that_is_read_only(tab, studies, presenter, monkeypatch):
+    monkeypatch.setattr(type(presenter.model), "is_read_only", property(lambda _: True))
+    tab.refresh()
+    for name in ("grr", "acceptance", "type1"):
+        assert not tab.buttons[name].isEnabled()
+        assert tab.buttons[name].toolTip().startswith("The project is read-only: go on in a copy")

@@ -13,7 +13,7 @@ from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import heading, in_column, in_row, muted, say
+from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
 
 FORM_WIDTH = 300
 """Pixels of the fields; the table beside them takes the rest."""
@@ -33,14 +33,13 @@ class StudyEditor(QWidget):
         self.text.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
         self.text.setAccessibleName(tr("Table of the study"))
         self.text.setTabChangesFocus(True)
-        self.text.textChanged.connect(lambda: self._studies.write(self.text.toPlainText()))
+        self.text.textChanged.connect(self._written)
         self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form()}
         self.open = QPushButton(icon("mdi6.table-arrow-left"), tr("Open a table …"))
         self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add a project …"))
         self.make = QPushButton(icon("mdi6.check"), tr("Make the study"))
         self.cancel = QPushButton(tr("Cancel"))
         self.make.setObjectName("primary")
-        self.open.setToolTip(tr("A CSV file with these columns, in any order"))
         self.cancel.setToolTip(tr("Make no study; the table is given up"))
         self.open.clicked.connect(self._open)
         self.add.clicked.connect(self._add)
@@ -76,11 +75,18 @@ class StudyEditor(QWidget):
             form.setVisible(kind == draft.kind)
         self.forms[draft.kind].set_values(draft.values)
         say(self.problem, studies.problem)
-        busy = tr("Something is being read.") if studies.working else ""
-        for button in (self.open, self.add, self.make):
-            button.setEnabled(not busy)
-        self.make.setToolTip(busy or tr("Work the study out and keep it in the project"))
-        self.add.setToolTip(busy or self._add_tip(draft))
+        self._show_buttons(draft)
+
+    def _show_buttons(self, draft: Draft) -> None:
+        can = self._studies.buttons
+        enable(self.open, can.read, tr("A CSV file with these columns, in any order"))
+        enable(self.add, can.read, self._add_tip(draft))
+        enable(self.make, can.make, tr("Work the study out and keep it in the project"))
+
+    def _written(self) -> None:
+        self._studies.write(self.text.toPlainText())
+        if self._studies.draft is not None:
+            self._show_buttons(self._studies.draft)
 
     def _help(self, draft: Draft) -> str:
         if draft.kind == "grr":

@@ -13,6 +13,7 @@ from core.files.project.data import KeptStudy
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
+from workbench.pages.inspect.studies.buttons import StudiesButtons, StudiesFacts, studies_buttons
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -66,6 +67,19 @@ class InspectStudies(QObject):
         """Whether something is being read or worked out for a study."""
         return self._working is not None
 
+    @property
+    def buttons(self) -> StudiesButtons:
+        """What can be done with the studies, and with the draft."""
+        return studies_buttons(
+            StudiesFacts(
+                busy="" if self._working is None else self._working.label,
+                cannot_write=self.bench.cannot_write,
+                no_type1=self._repeats.no_type1,
+                chosen=any(one.id == self.chosen for one in self.all),
+                rows=self.draft is not None and bool(self.draft.text.partition("\n")[2].strip()),
+            )
+        )
+
     def choose(self, id_: str) -> None:
         """Show this study; "" for none."""
         self.chosen = id_
@@ -84,18 +98,10 @@ class InspectStudies(QObject):
         if any(one.id == id_ for one in self.all):
             self._put(tuple(one for one in self.all if one.id != id_), tr("remove a study"))
 
-    @property
-    def cannot_keep_type1(self) -> str:
-        """Why the repeats give no type-1 study to be kept, or ""."""
-        if not self.model.is_open:
-            return tr("Open a project first.")
-        return self._repeats.no_type1
-
     def keep_type1(self) -> None:
         """Keep the type-1 study of the repeats as they are now; undoable."""
         spec, repeats = self._repeats.spec, self._repeats.all
-        if self.cannot_keep_type1 or spec.tolerance_mm is None:
-            self.bench.notices.warning(self.cannot_keep_type1)
+        if self.buttons.type1 or spec.tolerance_mm is None:
             return
         values = [repeat.thickness_mm for repeat in repeats]
         self._run(
@@ -128,7 +134,9 @@ class InspectStudies(QObject):
         self.changed.emit()
 
     def give_up(self) -> None:
-        """Make no study after all."""
+        """Make no study after all, and end what is being read or worked out for it."""
+        if self._working is not None:
+            self._working.cancel()
         self.draft, self.problem = None, ""
         self.changed.emit()
 

@@ -23,7 +23,7 @@ from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.layouts import UpAndDown, in_column, in_row, muted
+from workbench.views.layouts import UpAndDown, enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 
@@ -143,22 +143,17 @@ class StudiesTab(QWidget):
         )
 
     def _show_buttons(self) -> None:
-        studies = self._studies
-        busy = tr("A study is being worked out.") if studies.working else ""
-        closed = "" if self._studies.model.is_open else tr("Open a project first.")
-        chosen = any(one.id == studies.chosen for one in studies.all)
-        choose = "" if chosen else tr("Choose a study in the list first.")
+        can = self._studies.buttons
         for key, why_not, tip in (
-            ("grr", closed, tr("Parts × operators × repeats, by analysis of variance")),
-            ("acceptance", closed, tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
-            ("type1", studies.cannot_keep_type1, tr("Bias, Cg and Cgk of the repeats as they are now")),
-            ("remove", choose, tr("Take the chosen study out of the project")),
-            ("export", choose, tr("Write the study (JSON), or the table it was made of (CSV)")),
+            ("grr", can.begin, tr("Parts × operators × repeats, by analysis of variance")),
+            ("acceptance", can.begin, tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
+            ("type1", can.type1, tr("Bias, Cg and Cgk of the repeats as they are now")),
+            ("remove", can.remove, tr("Take the chosen study out of the project")),
+            ("export", can.export, tr("Write the study (JSON), or the table it was made of (CSV)")),
         ):
-            self.buttons[key].setEnabled(not (why_not or busy))
-            self.buttons[key].setToolTip(why_not or busy or tip)
+            enable(self.buttons[key], why_not, tip)
         for key in ("remove", "export"):
-            self.buttons[key].setVisible(bool(studies.all))
+            self.buttons[key].setVisible(bool(self._studies.all))
 
     def _show_study(self) -> None:
         studies = self._studies
