@@ -37,7 +37,7 @@ from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
 from workbench.views import ask
 from workbench.views.instruction_bar import InstructionBar
-from workbench.views.layouts import STRETCH, in_column, in_row
+from workbench.views.layouts import STRETCH, enable, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
@@ -354,11 +354,11 @@ class MainWindow(QMainWindow):
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
         last = self._current == STEPS[-1].name
         missing = self.presenters[self._current].blocker() if self._current else ""
-        self.next.setEnabled(not missing and not last)
+        enable(self.next, missing, tr("Go on to the next step"))
         self.next.setVisible(not last)
-        self.next.setToolTip(missing or tr("Go on to the next step"))
         self.missing.setText("" if last else missing)
-        self.back.setEnabled(self._current != STEPS[0].name)
+        first = tr("It is the first step.") if self._current == STEPS[0].name else ""
+        enable(self.back, first, tr("Go back to the step before"))
 
     def _toggle_messages(self) -> None:
         self.messages.setVisible(not self.messages.isVisible())

@@ -49,6 +49,25 @@ def test_a_module_touches_only_what_its_room_may(path: Path) -> None:
         assert mine is None or not [n for n in names if n.startswith(others)], "pages never import each other"
 
 
+ENABLES = ("views/layouts.py", "views/forms/form.py")
+"""Where a button, and a setting, are turned on and off together with their tips."""
+
+
+def targets(function: ast.FunctionDef, method: str) -> set[str]:
+    """What a method is called of within a function."""
+    calls = (node.func for node in ast.walk(function) if isinstance(node, ast.Call))
+    return {ast.unparse(one.value) for one in calls if isinstance(one, ast.Attribute) and one.attr == method}
+
+
+@pytest.mark.parametrize("path", modules(), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_a_button_is_greyed_together_with_its_reason(path: Path) -> None:
+    room = path.relative_to(ROOT).as_posix()
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.FunctionDef) and room not in ENABLES and not room.startswith("pages/project/"):
+            by_hand = targets(node, "setEnabled") & targets(node, "setToolTip")
+            assert not by_hand, f"{node.name}: use enable() of views/layouts.py"
+
+
 @pytest.mark.parametrize("name", [name for name in vars(jobs) if name.isupper() and name[0] != "_"])
 def test_every_job_is_a_function_that_exists(name: str) -> None:
     assert callable(jobs.resolve(getattr(jobs, name)))

@@ -11,6 +11,7 @@ from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCursor, QText
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
 from workbench.language import tr
+from workbench.views.layouts import enable
 
 SIZE = (860, 900)
 """Width and height of the manual's window at first, in pixels."""
@@ -83,10 +84,8 @@ class ManualWindow(QWidget):
         self.back.clicked.connect(self.pages.backward)
         self.forward.clicked.connect(self.pages.forward)
         self.start.clicked.connect(self._open_contents)
-        self.pages.backwardAvailable.connect(self.back.setEnabled)
-        self.pages.forwardAvailable.connect(self.forward.setEnabled)
-        self.back.setEnabled(False)
-        self.forward.setEnabled(False)
+        self.pages.historyChanged.connect(self._show_buttons)
+        self._show_buttons()
         buttons = QHBoxLayout()
         for button in (self.back, self.forward, self.start):
             buttons.addWidget(button)
@@ -101,6 +100,11 @@ class ManualWindow(QWidget):
         self.show()
         self.raise_()
         self.activateWindow()
+
+    def _show_buttons(self) -> None:
+        before, after = self.pages.isBackwardAvailable(), self.pages.isForwardAvailable()
+        enable(self.back, "" if before else tr("No page was opened before this one."), tr("The page before"))
+        enable(self.forward, "" if after else tr("No page was opened after this one."), tr("The page after"))
 
     def _open_contents(self) -> None:
         self.pages.open_page("index")

@@ -6,6 +6,7 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
 from workbench.language import tr
+from workbench.views.layouts import enable
 
 
 class TaskBar(QWidget):
@@ -38,7 +39,7 @@ class TaskBar(QWidget):
         self._label.setText(label)
         self._bar.setRange(0, 0)
         self._left.setText("")
-        self.cancel.setEnabled(True)
+        enable(self.cancel, "", tr("Stop this job"))
         self._clock.start()
         self.show()
 
@@ -54,7 +55,7 @@ class TaskBar(QWidget):
 
     def cancelling(self) -> None:
         """Cancel was pressed."""
-        self.cancel.setEnabled(False)
+        enable(self.cancel, tr("Stopping …"), "")
         self._left.setText(tr("stopping …"))
 
     def end(self) -> None:

@@ -36,9 +36,12 @@ def test_every_link_between_pages_leads_to_one(name: str) -> None:
 
 def test_a_link_is_followed_and_back_returns(manual: ManualWindow) -> None:
     manual.pages.open_page("index")
+    assert not manual.back.isEnabled() and manual.back.toolTip() == "No page was opened before this one."
     manual.pages.anchorClicked.emit(QUrl("scan.md"))
     assert manual.pages.toPlainText().startswith("Scan")
+    assert not manual.forward.isEnabled() and manual.forward.toolTip() == "No page was opened after this one."
     manual.back.click()
+    assert manual.forward.isEnabled() and manual.forward.toolTip() == "The page after"
     assert manual.pages.toPlainText().startswith("Trisect")
 
 

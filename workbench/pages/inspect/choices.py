@@ -147,9 +147,12 @@ class SurfaceChoices(QWidget):
         self.colours.setItemText(place, tr("depth") if view.height_is == DEPTH else tr("height"))
         model: Any = self.colours.model()
         for name in ("faces", "deviation"):
-            item = model.item(self.colours.findData(name))
-            item.setEnabled(view.gauge is not None)
-            item.setToolTip("" if view.gauge is not None else tr("Measure the thickness first."))
+            place, why_not = (
+                self.colours.findData(name),
+                "" if view.gauge is not None else tr("Measure the thickness first."),
+            )
+            model.item(place).setEnabled(not why_not)
+            self.colours.setItemData(place, why_not, Qt.ItemDataRole.ToolTipRole)
         if view.gauge is None and self.colour in ("faces", "deviation"):
             self.choose_colour("height")
 

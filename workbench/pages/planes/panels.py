@@ -18,7 +18,7 @@ from workbench.pages.stripes import add_stripe, set_stripe_editable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
-from workbench.views.layouts import heading, in_column, muted, say
+from workbench.views.layouts import enable, heading, in_column, muted, say
 from workbench.views.lists.value_rows import ValueRows
 
 PLATES = ("black_square", "checkerboard", "charuco", "circle_grid")
@@ -89,14 +89,13 @@ class PlanesLive(QWidget):
         """Show how poses are taken."""
         running = self._presenter.live.running
         self.pairs.setChecked(self._presenter.live.pairs)
-        self.pairs.setEnabled(not running)
-        self.pairs.setToolTip(
-            tr("Stop the live source first.")
-            if running
-            else tr(
+        enable(
+            self.pairs,
+            tr("Stop the live source first.") if running else "",
+            tr(
                 "Target and stripes are then found each in a picture of its own. The source switches the laser off for "
                 "a moment, or you are asked to; leave it out where the laser cannot be switched"
-            )
+            ),
         )
 
 

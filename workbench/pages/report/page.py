@@ -62,10 +62,8 @@ class ReportPage(StepPage):
             missing = p.export_missing(kind)
             enable(button, missing, self._export_help(kind))
         nothing = all(p.export_missing(kind) for kind in self.exports)
-        self.more.setEnabled(not nothing)
-        self.more.setToolTip(
-            p.export_missing("pdf") if nothing else tr("Other programs' formats: E57, 3MF, DFQ, QIF and more")
-        )
+        why_not = p.export_missing("pdf") if nothing else ""
+        enable(self.more, why_not, tr("Other programs' formats: E57, 3MF, DFQ, QIF and more"))
         why = "" if p.results_folder() is not None else tr("There are no results yet.")
         enable(self.folder, why, str(p.results_folder()))
         self._show_pages()
@@ -139,7 +137,6 @@ class ReportPage(StepPage):
         self.language.activated.connect(lambda _: self.presenter.choose_language(self.language.currentData()))
         self.template_name.setWordWrap(True)
         self.template.setText(tr("Choose template …"))
-        self.template.setToolTip(tr("Logo, address, colours and text of your laboratory, from a template.toml"))
         self.no_template.setText(tr("None"))
         self.template.clicked.connect(self._choose_template)
         self.no_template.clicked.connect(lambda: self.presenter.choose_template(None))
@@ -155,13 +152,11 @@ class ReportPage(StepPage):
         self.language.setCurrentIndex(self.language.findData(report.language))
         self.template_name.setText(report.template.rpartition("/")[2] or tr("none"))
         self.template_name.setToolTip(report.template)
-        open_ = self.presenter.model.is_open
-        why_not = "" if open_ else tr("Open a project first.")
-        self.template.setEnabled(open_)
-        self.no_template.setEnabled(bool(report.template))
-        self.no_template.setToolTip(
-            why_not or (tr("Print without a template") if report.template else tr("No template is chosen."))
-        )
+        why_not = self.presenter.bench.cannot_write
+        tip = tr("Logo, address, colours and text of your laboratory, from a template.toml")
+        enable(self.template, why_not, tip)
+        none = "" if report.template else tr("No template is chosen.")
+        enable(self.no_template, none or why_not, tr("Print without a template"))
 
     def _choose_template(self) -> None:
         path = ask.choose_file_to_open(

@@ -19,7 +19,7 @@ from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
 from workbench.theme import icon
-from workbench.views.layouts import Folding, in_column, in_row, muted
+from workbench.views.layouts import Folding, enable, in_column, in_row, muted
 
 
 class FrameBar(QWidget):
@@ -51,8 +51,9 @@ class FrameBar(QWidget):
         self.slider.setPageStep(max(len(names) // 10, 1))
         self.slider.setValue(max(scrub.index, 0))
         self.slider.blockSignals(False)
-        self.back.setEnabled(scrub.index > 0)
-        self.on.setEnabled(scrub.index < len(names) - 1)
+        first, last = scrub.index <= 0, scrub.index >= len(names) - 1
+        enable(self.back, tr("It is the first frame.") if first else "", self.back.accessibleName())
+        enable(self.on, tr("It is the last frame.") if last else "", self.on.accessibleName())
         self.used.setChecked(not p.is_left_out(scrub.current))
         if scrub.current:
             stages = scrub.stages if scrub.up_to_date else None
@@ -60,10 +61,8 @@ class FrameBar(QWidget):
             said = words.frame_sentence(scrub.index, len(names), short(scrub.current), record, stages)
             self.said.setText(tr("{frame} Marked.", frame=said) if scrub.current in p.work.marked else said)
         self.next_mark.setVisible(bool(p.work.marked))
-        measured = p.record_of(scrub.current) is not None
-        points = self.stages[View.POINTS]
-        points.setEnabled(measured)
-        points.setToolTip(self._tips()[View.POINTS] if measured else tr("Measure the scan first."))
+        why_not = "" if p.record_of(scrub.current) is not None else tr("Measure the scan first.")
+        enable(self.stages[View.POINTS], why_not, self._tips()[View.POINTS])
 
     def choose(self, view: View) -> None:
         """Show a stage as chosen."""

@@ -24,7 +24,7 @@ from workbench.language import text_of, tr
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import SpinBox
-from workbench.views.layouts import in_column, in_row, say
+from workbench.views.layouts import enable, in_column, in_row, say
 
 
 class DeviceField(QWidget):
@@ -80,14 +80,8 @@ class DeviceField(QWidget):
         self.box.blockSignals(False)
         browse = kind.is_folder
         self.button.setIcon(icon("mdi6.folder-open-outline" if browse else "mdi6.magnify"))
-        self.button.setEnabled(not looking)
-        self.button.setToolTip(
-            tr("Choose the folder to replay")
-            if browse
-            else tr("Looking …")
-            if looking
-            else tr("Look for cameras of this kind")
-        )
+        tip = tr("Choose the folder to replay") if browse else tr("Look for cameras of this kind")
+        enable(self.button, tr("Looking …") if looking else "", tip)
         self.button.setAccessibleName(self.button.toolTip())
 
     def _typed(self) -> None:

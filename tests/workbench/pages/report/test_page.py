@@ -137,6 +137,15 @@ def test_the_button_makes_the_report_and_then_makes_it_again(page: ReportPage, d
     qtbot.waitUntil(lambda: page.card.title.text() == "The report is made")
 
 
+def test_no_template_is_chosen_for_a_project_that_is_read_only(
+    page: ReportPage, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    assert page.template.isEnabled()
+    monkeypatch.setattr(type(page.presenter.model), "is_read_only", property(lambda _: True))
+    page.refresh()
+    assert not page.template.isEnabled() and page.template.toolTip().startswith("The project is read-only")
+
+
 def test_language_and_template_are_chosen(
     page: ReportPage, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -202,6 +202,7 @@ def test_slider_buttons_list_and_arrows_go_through_the_frames_together(measured,
     measured.bar.slider.setValue(0)
     measured.refreshing.at_once()
     assert scrub.index == 0 and not measured.bar.back.isEnabled()
+    assert measured.bar.back.toolTip() == "It is the first frame." and "→" in measured.bar.on.toolTip()
     qtbot.mouseClick(measured.bar.on, LEFT)
     measured.refreshing.at_once()
     assert scrub.index == 1 and measured.frames.current() == cases.name_of(1)
