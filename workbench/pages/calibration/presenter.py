@@ -128,6 +128,7 @@ class CalibrationPresenter(StepPresenter):
             empty=work.pictures == (),
             calibration=work.calibration is not None,
             keeping=self.acceptance.keeping,
+            read_only=self.model.is_read_only,
         )
 
     @property
@@ -162,6 +163,7 @@ class CalibrationPresenter(StepPresenter):
         return {
             WhyNot.NOTHING: "",
             WhyNot.LIVE: tr("Stop the live source first."),
+            WhyNot.READ_ONLY: self.bench.cannot_write,
             WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
             WhyNot.NO_SOURCE: tr("Choose or record pictures first."),
             WhyNot.SEARCHING: missing[Stage.SEARCHING],

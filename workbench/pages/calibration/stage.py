@@ -36,6 +36,7 @@ class WhyNot(StrEnum):
     NO_CALIBRATION = "no calibration"
     ACCEPTED = "accepted"
     REJECTED = "rejected"
+    READ_ONLY = "read-only"
 
 
 class Buttons(NamedTuple):
@@ -73,6 +74,8 @@ class Facts(NamedTuple):
     """There is one that could be accepted."""
     keeping: bool
     """It is being put into the project."""
+    read_only: bool
+    """Nothing can be kept in it."""
 
 
 def stage_of(facts: Facts) -> Stage:
@@ -106,6 +109,8 @@ def buttons_of(facts: Facts) -> Buttons:
 def _run(facts: Facts) -> WhyNot:
     if facts.live:
         return WhyNot.LIVE
+    if facts.read_only:
+        return WhyNot.READ_ONLY
     if facts.camera_missing:
         return WhyNot.NO_CAMERA
     if not facts.source:
@@ -118,6 +123,8 @@ def _run(facts: Facts) -> WhyNot:
 def _accept(facts: Facts) -> WhyNot:
     if facts.live:
         return WhyNot.LIVE
+    if facts.read_only:
+        return WhyNot.READ_ONLY
     if not facts.calibration or facts.solving or facts.keeping:
         return WhyNot.NO_CALIBRATION
     return WhyNot.ACCEPTED if facts.candidate == facts.accepted and facts.current else WhyNot.NOTHING

@@ -252,9 +252,12 @@ class InspectPresenter(StepPresenter):
             return
         self.outlining = face
         meant = face if face in FACES else self.feature.meant
+        feature = "" if face in FACES else self.features.chosen
 
         def done(outline: Any) -> None:
-            if view is self.scan.view:
+            if feature and feature != self.features.chosen:
+                self.bench.notices.warning(tr("Another feature was chosen before the region was there: draw it again."))
+            elif view is self.scan.view:
                 self.set_region(face, outline)
 
         task = self.bench.run_quick(

@@ -204,7 +204,12 @@ class LivePresenter(QObject):
     @property
     def buttons(self) -> LiveButtons:
         """Which of its buttons can be pressed."""
-        return live_buttons(LiveFacts(self.running, self.name != "", self.stopping, self.cannot_start()))
+        return live_buttons(LiveFacts(self.running, self.name != "", self.stopping, self.why_not_start))
+
+    @property
+    def why_not_start(self) -> str:
+        """Why none can be started, apart from one that runs, or ""."""
+        return self.bench.cannot_write or self.cannot_start()
 
     def state_text(self) -> str:
         """What goes on, in a few words."""
@@ -278,8 +283,8 @@ class LivePresenter(QObject):
         """Open the source and go; if another page's recording runs, ask first (`other_running`)."""
         if self.running or self.model.folder is None or self.cannot_start():
             return
-        if (refused := self.model.why_read_only()) is not None:
-            self.bench.notices.failed(refused)
+        if why_not := self.bench.cannot_write:
+            self.bench.notices.warning(why_not)
             return
         other = self.bench.live.current
         if other is not None:

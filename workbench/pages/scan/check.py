@@ -89,6 +89,8 @@ class RigCheck(QObject):
         project = self._model.project
         if self._task is not None:
             return tr("Camera and laser are being checked.")
+        if self._bench.cannot_write:
+            return self._bench.cannot_write
         if not project.accepted.camera:
             return tr("Accept a camera calibration first.")
         if not project.accepted.fan:

@@ -110,7 +110,7 @@ class CheckCard(QFrame):
         facts = CheckFacts(
             taking=live.running,
             stopping=live.stopping,
-            cannot_take=live.cannot_start(),
+            cannot_take=live.why_not_start,
             checking=check.stage is CheckStage.CHECKING,
             cannot_check=check.cannot_check,
             cannot_readjust=check.cannot_readjust,

@@ -97,6 +97,7 @@ class ScanPresenter(StepPresenter):
             listed=work.frames is not None,
             frames=bool(work.frames),
             counting=not self.project.options.excluded.issuperset(work.names),
+            read_only=self.model.is_read_only,
         )
 
     @property
@@ -127,6 +128,7 @@ class ScanPresenter(StepPresenter):
             WhyNot.NOTHING: "",
             WhyNot.LIVE: tr("Stop the recording first."),
             WhyNot.MEASURING: tr("The scan is being measured."),
+            WhyNot.READ_ONLY: self.bench.cannot_write,
             WhyNot.NO_CAMERA: tr("Accept a camera calibration first."),
             WhyNot.NO_PLANES: tr("Accept the laser planes first."),
             WhyNot.NO_SOURCE: tr("Record a scan, or choose a recording, first."),

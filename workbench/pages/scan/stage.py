@@ -35,6 +35,7 @@ class WhyNot(StrEnum):
     NO_FRAMES = "no frames"
     ALL_LEFT_OUT = "all left out"
     CHECK_LIVE = "check live"
+    READ_ONLY = "read-only"
     READING_CALIBRATIONS = "reading calibrations"
 
 
@@ -73,6 +74,8 @@ class Facts(NamedTuple):
     """It holds some."""
     counting: bool
     """Some of them are not left out."""
+    read_only: bool
+    """Nothing can be kept in the project."""
 
 
 def stage_of(facts: Facts) -> Stage:
@@ -102,6 +105,7 @@ def _measure(facts: Facts) -> WhyNot:
     reasons = (
         (facts.live, WhyNot.LIVE),
         (facts.measuring, WhyNot.MEASURING),
+        (facts.read_only, WhyNot.READ_ONLY),
         (not facts.camera, WhyNot.NO_CAMERA),
         (not facts.planes, WhyNot.NO_PLANES),
         (not facts.source, WhyNot.NO_SOURCE),

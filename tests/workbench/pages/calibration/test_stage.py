@@ -32,6 +32,8 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
         reached.add(stage)
         if facts.live or facts.searching or facts.solving:
             assert can.run, facts
+        if facts.read_only:
+            assert can.run and can.accept, facts
         if facts.live or facts.solving or facts.keeping or not facts.candidate:
             assert can.accept, facts
         if facts.live or facts.solving or not facts.candidate:
@@ -48,6 +50,8 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
 def test_in_every_state_the_next_thing_to_do_can_be_done():
     for facts in every_state():
         stage, can = stage_of(facts), buttons_of(facts)
+        if facts.read_only:
+            continue
         if stage in (Stage.FOUND, Stage.FAILED):
             assert not can.run, facts
         if stage is Stage.SOLVED and not facts.keeping and not facts.solving:

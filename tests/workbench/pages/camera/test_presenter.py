@@ -46,6 +46,13 @@ def settled(qtbot, presenter):
     qtbot.waitUntil(lambda: not presenter.work.solving and not presenter.bench.quick.busy)
 
 
+def test_nothing_is_calibrated_or_accepted_in_a_project_that_is_read_only(solved, monkeypatch):
+    assert solved.can_search == solved.can_accept == ""
+    monkeypatch.setattr(type(solved.model), "is_read_only", property(lambda _: True))
+    assert solved.can_search == solved.can_accept == "The project is read-only: go on in a copy (File, Save a copy)."
+    assert solved.can_reject == "", "it is not on the disk"
+
+
 def test_without_pictures_it_asks_for_some(presenter):
     assert presenter.stage is Stage.NONE
     assert presenter.blocker() == "Record or choose pictures of the camera's target first."

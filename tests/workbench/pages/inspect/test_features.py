@@ -168,6 +168,21 @@ def test_a_half_entered_value_is_not_taken_for_another_feature(presenter, featur
     assert presenter.feature.values()["limits nominal diameter"] is None
 
 
+def test_a_region_outlined_for_one_feature_is_not_given_to_another_chosen_meanwhile(
+    presenter, features, hand_bench, qtbot
+):
+    quick = cast(HandLane, hand_bench.quick)
+    quick.held = {jobs.OUTLINE_SELECTED}
+    presenter.feature.add("plane")
+    presenter.feature.add("sphere")
+    presenter.outline(presenter.feature.region_name(0), np.ones(cases.POINTS, bool))
+    features.choose("plane 1")
+    qtbot.waitUntil(lambda: quick.busy)
+    quick.finish(np.array(CORNERS))
+    assert [one.regions for one in features.plan.features] == [(Auto(),), (Auto(),)]
+    assert "draw it again" in presenter.bench.notices.all[-1].text
+
+
 def test_a_region_drawn_in_3d_is_outlined_and_taken(presenter, features, qtbot):
     presenter.feature.add("sphere")
     presenter.outline(presenter.feature.region_name(0), np.ones(cases.POINTS, bool))

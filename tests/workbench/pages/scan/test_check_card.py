@@ -69,6 +69,19 @@ def test_without_pictures_it_says_how_to_take_them(page, qtbot):
     assert card.rows.isHidden()
 
 
+def test_nothing_is_measured_checked_or_recorded_in_a_project_that_is_read_only(page, monkeypatch):
+    p, card = page.presenter, page.check
+    monkeypatch.setattr(type(p.model), "is_read_only", property(lambda _: True))
+    page.refresh()
+    said = "The project is read-only: go on in a copy (File, Save a copy)."
+    assert p.cannot_measure == said
+    for button in (page.live_panel.start, card.take, card.run):
+        assert not button.isEnabled() and button.toolTip() == said
+    p.live.start()
+    p.check_live.start()
+    assert not p.live.running and not p.check_live.running
+
+
 def test_chosen_pictures_are_checked_at_once_and_can_be_given_up(chosen, qtbot):
     card = shown(chosen, qtbot, CheckStage.CHECKING)
     assert card.word.text() == "Checking …" and card.run.text() == "Cancel"

@@ -26,7 +26,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
     for facts in every_state():
         stage, can = stage_of(facts), buttons_of(facts)
         reached.add(stage)
-        if facts.live or facts.measuring or not facts.counting or not (facts.camera and facts.planes):
+        if facts.live or facts.measuring or facts.read_only or not (facts.counting and facts.camera and facts.planes):
             assert can.measure, facts
         if stage in (Stage.NONE, Stage.LISTING, Stage.EMPTY, Stage.LIVE, Stage.MEASURING):
             assert can.measure, facts
@@ -42,7 +42,7 @@ def test_in_no_state_can_something_be_done_that_makes_no_sense():
 def test_in_every_state_the_next_thing_to_do_can_be_done():
     for facts in every_state():
         stage, can = stage_of(facts), buttons_of(facts)
-        ready = facts.camera and facts.planes and facts.counting
+        ready = facts.camera and facts.planes and facts.counting and not facts.read_only
         if stage in (Stage.RECORDED, Stage.FAILED, Stage.MEASURED, Stage.OUTDATED) and ready:
             assert not can.measure, facts
         if stage is Stage.MEASURING:
