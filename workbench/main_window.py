@@ -7,9 +7,10 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSize, Qt, QTimer, QUrl, Signal
+from PySide6.QtCore import QEvent, QSize, Qt, QTimer, QUrl, Signal
 from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent, QResizeEvent
 from PySide6.QtWidgets import (
+    QAbstractButton,
     QApplication,
     QDockWidget,
     QLabel,
@@ -37,7 +38,7 @@ from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
 from workbench.views import ask
 from workbench.views.instruction_bar import InstructionBar
-from workbench.views.layouts import STRETCH, enable, in_column, in_row
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, keep_focus
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
@@ -83,8 +84,9 @@ class MainWindow(QMainWindow):
         self._stack, self._pages = QStackedWidget(), QStackedWidget()
         for page in self.pages.values():
             self._pages.addWidget(page)
+        self._steps = self._wizard()
         self._stack.addWidget(self.welcome)
-        self._stack.addWidget(self._wizard())
+        self._stack.addWidget(self._steps)
         self.setCentralWidget(self._stack)
         self._current = ""
         self._task: Task | None = None
@@ -113,7 +115,7 @@ class MainWindow(QMainWindow):
             self.presenters[self._current].left()
         self._current = name
         self.pages[name].prepare()
-        self._pages.setCurrentWidget(self.pages[name])
+        _turn(self._pages, self.pages[name])
         self.rail.set_current(name)
         step = next(step for step in STEPS if step.name == name)
         self._title.setText(tr(step.title))
@@ -184,6 +186,15 @@ class MainWindow(QMainWindow):
         event.setAccepted(self._left)
         if not self._left:
             QTimer.singleShot(0, self, self.leave)
+
+    def focusNextPrevChild(self, next: bool) -> bool:
+        """Tab; Qt also calls it where what has the focus is greyed or hidden."""
+        return keep_focus(self) or super().focusNextPrevChild(next)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.ActivationChange:
+            keep_focus(self)  # what had the focus may have been hidden while a question was in front
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -304,12 +315,12 @@ class MainWindow(QMainWindow):
     def _project_opened(self) -> None:
         self.banner.hide()
         if self.model.is_open:
-            self._stack.setCurrentIndex(1)
+            _turn(self._stack, self._steps)
             self._current = ""
             self.go_to("project")
         else:
             self._current = ""
-            self._stack.setCurrentIndex(0)
+            _turn(self._stack, self.welcome)
             self.welcome.refresh()
         self._show_name()
         self._refresh()
@@ -428,6 +439,14 @@ class MainWindow(QMainWindow):
             self._task = None
             self.task_bar.end()
             self._refreshing.soon()
+
+
+def _turn(stack: QStackedWidget, page: QWidget) -> None:
+    """Show a page. Qt gives it the focus that was on the page before, but not to one of its buttons."""
+    stack.setCurrentWidget(page)
+    arrived_at = stack.window().focusWidget()
+    if isinstance(arrived_at, QAbstractButton) and page.isAncestorOf(arrived_at):
+        page.setFocus()
 
 
 def _dropped(event: QDragEnterEvent | QDropEvent) -> Path | None:

@@ -128,9 +128,35 @@ def say(label: QLabel | QAbstractButton, text: str) -> None:
 
 
 def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
-    """Let it be pressed unless something says why not; its tip says that, or what it does."""
+    """Let it be pressed unless something says why not; its tip says that, or what it does.
+
+    Greyed while it has the focus, it leaves the focus where it was: on what it stands on.
+    """
+    if why_not and isinstance(button, QWidget) and button.window().focusWidget() is button:
+        _focus_below(button)
     button.setEnabled(not why_not)
     button.setToolTip(why_not or tip)
+
+
+def keep_focus(window: QWidget) -> bool:
+    """Give the focus of what is greyed or hidden to what that stands on; whether that was to be done.
+
+    Qt gives it to the next widget, where the next Space would press a button that nobody chose.
+    """
+    lost = window.focusWidget()
+    if lost is None or (lost.isVisible() and lost.isEnabled()):
+        return False
+    _focus_below(lost)
+    return True
+
+
+def _focus_below(widget: QWidget) -> None:
+    """Give the focus to the nearest widget around this one that can have it."""
+    below = widget.parentWidget()
+    while below is not None and not (below.isVisible() and below.isEnabled() and below.focusProxy() is None):
+        below = below.parentWidget()
+    if below is not None:
+        below.setFocus()
 
 
 def _filled(box: Box, parts: tuple[Part, ...], margins: tuple[int, int, int, int], spacing: int | None) -> Box:

@@ -11,7 +11,7 @@ from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCursor, QText
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
 from workbench.language import tr
-from workbench.views.layouts import enable
+from workbench.views.layouts import enable, keep_focus
 
 SIZE = (860, 900)
 """Width and height of the manual's window at first, in pixels."""
@@ -105,6 +105,9 @@ class ManualWindow(QWidget):
         before, after = self.pages.isBackwardAvailable(), self.pages.isForwardAvailable()
         enable(self.back, "" if before else tr("No page was opened before this one."), tr("The page before"))
         enable(self.forward, "" if after else tr("No page was opened after this one."), tr("The page after"))
+
+    def focusNextPrevChild(self, next: bool) -> bool:
+        return keep_focus(self) or super().focusNextPrevChild(next)
 
     def _open_contents(self) -> None:
         self.pages.open_page("index")

@@ -48,7 +48,6 @@ class StageCard(QFrame):
         """Say how far it is; `tips` has for each button why it cannot be pressed ("" if it can) and what it does."""
         self.title.setText(title)
         self.words.setText(words)
-        pressed = next((button for button in self.buttons.values() if button.hasFocus()), None)
         for key, (why_not, tip) in tips.items():
             button, main = self.buttons[key], key == primary
             enable(button, why_not, tip)
@@ -57,5 +56,3 @@ class StageCard(QFrame):
                 button.setProperty("primary", main)
                 button.style().unpolish(button)
                 button.style().polish(button)
-        if pressed is not None and not pressed.isEnabled():
-            self.setFocus()  # Qt went on to the next button, which may undo what was just done
