@@ -23,10 +23,10 @@ from workbench.language import tr
 from workbench.views.layouts import in_row
 
 
-def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str], *, destructive: bool = False) -> int:
-    """Put a question; returns the place of the chosen answer. The last one is the safe one: Escape means it.
+def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str], *, harmless: bool = False) -> int:
+    """Put a question; returns the place of the chosen answer. The last one is the safe one: Escape and Return mean it.
 
-    Return means the first one, or the last one too where the others are `destructive`: something is lost by them.
+    Where the first one is `harmless`, Return means that: nothing is lost by it, and nothing is measured otherwise.
     """
     box = QMessageBox(QMessageBox.Icon.Question, title, text, QMessageBox.StandardButton.NoButton, parent)
     last = len(answers) - 1
@@ -34,7 +34,7 @@ def ask(parent: QWidget | None, title: str, text: str, answers: Sequence[str], *
         box.addButton(answer, QMessageBox.ButtonRole.AcceptRole if place < last else QMessageBox.ButtonRole.RejectRole)
         for place, answer in enumerate(answers)
     ]
-    box.setDefaultButton(buttons[-1 if destructive else 0])
+    box.setDefaultButton(buttons[0 if harmless else -1])
     box.setEscapeButton(buttons[-1])
     box.exec()
     clicked = box.clickedButton()

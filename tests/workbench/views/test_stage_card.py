@@ -1,7 +1,5 @@
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QMessageBox
 
-from workbench.views import ask
 from workbench.views.stage_card import CardButton, StageCard
 
 
@@ -29,15 +27,3 @@ def test_space_after_accept_does_not_reject(qtbot):
         qtbot.keyClick(card.window().focusWidget(), Qt.Key.Key_Space)
     assert done == ["accept"]
     assert card.hasFocus()
-
-
-def test_return_means_the_safe_answer_where_something_is_lost(qtbot, monkeypatch):
-    shown = []
-
-    def choose(box):
-        shown.append(box.defaultButton().text())
-
-    monkeypatch.setattr(QMessageBox, "exec", choose)
-    for destructive in (True, False):
-        ask.ask(None, "Leave", "A job is not finished yet.", ["Stop and leave", "Stay"], destructive=destructive)
-    assert shown == ["Stay", "Stop and leave"]

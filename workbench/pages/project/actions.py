@@ -303,7 +303,7 @@ class ProjectActions(QObject):
             return True
         text = tr("{running} What is recorded is kept. Stop it and leave?", running=" ".join(running))
         answers = [tr("Stop and leave"), tr("Stay")]
-        return ask.ask(self._window, tr("Leave the project"), text, answers, destructive=True) == 0
+        return ask.ask(self._window, tr("Leave the project"), text, answers) == 0
 
     def _saved(self) -> bool:
         """Save; False if that cannot be done, and the changes are not to be lost."""
@@ -314,7 +314,7 @@ class ProjectActions(QObject):
             return True
         text = tr("The project cannot be saved. Leave and lose the changes?")
         answers = [tr("Leave without saving"), tr("Stay")]
-        return ask.ask(self._window, tr("Leave the project"), text, answers, destructive=True) == 0
+        return ask.ask(self._window, tr("Leave the project"), text, answers) == 0
 
     def _take_typed(self) -> None:
         """What is being typed counts, too: an editor tells its text when it loses the focus."""
@@ -367,6 +367,8 @@ class ProjectActions(QObject):
         if ask.ask(self._window, tr("Interrupted recording"), text, answers) == 0:
             put_source(self.model, unfinished.step, unfinished.folder, tr("use an interrupted recording"))
             self.go_to.emit("scan" if unfinished.step == "check" else unfinished.step)
+        else:
+            self.bench.notices.info(tr("The pictures are in {folder}.", folder=unfinished.folder))
         try:
             forget_recording(folder)
         except InputError as error:

@@ -48,6 +48,7 @@ class AuditWindow(QDialog):
         self.export = QPushButton(tr("Export …"))
         self.export.clicked.connect(self._export)
         close = QPushButton(tr("Close"))
+        close.setDefault(True)  # else Return, while one reads, would mean the first button
         close.clicked.connect(self.accept)
         in_column(
             self.state,

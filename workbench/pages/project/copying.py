@@ -40,7 +40,7 @@ class ProjectCopy(QObject):
         why = tr("{folder} is read-only: what is changed or measured here cannot be saved.", folder=folder)
         answers = [tr("Save a copy …"), tr("Look at it as it is")]
         text = tr("{why} Go on in a copy?", why=why)
-        if ask.ask(self._window, tr("Read-only project"), text, answers) == 0:
+        if ask.ask(self._window, tr("Read-only project"), text, answers, harmless=True) == 0:
             self.save_copy()
         else:
             self._bench.notices.warning(tr("{why} File, Save a copy, goes on in a copy.", why=why))

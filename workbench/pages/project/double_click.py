@@ -200,7 +200,7 @@ def choose_double_click(window: QWidget, notices: Notices) -> None:
         answers = [tr("Open by double click"), tr("Leave it as it is")]
         if there:
             answers = [tr("Renew"), tr("No longer"), tr("Leave it as it is")]
-        answer = ask.ask(window, tr("Open projects by double click"), text, answers)
+        answer = ask.ask(window, tr("Open projects by double click"), text, answers, harmless=True)
         if answer == len(answers) - 1:
             return
         outcome = install() if answer == 0 else uninstall()

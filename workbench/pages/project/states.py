@@ -44,7 +44,7 @@ def choose_access(parent: QWidget, folder: Path) -> Access | None:
         time=time_of(holder.since),
     )
     answers = [tr("Open read only"), tr("Take over"), tr("Do not open")]
-    chosen = ask.ask(parent, tr("Project in use"), text, answers)
+    chosen = ask.ask(parent, tr("Project in use"), text, answers, harmless=True)
     return (Access.READ_ONLY, Access.TAKE_OVER, None)[chosen]
 
 
@@ -96,7 +96,7 @@ def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recover
         changes=_changes(differences(saved, recovered)),
     )
     answers = [tr("Recover the changes"), tr("Open the saved state"), tr("Do not open")]
-    chosen = ask.ask(parent, tr("Recover the project"), text, answers)
+    chosen = ask.ask(parent, tr("Recover the project"), text, answers, harmless=True)
     return StateChoice(recover=chosen == 0) if chosen < 2 else None
 
 

@@ -169,7 +169,7 @@ class LivePanel(QWidget):
 def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
     """Another recording runs: ask whether it is to be stopped for that of `live`."""
     answers = [tr("Stop it and start here"), tr("Leave it running")]
-    if ask.ask(parent, tr("Live source"), question, answers, destructive=True) == 0:
+    if ask.ask(parent, tr("Live source"), question, answers) == 0:
         live.start(stop_other=True)
 
 

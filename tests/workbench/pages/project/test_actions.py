@@ -8,16 +8,19 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any, cast
 
+import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication, QLineEdit, QWidget
+from PySide6.QtWidgets import QApplication, QLineEdit, QPushButton, QWidget
 
 from core.errors import InputError
+from core.files.pictures import write_picture
 from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project, read_project, recoverable, write_autosave
 from core.files.project.keys import finished
 from core.files.project.lock import take_lock
 from core.files.project.people import Rules, person, write_rules
+from core.files.recording.unfinished import note_recording
 from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
@@ -636,6 +639,23 @@ def test_recovery_says_when_it_was_saved_and_what_differs(
     assert "info.name" not in text
 
 
+@pytest.mark.parametrize("used", [True, False])
+def test_pictures_of_an_interrupted_recording_are_used_or_told_where_they_are(
+    projects: ProjectActions, asked: Asked, tmp_path: Path, used: bool
+) -> None:
+    folder = project(tmp_path / "block")
+    recorded = folder / "recordings" / "scan-20260101-120000"
+    note_recording(folder, "scan", recorded)
+    recorded.mkdir(parents=True)
+    write_picture(recorded / "frame00000.png", np.full((4, 6), 90, np.uint8))
+    asked.answer = "Use them" if used else ""
+    projects.open_project(folder)
+    assert len(asked.questions) == 1
+    assert bool(projects.model.project.sources.scan) is used
+    told = [notice.text for notice in projects.bench.notices.all]
+    assert told == ([] if used else [f"The pictures are in {recorded}."])
+
+
 def test_the_audit_trail_is_shown_remarked_on_and_exported(
     projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -644,6 +664,7 @@ def test_the_audit_trail_is_shown_remarked_on_and_exported(
     renamed(projects, "Other")
     projects.save()
     window = AuditWindow(projects.bench, folder)
+    assert [button.text() for button in window.findChildren(QPushButton) if button.isDefault()] == ["Close"]
     assert 'info.name: "Block" → "Other"' in window.entries.toPlainText()
     window.add_remark("as the customer wished")
     assert window.entries.toPlainText().index("as the customer wished") < window.entries.toPlainText().index("Other")

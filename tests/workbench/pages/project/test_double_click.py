@@ -162,7 +162,7 @@ def test_the_menu_asks_does_it_and_tells_what_it_did(
         double_click.install()
     asked: list[list[str]] = []
 
-    def chosen(_parent: Any, _title: str, _text: str, answers: list[str]) -> int:
+    def chosen(_parent: Any, _title: str, _text: str, answers: list[str], **_: Any) -> int:
         asked.append(answers)
         return answer
 

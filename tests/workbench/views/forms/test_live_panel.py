@@ -316,9 +316,9 @@ def test_another_pages_recording_is_asked_about(panel, live, lane, qtbot, monkey
     other = LivePresenter(live.bench, "scan")
     other.start()
     asked = []
-    monkeypatch.setattr(ask, "ask", lambda *_, destructive=False: (asked.append(destructive), answer)[1])
+    monkeypatch.setattr(ask, "ask", lambda *_, harmless=False: (asked.append(harmless), answer)[1])
     qtbot.mouseClick(panel.start, LEFT)
-    assert asked == [True], "Return leaves the other recording alone"
+    assert asked == [False], "Return leaves the other recording alone"
     assert live.running is stopped
 
 
