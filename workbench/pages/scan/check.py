@@ -208,7 +208,9 @@ class RigCheck(QObject):
 
     def opened(self) -> None:
         """Another project: stop, forget, and read its result."""
-        self.cancel()
+        for task in (self._task, self._readjusting):
+            if task is not None:
+                task.cancel()
         self._task, self._problem, self._readjusting = None, ("", ""), None
         self._forget()
         self.follow()

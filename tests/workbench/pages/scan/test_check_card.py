@@ -9,7 +9,7 @@ from PySide6.QtCore import Qt
 
 from core.calibrate.results import CameraCalibration, FanCalibration, ProposedReadjustment, Readjustment
 from core.errors import InputError
-from core.files.project.data import Accepted
+from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
@@ -342,3 +342,13 @@ def test_why_nothing_is_readjusted_is_said_on_the_card(chosen, measuring, qtbot)
     qtbot.mouseClick(card.readjust, LEFT)
     measuring.fail(InputError("nothing was re-adjusted: the target moved"))
     qtbot.waitUntil(lambda: "the target moved" in card.sentence.text())
+
+
+def test_a_readjustment_is_given_up_with_its_project(chosen, measuring, qtbot, monkeypatch, tmp_path):
+    card, asked = failed_check(chosen, measuring, qtbot), []
+    monkeypatch.setattr(ask, "ask", lambda *_, **__: (asked.append(True), 1)[1])
+    qtbot.mouseClick(card.readjust, LEFT)
+    qtbot.waitUntil(lambda: measuring.busy)
+    chosen.presenter.model.create(tmp_path / "next", new_project("next"))
+    qtbot.waitUntil(lambda: not measuring.busy)
+    assert not asked, "it is asked about in no other project"
