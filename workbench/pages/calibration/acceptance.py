@@ -34,6 +34,11 @@ class Acceptance(QObject):
         """The id of the accepted one, or ""."""
         return str(getattr(self._model.project.accepted, CALIBRATIONS[self._step]))
 
+    @property
+    def label(self) -> str:
+        """What the job is called that keeps one."""
+        return self._words()[2]
+
     def is_rejected(self, id_: str) -> bool:
         """Whether this one is not wanted."""
         return id_ in self._model.project.rejected
@@ -48,6 +53,7 @@ class Acceptance(QObject):
         if folder is None or self.keeping:
             return
         self.keeping = True
+        self.changed.emit()
 
         def kept(id_: str) -> None:
             self.keeping = False
@@ -64,8 +70,9 @@ class Acceptance(QObject):
             self.keeping = False
             self.changed.emit()
 
-        label = self._words()[2]
-        self._bench.run_quick(self, self._keep, folder, project, *made, label=label, on_done=kept, on_failed=failed)
+        self._bench.run_quick(
+            self, self._keep, folder, project, *made, label=self.label, on_done=kept, on_failed=failed
+        )
 
     def reject(self, id_: str) -> None:
         """Do not measure with this one."""

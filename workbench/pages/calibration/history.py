@@ -13,6 +13,9 @@ from core.calibrate.results import CameraCalibration
 from core.files.project.keys import finished
 from workbench.bench import Bench
 from workbench.language import tr
+from workbench.pages.calibration.acceptance import Acceptance
+from workbench.pages.calibration.stage import RestoreFacts, WhyNotRestore, why_not_restore
+from workbench.pages.live.presenter import LivePresenter
 from workbench.project_model import CALIBRATIONS
 from workbench.work import jobs
 
@@ -24,9 +27,13 @@ class StoredCalibrations(QObject):
 
     STEP: ClassVar[Literal["camera", "planes"]]
 
-    def __init__(self, bench: Bench, parent: QObject | None = None) -> None:
+    def __init__(
+        self, bench: Bench, acceptance: Acceptance, live: LivePresenter, parent: QObject | None = None
+    ) -> None:
         super().__init__(parent)
-        self._bench, self._model = bench, bench.model
+        self._bench, self._model, self._acceptance, self._live = bench, bench.model, acceptance, live
+        bench.measuring.task_started.connect(self.changed)
+        bench.measuring.task_ended.connect(self.changed)
         self.forget()
 
     def forget(self) -> None:
@@ -63,11 +70,35 @@ class StoredCalibrations(QObject):
     @property
     def accepted(self) -> str:
         """The id of the one in use, or ""."""
-        return str(getattr(self._model.project.accepted, CALIBRATIONS[self.STEP]))
+        return self._acceptance.accepted
 
-    @abstractmethod
     def why_not_restore(self) -> str:
         """Why the chosen one cannot be accepted again, or ""."""
+        entry = next((entry for entry in self.entries if entry.id == self.chosen), None)
+        job = self._bench.measuring.current
+        running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
+        facts = RestoreFacts(
+            kept=bool(self.entries),
+            chosen=entry is not None,
+            in_use=self.chosen == self.accepted,
+            other_camera=self.STEP == "planes"
+            and entry is not None
+            and entry.camera_id != self._model.project.accepted.camera,
+            live=self._live.running,
+            keeping=self._acceptance.keeping,
+            job=job is not None,
+        )
+        return {
+            WhyNotRestore.NOTHING: "",
+            WhyNotRestore.LIVE: tr("Stop the live source first."),
+            WhyNotRestore.KEEPING: tr("A job is not finished yet: {job}.", job=running),
+            WhyNotRestore.JOB: tr("A job is not finished yet: {job}.", job=running),
+            **self._sentences(),
+        }[why_not_restore(facts)]
+
+    @abstractmethod
+    def _sentences(self) -> dict[WhyNotRestore, str]:
+        """What is missing, where that is this step's own."""
 
     def restore(self) -> None:
         """Accept the chosen one again; undoable."""
@@ -106,12 +137,12 @@ class CameraHistory(StoredCalibrations):
                 self._choice_changed()
                 self.changed.emit()
 
-    def why_not_restore(self) -> str:
-        if not self.entries:
-            return tr("No calibration has been accepted yet; accepted ones are listed here.")
-        if not self.chosen:
-            return tr("Choose a calibration above to compare it with the one shown.")
-        return tr("This calibration is in use.") if self.chosen == self.accepted else ""
+    def _sentences(self) -> dict[WhyNotRestore, str]:
+        return {
+            WhyNotRestore.NONE_KEPT: tr("No calibration has been accepted yet; accepted ones are listed here."),
+            WhyNotRestore.NONE_CHOSEN: tr("Choose a calibration above to compare it with the one shown."),
+            WhyNotRestore.IN_USE: tr("This calibration is in use."),
+        }
 
     def _choice_changed(self) -> None:
         self.changes = None
@@ -144,14 +175,10 @@ class PlanesHistory(StoredCalibrations):
     def _labels(self) -> tuple[str, str]:
         return tr("Reading the laser planes' history"), tr("restore laser planes")
 
-    def why_not_restore(self) -> str:
-        entry = next((entry for entry in self.entries if entry.id == self.chosen), None)
-        if not self.entries:
-            return tr("No laser planes have been accepted yet; accepted ones are listed here.")
-        if entry is None:
-            return tr("Choose a calibration in the list first.")
-        if entry.id == self.accepted:
-            return tr("These laser planes are in use.")
-        if entry.camera_id != self._model.project.accepted.camera:
-            return tr("They rest on another camera calibration; restore that one first.")
-        return ""
+    def _sentences(self) -> dict[WhyNotRestore, str]:
+        return {
+            WhyNotRestore.NONE_KEPT: tr("No laser planes have been accepted yet; accepted ones are listed here."),
+            WhyNotRestore.NONE_CHOSEN: tr("Choose a calibration in the list first."),
+            WhyNotRestore.IN_USE: tr("These laser planes are in use."),
+            WhyNotRestore.OTHER_CAMERA: tr("They rest on another camera calibration; restore that one first."),
+        }

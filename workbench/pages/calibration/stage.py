@@ -78,6 +78,37 @@ class Facts(NamedTuple):
     """Nothing can be kept in it."""
 
 
+class WhyNotRestore(StrEnum):
+    """Why the calibration chosen in the history cannot be accepted again; nothing: it can."""
+
+    NOTHING = ""
+    NONE_KEPT = "none kept"
+    NONE_CHOSEN = "none chosen"
+    IN_USE = "in use"
+    OTHER_CAMERA = "other camera"
+    LIVE = "live"
+    KEEPING = "keeping"
+    JOB = "job"
+
+
+class RestoreFacts(NamedTuple):
+    """What restoring one rests on."""
+
+    kept: bool
+    """The history holds some."""
+    chosen: bool
+    in_use: bool
+    """The chosen one is the accepted one."""
+    other_camera: bool
+    """It rests on another camera calibration than the accepted one."""
+    live: bool
+    """Pictures are being taken."""
+    keeping: bool
+    """Another one is being put into the project."""
+    job: bool
+    """A long job runs: it was begun with the calibration in use, or will put another in its place."""
+
+
 def stage_of(facts: Facts) -> Stage:
     """How far it is."""
     if facts.live:
@@ -104,6 +135,20 @@ def stage_of(facts: Facts) -> Stage:
 def buttons_of(facts: Facts) -> Buttons:
     """What can be done."""
     return Buttons(_run(facts), _accept(facts), _reject(facts))
+
+
+def why_not_restore(facts: RestoreFacts) -> WhyNotRestore:
+    """Whether the chosen one can be restored; what is chosen is spoken of first, as waiting does not help there."""
+    reasons = (
+        (not facts.kept, WhyNotRestore.NONE_KEPT),
+        (not facts.chosen, WhyNotRestore.NONE_CHOSEN),
+        (facts.in_use, WhyNotRestore.IN_USE),
+        (facts.other_camera, WhyNotRestore.OTHER_CAMERA),
+        (facts.live, WhyNotRestore.LIVE),
+        (facts.keeping, WhyNotRestore.KEEPING),
+        (facts.job, WhyNotRestore.JOB),
+    )
+    return next((why for true, why in reasons if true), WhyNotRestore.NOTHING)
 
 
 def _run(facts: Facts) -> WhyNot:

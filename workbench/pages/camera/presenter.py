@@ -33,7 +33,7 @@ class CameraPresenter(CalibrationPresenter):
         super().__init__(bench)
         self.work = CameraWork(bench, self)
         self.look = CurrentPicture(bench, self.work, tr("Reading a picture"), self)
-        self.history = CameraHistory(bench, self)
+        self.history = CameraHistory(bench, self.acceptance, self.live, self)
         self.target = TargetChoice(bench, "camera_target", tr("change the camera's target"), self)
         self.threshold: float | None = None
         self._connect()

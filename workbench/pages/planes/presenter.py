@@ -47,7 +47,7 @@ class PlanesPresenter(CalibrationPresenter):
         self.work = PlanesWork(bench, self)
         self.look = CurrentPose(bench, self.work, tr("Reading a pose"), self)
         self.seen_by = PlanesCamera(bench, self)
-        self.history = PlanesHistory(bench, self)
+        self.history = PlanesHistory(bench, self.acceptance, self.live, self)
         self.target = TargetChoice(bench, "plane_target", tr("change the plate"), self)
         self.live.calibration = self._known
         self.live.cannot_start = self._cannot_record

@@ -3,7 +3,16 @@
 from collections.abc import Iterator
 from itertools import product
 
-from workbench.pages.calibration.stage import Facts, Stage, WhyNot, buttons_of, stage_of
+from workbench.pages.calibration.stage import (
+    Facts,
+    RestoreFacts,
+    Stage,
+    WhyNot,
+    WhyNotRestore,
+    buttons_of,
+    stage_of,
+    why_not_restore,
+)
 
 IDS = ("", "a", "b")
 BOTH = (False, True)
@@ -63,3 +72,14 @@ def test_in_every_state_the_next_thing_to_do_can_be_done():
 def test_a_grey_button_has_its_reason_among_those_with_a_sentence():
     reasons = {why for facts in every_state() for why in buttons_of(facts)}
     assert reasons == set(WhyNot)
+
+
+def test_one_of_the_history_is_restored_only_where_nothing_runs_and_it_would_change_something():
+    states = [RestoreFacts(*values) for values in product(BOTH, repeat=len(RestoreFacts._fields))]
+    for facts in states:
+        why = why_not_restore(facts)
+        can = facts.kept and facts.chosen and not any(facts[2:])
+        assert (why is WhyNotRestore.NOTHING) == can, facts
+        if why in (WhyNotRestore.LIVE, WhyNotRestore.KEEPING, WhyNotRestore.JOB):
+            assert facts.chosen and not facts.in_use, "who waits for the end of a job can restore it then"
+    assert {why_not_restore(facts) for facts in states} == set(WhyNotRestore)

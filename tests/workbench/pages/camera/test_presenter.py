@@ -267,6 +267,13 @@ def test_a_kept_calibration_is_compared_and_restored(accepted, qtbot):
     qtbot.waitUntil(lambda: accepted.history.changes is not None)
     assert accepted.history.changes.views == (8, 7)
     second = accepted.project.accepted.camera
+    lane = accepted.bench.measuring
+    lane.held.add(jobs.MEASURE_SCAN)
+    scan = accepted.bench.run_long(accepted, jobs.MEASURE_SCAN, label="Measure", on_done=print)
+    assert accepted.history.why_not_restore() == "A job is not finished yet: Measure."
+    accepted.history.restore()
+    assert accepted.project.accepted.camera == second, "the job was begun with this one"
+    scan.cancel()
     accepted.history.restore()
     assert accepted.project.accepted.camera == first
     assert accepted.stage is Stage.OTHER and accepted.blocker() == ""
