@@ -13,7 +13,7 @@ from workbench.theme import icon
 from workbench.views.common import breakable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, heading, holding, in_column, muted
+from workbench.views.layouts import STRETCH, enable, heading, holding, in_column, muted
 from workbench.views.lists.value_rows import ValueRows
 
 
@@ -63,10 +63,10 @@ class ProjectPage(StepPage):
             form.set_values({key: value for key, value in values.items() if key in form.values()})
         self.rows.set_rows(self.presenter.progress_rows())
         self.next_words.setText(self.presenter.next_words())
-        cannot = self.presenter.whole.cannot_start
-        self.whole.setEnabled(not cannot)
-        self.whole.setToolTip(
-            cannot or tr("Do every step that is not up to date, to the report; stops where you have to decide")
+        enable(
+            self.whole,
+            self.presenter.whole.cannot_start,
+            tr("Do every step that is not up to date, to the report; stops where you have to decide"),
         )
         self.place.setText(breakable(self.presenter.place()))
 

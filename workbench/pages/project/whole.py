@@ -12,6 +12,7 @@ from core.files.project.data import ProjectFile
 from core.files.project.keys import STEPS, left_to_do
 from workbench.bench import Bench
 from workbench.language import text_of, tr
+from workbench.pages.project.buttons import WholeFacts, why_not_measure_all
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -42,17 +43,15 @@ class MeasuringAll(QObject):
     @property
     def cannot_start(self) -> str:
         """Why nothing can be done now, or ""."""
-        project = self._model.project
-        if self.running:
-            return tr("Everything is being measured.")
-        if self._bench.live.busy or self._model.is_recording:
-            return tr("Stop the live source first.")
-        left = left_to_do(project, self._model.results)
-        if not left:
-            return tr("Everything is up to date.")
-        if "scan" in left and not project.sources.scan:
-            return tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan.")
-        return ""
+        model = self._model
+        facts = WholeFacts(
+            running=self.running,
+            live=self._bench.live.busy or model.is_recording,
+            left=frozenset(left_to_do(model.project, model.results)),
+            scan_chosen=bool(model.project.sources.scan),
+            read_only=model.is_read_only,
+        )
+        return why_not_measure_all(facts)
 
     def start(self) -> None:
         """Do it."""

@@ -1,0 +1,23 @@
+"""Every state of *Measure everything*: it follows from plain facts."""
+
+from itertools import product
+
+import pytest
+
+from workbench.pages.project.buttons import WholeFacts, why_not_measure_all
+
+BOTH = (False, True)
+LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "inspect", "report"), ("camera", "scan", "report"))))
+STATES = [WholeFacts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
+
+
+@pytest.mark.parametrize("facts", STATES, ids=str)
+def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: WholeFacts) -> None:
+    why = why_not_measure_all(facts)
+    idle = not facts.running and not facts.live
+    possible = bool(facts.left) and not facts.read_only and (facts.scan_chosen or "scan" not in facts.left)
+    assert bool(why) != (idle and possible)
+    if idle and not facts.left:
+        assert why == "Everything is up to date.", "nothing else is told where nothing is left"
+    if idle and facts.left and facts.read_only:
+        assert "read-only" in why, "pictures need not be chosen for what cannot be written"
