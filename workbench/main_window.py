@@ -25,7 +25,7 @@ from core.translations import languages, own_name
 from workbench import first_measurement
 from workbench.bench import Bench
 from workbench.language import spoken, tr
-from workbench.menus import Menus
+from workbench.menus import OF_A_PAGE, MenuFacts, Menus, why_not
 from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.project.actions import ProjectActions
@@ -252,7 +252,7 @@ class MainWindow(QMainWindow):
             "sign in": projects.sign_in,
             "close": projects.close_project,
             "quit": self.leave,
-            **{name: partial(self.presenter_action, name) for name in ("run", "accept", "live", "capture")},
+            **{name: partial(self.presenter_action, name) for name in OF_A_PAGE},
             "whole": partial(self.presenter_action, "whole", "project"),
             "cancel": self.cancel_task,
             "back": partial(self.go, -1),
@@ -357,19 +357,27 @@ class MainWindow(QMainWindow):
         (self.pages[now.page].card.buttons[now.button] if now.button else self.next).setFocus()
 
     def _refresh(self) -> None:
-        self.menus.refresh(is_open=self.model.is_open)
+        self._refresh_menus()
         if not self.model.is_open:
             return
         self._show_instruction()
         states = self.model.states
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
-        last = self._current == STEPS[-1].name
+        facts = self._menu_facts()
+        last = why_not("next", facts)
         missing = self.presenters[self._current].blocker() if self._current else ""
-        enable(self.next, missing, tr("Go on to the next step"))
+        enable(self.next, last or missing, tr("Go on to the next step"))
         self.next.setVisible(not last)
         self.missing.setText("" if last else missing)
-        first = tr("It is the first step.") if self._current == STEPS[0].name else ""
-        enable(self.back, first, tr("Go back to the step before"))
+        enable(self.back, why_not("back", facts), tr("Go back to the step before"))
+
+    def _refresh_menus(self) -> None:
+        self.menus.refresh(self._menu_facts())
+
+    def _menu_facts(self) -> MenuFacts:
+        page = self.presenters.get(self._current)
+        does = frozenset(name for name in OF_A_PAGE if hasattr(page, f"do_{name}"))
+        return MenuFacts(self._current, does, job=self._task is not None)
 
     def _toggle_messages(self) -> None:
         self.messages.setVisible(not self.messages.isVisible())
@@ -417,6 +425,7 @@ class MainWindow(QMainWindow):
         task.done.connect(self._task_done)
         self.task_bar.begin(task.label)
         self._refreshing.soon()
+        self._refresh_menus()
 
     def _task_progressed(self, stage: str, done: int, total: int) -> None:
         self._stage = stage
@@ -439,6 +448,7 @@ class MainWindow(QMainWindow):
             self._task = None
             self.task_bar.end()
             self._refreshing.soon()
+            self._refresh_menus()
 
 
 def _turn(stack: QStackedWidget, page: QWidget) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
+from typing import NamedTuple
 
 from PySide6.QtCore import QObject
 from PySide6.QtGui import QAction, QActionGroup, QKeySequence, QUndoStack
@@ -16,6 +17,7 @@ from workbench.language import spoken, tr
 from workbench.refresh import Refresh
 from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
+from workbench.views.layouts import enable
 from workbench.views.lists.shortcut_list import ShortcutList
 
 SHORTCUTS: tuple[tuple[str, str, str], ...] = (
@@ -53,6 +55,9 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
 
 KEYS = {name: key for name, key, _ in SHORTCUTS}
 
+OF_A_PAGE = ("run", "accept", "live", "capture")
+"""Entries that mean something on some pages only."""
+
 NEED_A_PROJECT = (
     "save",
     "next part",
@@ -63,12 +68,35 @@ NEED_A_PROJECT = (
     "close",
     "back",
     "next",
-    "run",
     "whole",
-    "accept",
-    "live",
-    "capture",
+    *OF_A_PAGE,
 )
+
+
+class MenuFacts(NamedTuple):
+    """What the entries of the menus rest on."""
+
+    page: str
+    """The step whose page is shown; "" without a project."""
+    does: frozenset[str]
+    """Those of OF_A_PAGE that mean something on it."""
+    job: bool
+    """A long job runs."""
+
+
+def why_not(name: str, facts: MenuFacts) -> str:
+    """Why an entry, by its name, cannot be chosen now: a sentence, or ""."""
+    if name == "cancel":
+        return "" if facts.job else tr("No job is running.")
+    if name not in NEED_A_PROJECT and not name.startswith("step "):
+        return ""
+    if not facts.page:
+        return tr("Open a project first.")
+    if name in OF_A_PAGE and name not in facts.does:
+        return tr("There is nothing of the kind on this page.")
+    if name == "back" and facts.page == STEPS[0].name:
+        return tr("This is the first step.")
+    return tr("This is the last step.") if name == "next" and facts.page == STEPS[-1].name else ""
 
 
 class Menus(QObject):
@@ -95,18 +123,19 @@ class Menus(QObject):
         super().__init__(window)
         self._window, self._settings, self._commands, self._open_project = window, settings, commands, open_project
         self.actions: dict[str, QAction] = {}
+        self._tips = {name: tr(meaning) for name, _, meaning in SHORTCUTS}
         self._recent = QMenu(tr("Open &recent"), window)
         self._fill(undo_stack)
         # In the next turn: the entry that opens a project is deleted when that project goes to the top of the list.
         self._recent_changed = Refresh(self._fill_recent, self)
         settings.recent_changed.connect(self._recent_changed.soon)
         self._fill_recent()
-        self.refresh(is_open=False)
+        self.refresh(MenuFacts("", frozenset(), job=False))
 
-    def refresh(self, *, is_open: bool) -> None:
-        """Grey what makes no sense without a project."""
-        for name in (*NEED_A_PROJECT, *(f"step {step.name}" for step in STEPS)):
-            self.actions[name].setEnabled(is_open)
+    def refresh(self, facts: MenuFacts) -> None:
+        """Grey what makes no sense now; its tip says why."""
+        for name in ("cancel", *NEED_A_PROJECT, *(f"step {step.name}" for step in STEPS)):
+            enable(self.actions[name], why_not(name, facts), self._tips.get(name, ""))
 
     def _fill(self, undo_stack: QUndoStack) -> None:
         bar = self._window.menuBar()
@@ -140,6 +169,7 @@ class Menus(QObject):
             self.actions[name] = action
 
         step = bar.addMenu(tr("&Step"))
+        step.setToolTipsVisible(True)
         self._add(step, "run", tr("&Do this step"))
         self._add(step, "whole", tr("Measure &everything"))
         self._add(step, "accept", tr("&Accept"))

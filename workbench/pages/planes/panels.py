@@ -87,7 +87,6 @@ class PlanesLive(QWidget):
 
     def refresh(self) -> None:
         """Show how poses are taken."""
-        running = self._presenter.live.running
         self.pairs.setChecked(self._presenter.live.pairs)
         enable(
             self.pairs,

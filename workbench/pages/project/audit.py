@@ -14,7 +14,7 @@ from core.messages import visible
 from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
-from workbench.views.layouts import STRETCH, in_column, in_row, muted
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted
 
 
 def ask_reason(parent: QWidget | None, label: str) -> str:
@@ -40,11 +40,12 @@ class AuditWindow(QDialog):
         self.entries.setAccessibleName(tr("Entries of the audit trail"))
         self.remark = QPushButton(tr("Add a remark …"))
         self.remark.clicked.connect(self._ask_for_remark)
-        self.remark.setEnabled(not bench.model.is_read_only)
         self.sign = QPushButton(tr("Sign …"))
-        self.sign.setToolTip(tr("Sign the project as it is, by name and PIN."))
         self.sign.clicked.connect(self._ask_for_signature)
-        self.sign.setEnabled(bool(bench.model.rules.people) and not bench.model.is_read_only)
+        fixed = tr("This project is read-only.") if bench.model.is_read_only else ""
+        unnamed = "" if bench.model.rules.people else tr("Nobody is named in this project, so nobody can sign.")
+        enable(self.remark, fixed, tr("Say why something was done; it stays for good."))
+        enable(self.sign, fixed or unnamed, tr("Sign the project as it is, by name and PIN."))
         self.export = QPushButton(tr("Export …"))
         self.export.clicked.connect(self._export)
         close = QPushButton(tr("Close"))

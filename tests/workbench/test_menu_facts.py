@@ -1,0 +1,48 @@
+"""Every state of the menus: which entries can be chosen follows from plain facts."""
+
+from __future__ import annotations
+
+from itertools import product
+from pathlib import Path
+
+from core.files.project.data import new_project
+from workbench.main_window import MainWindow
+from workbench.menus import NEED_A_PROJECT, OF_A_PAGE, MenuFacts, why_not
+from workbench.step_state import ORDER
+
+ENTRIES = ("new", "open", "import", "undo", "messages", "manual", "cancel", *NEED_A_PROJECT, "step scan")
+STATES = [
+    MenuFacts(page, frozenset(does), job=job)
+    for page, does, job in product(("", *ORDER), ((), ("run",), OF_A_PAGE), (False, True))
+    if page or not does
+]
+
+
+def test_what_can_be_chosen_in_every_state() -> None:
+    for facts, name in product(STATES, ENTRIES):
+        why, known = why_not(name, facts), (name, facts)
+        if name == "cancel":
+            assert bool(why) != facts.job, known
+        elif name not in NEED_A_PROJECT and name != "step scan":
+            assert not why, known
+        elif not facts.page:
+            assert why == "Open a project first.", known
+        elif name in OF_A_PAGE:
+            assert bool(why) != (name in facts.does), known
+        else:
+            end = {"back": ORDER[0], "next": ORDER[-1]}.get(name)
+            assert bool(why) == (facts.page == end), known
+
+
+def test_on_every_page_the_entries_do_something_or_say_why_not(window: MainWindow, tmp_path: Path) -> None:
+    entries = window.menus.actions
+    window.model.create(tmp_path / "one", new_project("one"))
+    assert not entries["cancel"].isEnabled() and entries["cancel"].toolTip() == "No job is running."
+    for page in ORDER:
+        window.go_to(page)
+        for name in OF_A_PAGE:
+            assert entries[name].isEnabled() == hasattr(window.presenters[page], f"do_{name}"), (page, name)
+        for button, name in ((window.back, "back"), (window.next, "next")):
+            assert not button.isEnabled() or entries[name].isEnabled(), (page, name)
+            if not entries[name].isEnabled():
+                assert button.toolTip() == entries[name].toolTip(), (page, name)
