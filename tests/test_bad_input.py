@@ -81,7 +81,9 @@ def test_one_truncated_frame_among_good_ones_is_skipped_counted_and_reported(fol
     assert said.code == 0, said.err
     values = json.loads(said.out)
     name = f"scan/{victim.name}"
-    assert {"name": name, "reason": "the picture ends early"} in values["frames_left_out"]
+    early = {"code": "picture.ends_early", "text": "ends early", "values": {}}
+    why = {"reason": "the picture ends early", "code": "picture.damaged", "values": {"reason": early}}
+    assert values["frames_left_out"] == [{"name": name} | why]
     assert any(name in note["text"] and "1 of" in note["text"] and note["code"] for note in values["notes"])
     assert len(frame_records(out)) == SMALL.frames
     assert (frame_records(out)[3]["name"], frame_records(out)[3]["points"]) == (name, 0)
@@ -167,7 +169,7 @@ def test_a_view_without_a_board_and_a_black_and_a_white_one_are_left_out(folder,
     values = json.loads(said.out)
     assert values["views_used"] == SMALL.camera_views - 3
     assert [view["name"] for view in values["views_left_out"]] == [f"camera/{view.name}" for view in views[:3]]
-    assert all(view["reason"] for view in values["views_left_out"])
+    assert all(view["reason"] and view["code"] and view["values"] is not None for view in values["views_left_out"])
     assert any(f"camera/{views[0].name}" in note["text"] for note in values["notes"])
 
 

@@ -310,7 +310,7 @@ def _set_values(result: SetResult) -> dict[str, Any]:
         **{one.name: getattr(result, one.name) for one in fields(result)},
         "folder": str(result.folder),
         "out": str(result.out),
-        "error": "" if result.error is None else str(result.error),
+        **output.reason_json(result.error, name="error"),
     }
 
 

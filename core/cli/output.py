@@ -27,7 +27,7 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.inspect.results import GaugeResult
-from core.messages import Message, as_json, plural_message, visible
+from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -377,10 +377,16 @@ def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:
     """The same for machines."""
     return {
         "pictures": [
-            {"name": one.name, "thickness_mm": one.thickness_mm, "own_mm": one.own_mm, "reason": str(one.reason or "")}
+            {"name": one.name, "thickness_mm": one.thickness_mm, "own_mm": one.own_mm, **reason_json(one.reason)}
             for one in pictures
         ]
     }
+
+
+def reason_json(reason: Message | None, name: str = "reason") -> dict[str, Any]:
+    """Why something was left out or failed: the English text by `name`, code and values beside it; empty for None."""
+    told = as_json(reason or plain(""))
+    return {name: told["text"], "code": told["code"], "values": told["values"]}
 
 
 def gauge_json(gauge: GaugeResult | None) -> dict[str, Any]:
@@ -399,7 +405,7 @@ def frames_json(frames: Sequence[FrameRecord], points: int) -> dict[str, Any]:
         "points": points,
         "frames_used": sum(frame.used for frame in frames),
         "frames_left_out": [
-            {"name": frame.name, "reason": str(frame.reason or NO_REASON)} for frame in frames if not frame.used
+            {"name": frame.name, **reason_json(frame.reason or NO_REASON)} for frame in frames if not frame.used
         ],
     }
 
@@ -413,7 +419,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
         "distortion": calibration.camera.distortion,
         "views_used": sum(view.used for view in calibration.views),
         "views_left_out": [
-            {"name": view.name, "reason": str(view.reason or "")} for view in calibration.views if not view.used
+            {"name": view.name, **reason_json(view.reason)} for view in calibration.views if not view.used
         ],
     }
 
@@ -428,7 +434,7 @@ def fan_json(calibration: FanCalibration) -> dict[str, Any]:
         "constraint_suits": calibration.constraint_suits,
         "poses_used": sum(pose.used for pose in calibration.poses),
         "poses_left_out": [
-            {"name": pose.name, "reason": str(pose.reason or "")} for pose in calibration.poses if not pose.used
+            {"name": pose.name, **reason_json(pose.reason)} for pose in calibration.poses if not pose.used
         ],
     }
 

@@ -19,12 +19,11 @@ from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.template import SECTIONS, Paper, ReportTemplate
+from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.study.repeats import RepeatStatistics, repeat_statistics
-
-NO_REASON = Message("report.no_reason", "no reason recorded")
 
 
 @dataclass(frozen=True, slots=True)

@@ -114,6 +114,7 @@ def test_the_command_leaves_with_the_worst_code_of_its_sets(quick, tmp_path, nam
     rows = json.loads(said.out)["sets"]
     assert [Path(row["folder"]).name for row in rows] == list(names)
     assert [bool(row["error"]) for row in rows] == ["bad" in name for name in names]
+    assert [bool(row["code"]) for row in rows] == ["bad" in name for name in names]
 
 
 def test_the_command_tells_all_sets_width_and_contrast_of_their_stripes(tmp_path, monkeypatch):

@@ -9,7 +9,7 @@ from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, Spacer, TableStyle
 
 from core.messages import Message, plural_message
-from core.report.content import NO_REASON, LeftOut, ReportContent
+from core.report.content import LeftOut, ReportContent
 from core.report.layout.blocks import (
     GAP,
     Cell,
@@ -25,6 +25,7 @@ from core.report.layout.blocks import (
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
 from core.report.wording import grouped
+from core.scan.features.frames import NO_REASON
 
 
 def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
