@@ -23,7 +23,7 @@ ON_SCREEN   := -n 3 $(AS_MODULES)
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations notice screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations messages notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -73,6 +73,9 @@ pictures: $(READY)        ## the four pictures of the README
 # LANGUAGE counts on the command line alone: in the surroundings it is the reader's own, gettext's list.
 translations: $(READY)    ## every text of the code into the catalogues of all languages, resources/translations/*.po; LANGUAGE=fr adds one
 	$(BIN)/python -m tests.translations$(if $(findstring command,$(origin LANGUAGE)), $(LANGUAGE))
+
+messages: $(READY)        ## the manual's page of every error and warning by code, resources/manual/messages.md
+	$(BIN)/python -m tests.message_page
 
 notice: $(READY)          ## NOTICE: what the program stands on, and under which licences
 	$(BIN)/python -m tests.licences

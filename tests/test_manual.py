@@ -1,18 +1,20 @@
 """What the manual names exists: links, folders and modules, message codes."""
 
+import ast
 import itertools
 import re
+from fnmatch import fnmatchcase
 from pathlib import Path
 
 import pytest
 
+from tests import message_page
 from tests.translations import texts
 
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "resources" / "manual").glob("*.md"))]
 LINK = re.compile(r"\]\((?!https?:)([^)#]+)")
 PLACE = re.compile(r"`((?:core|workbench|tests|resources)/[\w/{},.-]*)`")
-CODE = re.compile(r"^\| `([a-z_]+\.[a-z_]+)` \|", re.MULTILINE)
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.name)
@@ -27,10 +29,35 @@ def test_folders_and_modules_that_are_named_exist(page):
     assert not [place for place in named if "NAME" not in place and not exists(place)]
 
 
-def test_message_codes_that_are_explained_exist():
-    explained = CODE.findall((ROOT / "resources" / "manual" / "troubleshooting.md").read_text(encoding="utf-8"))
+def test_message_codes_that_are_explained_exist_and_are_on_the_page_of_all():
+    explained = message_page.explained()
     assert explained
-    assert not set(explained) - {text.code for text in texts()}
+    assert not explained - set(message_page.codes())
+
+
+def test_every_error_and_warning_is_on_the_page_of_all_and_nothing_else():
+    assert message_page.PAGE.read_text(encoding="utf-8") == message_page.page(), "write it with `make messages`"
+
+
+def test_what_is_left_off_the_page_of_all_is_there_and_no_error():
+    codes = {text.code for text in texts()}
+    assert not [name for name in message_page.NAMES if not any(fnmatchcase(code, name) for code in codes)]
+    assert not [code for code in message_page.errors() if message_page.is_name(code)]
+
+
+def test_every_room_of_messages_says_what_helps_and_no_other_does():
+    assert set(message_page.rooms()) == {code.partition(".")[0] for code in message_page.codes()}
+
+
+def test_what_to_do_about_an_error_stands_beside_it_or_in_a_constant():
+    source = """
+_ASK = Message("advice.ask", "ask {whom}")
+raise InputError(Message("a.b", "one", why=Message("a.why", "inner")), todo=_ASK)
+raise WrongValue(Message("a.c", "two") if x else Message("a.d", "three"))
+tell(Message("a.note", "no error"))
+"""
+    found = list(message_page.errors_of(ast.parse(source)))
+    assert found == [("a.b", ["ask {whom}"]), ("a.c", []), ("a.d", [])]
 
 
 def test_places_are_spelled_out():

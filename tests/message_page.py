@@ -1,0 +1,150 @@
+"""`make messages`: the manual's page of every error and warning, by code, with its text and what to do.
+
+Texts come from the calls that tell them; what to do is the advice that stands beside an error in its call. What is
+explained at more length is on the page on troubleshooting, which people write.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from collections.abc import Iterator
+from fnmatch import fnmatchcase
+from itertools import groupby
+from string import Formatter
+
+from tests.translations import CODED, ROOT, all_texts, called
+
+MANUAL = ROOT / "resources" / "manual"
+PAGE = MANUAL / "messages.md"
+
+NAMES = (
+    "advice.*", "*.advice_*", "*.rule_*", "*.cause_*", "input.*",
+    "artefact.passed", "check.passed", "readjust.proposed", "readjust.undone", "target.sizes_agree",
+    "camera.downwards", "camera.inwards", "camera.outwards", "camera.upwards", "camera.to_the_*", "camera.none",
+    "camera.only", "camera.of_view", "camera.nameless_view",
+    "camera.view_number", "camera.two_reasons", "cli.camera", "cli.fan", "cli.*_used", "cli.positions", "cli.repeats",
+    "fan.angle_with_sd", "fan.bent_*", "fan.constrained_used", "fan.free_*_used", "fan.of_pose", "fan.one_axis*",
+    "fan.pose_and_reason", "fan.pose_reason_and_distance", "fan.suits", "fan.used_as_asked", "fan.verdict",
+    "feature.where*", "feature.compared_with_master", "feature.stated_at_20",
+    "form.above", "form.below", "form.the_*", "form.too_*", "gauge.*er_region", "gauge.where_*", "gauge.without_*",
+    "import.by_*", "import.pairs_by_*", "import.no_off", "import.order_and_pairs", "import.pictures", "import.poses",
+    "live.marked", "live.reason", "live.taken", "live.set_*", "live.start_sweeping", "live.take_reference",
+    "picture.bottom", "picture.left*", "picture.lower_*", "picture.middle", "picture.right*", "picture.top",
+    "picture.upper_*", "plan.best_change", "plan.bound_*", "plan.change_*", "plan.contrast", "plan.degrees",
+    "plan.grey_levels", "plan.map_title", "plan.millimetres", "plan.number", "profile.mean_of",
+    "report.characteristics", "report.crossings", "report.days", "report.frames", "report.hours", "report.inputs",
+    "report.note_of_result", "report.points*", "report.poses", "report.remarks", "report.scans", "report.views",
+    "scan.between_frames", "scan.brighter", "scan.darker", "scan.everything", "scan.the_part", "scan.farther",
+    "scan.nearer", "scan.earlier_sweep", "scan.fan_line", "scan.crosses", "scan.crossing_counts", "scan.crossing_good",
+    "scan.check_age", "scan.check_exposure", "scan.check_focus", "scan.check_fresh", "scan.check_lines",
+    "scan.check_reference", "scan.scale_fixed", "scan.stripe_width", "set.channel_blue*", "set.channel_green*",
+    "set.channel_red*", "source.aravis*", "source.basler*", "source.device", "source.first_camera", "source.folder",
+    "source.folder_help", "source.folder_usual", "source.genicam*", "source.opencv*", "source.region", "source.replay*",
+    "source.scene*", "source.simulated", "source.simulated_help", "study.after_the_guideline", "study.flatness_error",
+    "study.its_columns", "study.nearest_column", "study.probing_*", "study.sphere_spacing", "surface.where_*",
+    "target.board", "target.poses", "target.print_to_size", "target.target", "target.views", "window.another_*",
+    "window.elsewhere", "window.profile_tilt", "window.results_folder",
+)  # fmt: skip
+"""Codes of what is neither error nor warning: advice, which stands beside its error; names, numbers, places, and what
+went well."""
+
+HEAD = """# Every error and warning, by code
+
+Written by `make messages` from the program itself: the English text, its values in {braces}, and what the program says
+to do about it. Where nothing stands there, the text says it, or what stands above the table does. *Explained* leads to
+the page on troubleshooting, with the usual cause and what helps.
+"""
+
+RAISED = ("InputError", "WrongValue", "TargetNotFound", "Unplugged")
+"""Errors that have a message; others are called with `todo`."""
+
+
+def explained() -> set[str]:
+    """The codes that the page on troubleshooting explains."""
+    return {code for first, *_ in _rows() for code in re.findall(r"`([a-z_0-9]+\.[a-z_0-9]+)`", first)}
+
+
+def rooms() -> dict[str, tuple[str, str]]:
+    """By the first word of a code: what its messages are about, and what helps where they do not say; of that page."""
+    return {first.strip("`"): (about, helps) for first, about, helps in _rows() if re.fullmatch("`[a-z]+`", first)}
+
+
+def _rows() -> list[tuple[str, ...]]:
+    page = (MANUAL / "troubleshooting.md").read_text(encoding="utf-8")
+    return re.findall(r"^\| (.*?) \| (.*?) \| (.*?) \|$", page, re.MULTILINE)
+
+
+def codes() -> list[str]:
+    """The codes of all errors and warnings, in order."""
+    return sorted({text.code for text in all_texts() if text.code and not is_name(text.code)})
+
+
+def page() -> str:
+    """The page as Markdown."""
+    texts = {text.code: text.english[-1] for text in all_texts()}
+    advice, on_troubleshooting, about_rooms = errors(), explained(), rooms()
+    parts = [HEAD]
+    for room, within in groupby(codes(), lambda code: code.partition(".")[0]):
+        about, helps = about_rooms[room]
+        parts.append(
+            f"## {room}: {about}\n\n{helps[0].upper()}{helps[1:]}.\n\n| code | text | what to do |\n|---|---|---|"
+        )
+        for code in within:
+            todo = ["; or: ".join(map(_shown, advice.get(code, ())))]
+            todo += ["[explained](troubleshooting.md)"] if code in on_troubleshooting else []
+            parts.append(f"| `{code}` | {_shown(texts[code])} | {'; '.join(filter(None, todo))} |")
+        parts.append("")
+    return "\n".join(parts)
+
+
+def _shown(text: str) -> str:
+    """A text with the names of its places alone, as a cell of a table."""
+    pieces = [f"{lead}{{{place}}}" if place is not None else lead for lead, place, _, _ in Formatter().parse(text)]
+    return re.sub(r"([|*<`\\])", r"\\\1", "".join(pieces)).replace("\n", " ")
+
+
+def is_name(code: str) -> bool:
+    """Whether a code is of neither error nor warning."""
+    return any(fnmatchcase(code, pattern) for pattern in NAMES)
+
+
+def errors() -> dict[str, list[str]]:
+    """By the code of an error, what the calls that tell it say to do."""
+    found: dict[str, list[str]] = {}
+    for folder in ("core", "workbench"):
+        for path in sorted((ROOT / folder).rglob("*.py")):
+            for code, advice in errors_of(ast.parse(path.read_text(encoding="utf-8"))):
+                known = found.setdefault(code, [])
+                known += [one for one in advice if one not in known]
+    return found
+
+
+def errors_of(tree: ast.AST) -> Iterator[tuple[str, list[str]]]:
+    """The code of each error that a module tells, and what it says to do there."""
+    named: dict[str, list[tuple[str, str]]] = {}
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                named.setdefault(ast.unparse(target), []).extend(_messages(node.value, {}))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Call) and node.args:
+            todo = [keyword.value for keyword in node.keywords if keyword.arg == "todo"]
+            if todo or called(node) in RAISED:
+                advice = [text for one in todo for _, text in _messages(one, named)]
+                yield from ((code, advice) for code, _ in _messages(node.args[0], named))
+
+
+def _messages(node: ast.expr, named: dict[str, list[tuple[str, str]]]) -> list[tuple[str, str]]:
+    """Code and text of what an expression can tell, not of what stands within a message's places."""
+    if isinstance(node, ast.IfExp):
+        return _messages(node.body, named) + _messages(node.orelse, named)
+    if isinstance(node, ast.BoolOp):
+        return [one for value in node.values for one in _messages(value, named)]
+    if isinstance(node, ast.Call) and called(node) in CODED:
+        return [(ast.literal_eval(node.args[0]), ast.literal_eval(node.args[CODED[called(node)]]))]
+    return named.get(ast.unparse(node), [])
+
+
+if __name__ == "__main__":
+    PAGE.write_text(page(), encoding="utf-8")
