@@ -23,7 +23,7 @@ ON_SCREEN   := -n 3 $(AS_MODULES)
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations messages notice screenshots pictures wheel compile clean
+.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -76,6 +76,9 @@ translations: $(READY)    ## every text of the code into the catalogues of all l
 
 messages: $(READY)        ## the manual's page of every error and warning by code, resources/manual/messages.md
 	$(BIN)/python -m tests.message_page
+
+structure: $(READY)       ## before and after of the rooms, in the manual's page on architecture
+	$(BIN)/python -m tests.structure
 
 notice: $(READY)          ## NOTICE: what the program stands on, and under which licences
 	$(BIN)/python -m tests.licences
