@@ -10,13 +10,13 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, TypeVar, get_args, get_type_hints
 
-from pydantic import BaseModel, RootModel, ValidationError
+from pydantic import BaseModel, TypeAdapter, ValidationError
 from pydantic.fields import FieldInfo
 
 from core.errors import InputError, WrongValue, words_of
 from core.messages import Message, label
 
-_Model = TypeVar("_Model", bound=BaseModel)
+_Schema = TypeVar("_Schema")
 _TYPES = {
     "finite_number": label("a finite number"),
     "float_type": label("a finite number"),
@@ -24,6 +24,8 @@ _TYPES = {
     "string_type": label("a text"),
     "bool_type": label("true or false"),
     "list_type": label("a list"),
+    "tuple_type": label("a list"),
+    "frozen_set_type": label("a list"),
     "model_type": label("a table"),
     "dataclass_type": label("a table"),
     "dict_type": label("a table"),
@@ -46,23 +48,36 @@ class Clash(WrongValue):
         self.key = key
 
 
-def checked(model: type[_Model], tables: object, path: Path) -> _Model:
-    """What `path` holds as a `model`; InputError for the most telling of all that is wrong with it.
+def checked(schema: type[_Schema], tables: object, path: Path) -> _Schema:
+    """What `path` holds, by a model or a union of models; InputError for the most telling of all that is wrong.
 
     The `description` of a field completes "… is <value>, not <description>".
     """
     try:
-        return model.model_validate(tables)
+        return _adapter(schema).validate_python(tables)
     except ValidationError as error:
-        raise InputError(_complaint(error, model), where=path) from error
+        raise InputError(_complaint(error, schema), where=path) from error
 
 
-def checked_json(model: type[_Model], tables: object, path: Path) -> _Model:
-    """As `checked`, by the rules of JSON: lists may become tuples and sets there, and tables dataclasses."""
+def checked_json(schema: type[_Schema], tables: object, path: Path) -> _Schema:
+    """As `checked`, by the rules of JSON: lists become tuples and sets there, and tables dataclasses.
+
+    A dataclass is its own schema: its fields are annotated with what they may hold.
+    """
     try:
-        return model.model_validate_json(json.dumps(tables))
+        return _adapter(schema).validate_json(json.dumps(tables))
     except ValidationError as error:
-        raise InputError(_complaint(error, model), where=path) from error
+        raise InputError(_complaint(error, schema), where=path) from error
+
+
+_ADAPTERS: dict[Any, TypeAdapter[Any]] = {}
+"""By schema, each made once: that of a dataclass takes milliseconds."""
+
+
+def _adapter(schema: type[_Schema]) -> TypeAdapter[_Schema]:
+    if schema not in _ADAPTERS:
+        _ADAPTERS[schema] = TypeAdapter(schema)
+    return _ADAPTERS[schema]
 
 
 @contextmanager
@@ -75,11 +90,11 @@ def fitting(path: Path, *, todo: Message | str = "") -> Iterator[None]:
         raise InputError(what, where=path, todo=todo) from error
 
 
-def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
+def _complaint(error: ValidationError, schema: Any) -> Message:
     # A misspelt key is unknown under one name and missing under the other: the first says more.
     errors = sorted(error.errors(include_url=False), key=lambda one: one["type"] not in _UNKNOWN)
     first = errors[0]
-    names, field, tables = _locate(model, first["loc"])
+    names, field, tables = _locate(schema, first["loc"])
     name = ".".join(names)
     if first["type"] in _UNKNOWN:
         return _unknown_key(name, tables)
@@ -98,6 +113,8 @@ def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
         )
     described = field.description if field is not None and field.description else None
     wanted = label(described) if described else _TYPES.get(first["type"], first["msg"])
+    if first["type"] == "missing" and not described:
+        return Message("file.field_is_missing", "{field} is missing", field=name)
     if first["type"] == "missing":
         return Message("file.field_missing", "{field} is missing; it must be {wanted}", field=name, wanted=wanted)
     whole = ".".join([*names[:-1], names[-1].partition("[")[0]]) if names else ""
@@ -110,11 +127,11 @@ def _complaint(error: ValidationError, model: type[BaseModel]) -> Message:
     )  # fmt: skip
 
 
-def _locate(model: type[BaseModel], loc: tuple[int | str, ...]) -> tuple[list[str], FieldInfo | None, list[Any]]:
+def _locate(schema: Any, loc: tuple[int | str, ...]) -> tuple[list[str], FieldInfo | None, list[Any]]:
     """Names along `loc`, the innermost field, and the models that hold the innermost name (or may stand there)."""
     names: list[str] = []
     field: FieldInfo | None = None
-    tables = list(_models(model.model_fields["root"].annotation)) if issubclass(model, RootModel) else [model]
+    tables = list(_models(schema))
     for part in loc:
         if isinstance(part, int):
             names[-1] += f"[{part}]"

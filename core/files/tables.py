@@ -42,6 +42,8 @@ OrNan = Annotated[Finite, WrapValidator(lambda value, check: math.nan if value i
 """A number, NaN where the file has none: null, or nothing at all."""
 OrInfinite = Annotated[Finite, WrapValidator(lambda value, check: math.inf if value is None else check(value))]
 """A number, infinity where the file has none."""
+Probability = Annotated[Finite, Field(ge=0, le=1, description="a probability, 0 to 1")]
+LengthAbove0 = Annotated[Finite, Field(gt=0, description="a length in mm above 0")]
 Row3 = Annotated[list[Finite], Field(min_length=3, max_length=3)]
 Row2 = Annotated[list[Finite], Field(min_length=2, max_length=2)]
 
@@ -72,10 +74,14 @@ def kept(message: Message | None) -> dict[str, Any] | str | None:
     return as_json(message) if message.code else str(message)
 
 
-class ResultFile(BaseModel):
-    """A file of results: keys may be added by others, and are then ignored."""
+RESULT = ConfigDict(extra="ignore", strict=True, frozen=True)
+"""Of a file of results: keys may be added by others, and are then ignored."""
 
-    model_config = ConfigDict(extra="ignore", strict=True, frozen=True)
+
+class ResultFile(BaseModel):
+    """A file of results, or a table in one."""
+
+    model_config = RESULT
 
 
 class CountedPose(ResultFile):

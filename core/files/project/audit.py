@@ -18,7 +18,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Literal, Protocol
 
-from pydantic import ConfigDict, Field, RootModel
+from pydantic import ConfigDict, Field
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
@@ -90,10 +90,6 @@ class Entry:
     by: str = ""
     role: str = ""
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
-
-
-class _Line(RootModel[Entry]):
-    pass
 
 
 @dataclass(frozen=True, slots=True)
@@ -200,7 +196,7 @@ def trail_table(trail: Trail) -> str:
 
 
 def _entry(line: str, path: Path) -> Entry:
-    return checked_json(_Line, json_of(line, path), path).root
+    return checked_json(Entry, json_of(line, path), path)
 
 
 def _hash(values: Mapping[str, object]) -> str:

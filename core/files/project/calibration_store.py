@@ -16,7 +16,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import ConfigDict, Field, RootModel
+from pydantic import ConfigDict, Field
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
@@ -83,10 +83,6 @@ class StoredCalibration:
     inputs: Mapping[str, str] = field(default_factory=dict, hash=False)
     notes: tuple[KeptMessage, ...] = ()
     __pydantic_config__ = ConfigDict(extra="ignore", strict=True)
-
-
-class _KeptFile(RootModel[StoredCalibration]):
-    pass
 
 
 def keep_camera(
@@ -254,7 +250,7 @@ def _write_about(folder: Path, kind: Kind, id_: str, about: Mapping[str, Any]) -
 
 
 def _read_about(path: Path) -> StoredCalibration:
-    return checked_json(_KeptFile, read_json(path), path).root
+    return checked_json(StoredCalibration, read_json(path), path)
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -20,7 +20,7 @@ from datetime import datetime
 from pathlib import Path
 from typing import Annotated
 
-from pydantic import ConfigDict, Field, RootModel
+from pydantic import ConfigDict, Field
 
 from core.errors import InputError
 from core.files.atomic import cannot_write, vanished
@@ -45,10 +45,6 @@ class LockOwner:
     key: str
     pid: int = 0
     __pydantic_config__ = ConfigDict(extra="forbid", strict=True)
-
-
-class _LockFile(RootModel[LockOwner]):
-    pass
 
 
 class ProjectInUse(InputError):
@@ -118,7 +114,7 @@ def user_name() -> str:
 def read_holder(folder: Path) -> LockOwner | None:
     """Whom the file says; None if there is none, or none that can be read."""
     try:
-        return checked_json(_LockFile, read_json(folder / LOCK), folder / LOCK).root
+        return checked_json(LockOwner, read_json(folder / LOCK), folder / LOCK)
     except InputError:
         return None
 

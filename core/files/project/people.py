@@ -15,7 +15,7 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Annotated, Literal
 
-from pydantic import ConfigDict, Field, RootModel
+from pydantic import ConfigDict, Field
 
 from core.errors import InputError
 from core.files.atomic import remove, write_text
@@ -66,14 +66,10 @@ class Rules:
     __pydantic_config__ = _CHECKED
 
 
-class _PeopleFile(RootModel[Rules]):
-    pass
-
-
 def read_rules(folder: Path) -> Rules:
     """The rules of a project; InputError if their file is damaged."""
     path = folder / PEOPLE
-    return checked_json(_PeopleFile, read_json(path), path).root if path.exists() else Rules()
+    return checked_json(Rules, read_json(path), path) if path.exists() else Rules()
 
 
 def person(name: str, role: Role, pin: str) -> Person:

@@ -4,19 +4,17 @@ from __future__ import annotations
 
 import math
 from dataclasses import asdict, dataclass
-from datetime import datetime
 from pathlib import Path
 from typing import Literal
 
 import numpy as np
-from pydantic import Field
 
 from core import __version__
 from core.calibrate.change import P_TOLD, PROVES_NOTHING
-from core.files.complaints import checked
+from core.files.complaints import checked_json
 from core.files.json_text import write_json
 from core.files.reading import read_json
-from core.files.tables import Finite, OptionalMessage, OrNan, ResultFile, Time, kept
+from core.files.tables import RESULT, Finite, LengthAbove0, OptionalMessage, OrNan, Probability, Time, kept
 from core.messages import Command, Message
 
 CheckVerdict = Literal["passed", "doubtful", "failed"]
@@ -32,9 +30,10 @@ class CheckedLine:
     """
 
     line: int
-    offset_mm: float
-    offset_px: float
-    sd_mm: float
+    offset_mm: Finite
+    offset_px: Finite
+    sd_mm: Finite
+    __pydantic_config__ = RESULT
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,8 +41,9 @@ class CheckedPicture:
     """One pose of the target in a check: its stripes, or the `reason` why nothing can be said."""
 
     name: str
-    reason: Message | None
+    reason: OptionalMessage = None
     lines: tuple[CheckedLine, ...] = ()
+    __pydantic_config__ = RESULT
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,13 +76,14 @@ class InterimCheck:
 
     calibration_id: str
     pictures_id: str
-    taken_at: datetime
-    p: float
+    taken_at: Time
+    p: Probability
     poses: tuple[CheckedPicture, ...]
-    step_mm: float
-    error_mm: float = math.nan
-    unseen_mm: float = math.nan
-    stated_mm: float = math.nan
+    step_mm: LengthAbove0
+    error_mm: OrNan = math.nan
+    unseen_mm: OrNan = math.nan
+    stated_mm: OrNan = math.nan
+    __pydantic_config__ = RESULT
 
     @property
     def passed(self) -> bool:
@@ -140,31 +141,6 @@ class InterimCheck:
         )
 
 
-class _Line(ResultFile):
-    line: int
-    offset_mm: Finite
-    offset_px: Finite
-    sd_mm: Finite
-
-
-class _Pose(ResultFile):
-    name: str
-    reason: OptionalMessage = None
-    lines: list[_Line] = Field(default_factory=list)
-
-
-class _CheckFile(ResultFile):
-    calibration_id: str
-    pictures_id: str
-    taken_at: Time
-    p: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
-    poses: list[_Pose]
-    step_mm: Finite = Field(gt=0, description="a length in mm above 0")
-    error_mm: OrNan = math.nan
-    unseen_mm: OrNan = math.nan
-    stated_mm: OrNan = math.nan
-
-
 def write_check(path: Path, check: InterimCheck) -> None:
     """Write check.json; InputError if it cannot be written."""
     write_json(
@@ -198,12 +174,7 @@ def write_check(path: Path, check: InterimCheck) -> None:
 
 def read_check(path: Path) -> InterimCheck:
     """Read check.json; InputError if it is missing, no JSON, or a value is wrong."""
-    file = checked(_CheckFile, read_json(path, todo=_TODO), path)
-    poses = tuple(
-        CheckedPicture(pose.name, pose.reason, tuple(CheckedLine(**dict(line)) for line in pose.lines))
-        for pose in file.poses
-    )
-    return InterimCheck(**{**dict(file), "poses": poses})
+    return checked_json(InterimCheck, read_json(path, todo=_TODO), path)
 
 
 def _rms(values: list[float]) -> float:

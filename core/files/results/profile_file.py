@@ -3,20 +3,20 @@
 from __future__ import annotations
 
 import io
+import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
 import numpy as np
-from pydantic import Field
 
 from core import __version__
 from core.files.atomic import write_bytes
-from core.files.complaints import checked
+from core.files.complaints import checked_json
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.gauge_file import gauge_summary
-from core.files.tables import Finite, OptionalMessage, OrNan, ResultFile, kept
+from core.files.tables import RESULT, Finite, OptionalMessage, OrNan, kept
 from core.inspect.results import GaugeResult
 from core.messages import Command, Message
 from core.model.arrays import Array
@@ -35,38 +35,28 @@ class PictureStep:
 
     index: int
     name: str
-    thickness_mm: float = float("nan")
-    own_mm: float = float("nan")
-    points: tuple[int, int] = (0, 0)
-    reason: Message | None = None
-
-
-class _Picture(ResultFile):
-    index: int
-    name: str
     thickness_mm: OrNan
     own_mm: OrNan
-    points: list[int] = Field(min_length=2, max_length=2)
+    points: tuple[int, int]
     reason: OptionalMessage = None
+    __pydantic_config__ = RESULT
 
-
-class _ProfileFile(ResultFile):
-    thickness_mm: Finite
-    U_mm: Finite
-    pictures: list[_Picture]
-    shown: int
-    calibration_id: str = ""
+    @classmethod
+    def none(cls, index: int, name: str, reason: Message) -> PictureStep:
+        """Of a picture that gave no step."""
+        return cls(index, name, math.nan, math.nan, (0, 0), reason)
 
 
 @dataclass(frozen=True, slots=True)
 class ProfileFile:
     """What profile.json says: the thickness with its U in mm, each picture's step, and which picture is shown."""
 
-    thickness_mm: float
-    U_mm: float
+    thickness_mm: Finite
+    U_mm: Finite
     pictures: tuple[PictureStep, ...]
     shown: int
-    calibration_id: str
+    calibration_id: str = ""
+    __pydantic_config__ = RESULT
 
 
 def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureStep], shown: int, of: str) -> None:
@@ -86,9 +76,7 @@ def write_profiles(path: Path, gauge: GaugeResult, pictures: Sequence[PictureSte
 
 def read_profiles_file(path: Path) -> ProfileFile:
     """Read profile.json; InputError if it is missing, no JSON, or a value is wrong."""
-    file = checked(_ProfileFile, read_json(path, todo=_TODO), path)
-    pictures = tuple(PictureStep(**{**dict(one), "points": tuple(one.points)}) for one in file.pictures)
-    return ProfileFile(**{**dict(file), "pictures": pictures})
+    return checked_json(ProfileFile, read_json(path, todo=_TODO), path)
 
 
 _COLUMNS = {

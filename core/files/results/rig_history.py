@@ -24,11 +24,11 @@ from pydantic import Field
 from core.calibrate.change import RigSpread
 from core.calibrate.rig_spread import FACTORS, most_likely_factor
 from core.files.atomic import make_folder
-from core.files.complaints import checked
+from core.files.complaints import checked_json
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.check_file import CheckVerdict, InterimCheck
-from core.files.tables import Finite, OrNan, ResultFile, Time
+from core.files.tables import RESULT, Finite, LengthAbove0, OrNan, Probability, ResultFile, Time
 from core.messages import Message
 from core.study.control_chart import FEWEST, ControlChart, control_chart
 
@@ -52,21 +52,25 @@ class PastCheck:
     rig.toml states how stable the rig is: without it `stated_mm` is by the default.
     """
 
-    taken_at: datetime
+    taken_at: Time
     calibration_id: str
     pictures_id: str
-    verdict: CheckVerdict
-    p: float
-    step_mm: float
-    offset_px: float = math.nan
-    offset_mm: float = math.nan
-    error_mm: float = math.nan
-    unseen_mm: float = math.nan
-    stated_mm: float = math.nan
-    celsius: float | None = None
+    verdict: Annotated[CheckVerdict, Field(description='"passed", "doubtful" or "failed"')]
+    p: Probability
+    step_mm: LengthAbove0
+    offset_px: OrNan = math.nan
+    offset_mm: OrNan = math.nan
+    error_mm: OrNan = math.nan
+    unseen_mm: OrNan = math.nan
+    stated_mm: OrNan = math.nan
+    celsius: Finite | None = None
     artefact: str = ""
-    e_n: float = math.nan
-    likelihoods: tuple[float, ...] | None = None
+    e_n: OrNan = math.nan
+    likelihoods: Annotated[
+        Annotated[tuple[Finite, ...], Field(min_length=len(FACTORS), max_length=len(FACTORS))] | None,
+        Field(description=f"{len(FACTORS)} finite numbers"),
+    ] = None
+    __pydantic_config__ = RESULT
 
     @classmethod
     def of(
@@ -162,29 +166,9 @@ class RigHistory:
         return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
 
 
-class _Check(ResultFile):
-    taken_at: Time
-    calibration_id: str
-    pictures_id: str
-    verdict: Annotated[CheckVerdict, Field(description='"passed", "doubtful" or "failed"')]
-    p: Finite = Field(ge=0, le=1, description="a probability, 0 to 1")
-    step_mm: Finite = Field(gt=0, description="a length in mm above 0")
-    offset_px: OrNan = math.nan
-    offset_mm: OrNan = math.nan
-    error_mm: OrNan = math.nan
-    unseen_mm: OrNan = math.nan
-    stated_mm: OrNan = math.nan
-    celsius: Finite | None = None
-    artefact: str = ""
-    e_n: OrNan = math.nan
-    likelihoods: Annotated[list[Finite], Field(min_length=len(FACTORS), max_length=len(FACTORS))] | None = Field(
-        None, description=f"{len(FACTORS)} finite numbers"
-    )
-
-
 class _HistoryFile(ResultFile):
     rig: str
-    checks: list[_Check]
+    checks: tuple[PastCheck, ...]
 
 
 def own_folder() -> Path:
@@ -202,14 +186,8 @@ def read_history(name: str) -> RigHistory:
     path = history_file(name)
     if not path.exists():
         return RigHistory(name)
-    file = checked(_HistoryFile, read_json(path, todo=_TODO), path)
-    return RigHistory(file.rig, tuple(map(_past, file.checks)))
-
-
-def _past(check: _Check) -> PastCheck:
-    """As the file has it; a list of likelihoods becomes a tuple."""
-    likelihoods = None if check.likelihoods is None else tuple(check.likelihoods)
-    return PastCheck(**{**dict(check), "likelihoods": likelihoods})
+    file = checked_json(_HistoryFile, read_json(path, todo=_TODO), path)
+    return RigHistory(file.rig, file.checks)
 
 
 def keep_check(name: str, check: PastCheck) -> RigHistory:

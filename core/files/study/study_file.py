@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
 
 import numpy as np
-from pydantic import Field, RootModel
+from pydantic import Field
 
 from core import __version__
 from core.files.atomic import make_folder, write_text
@@ -333,8 +333,7 @@ class _Acceptance(ResultFile):
         return acceptance_check(readings, limits, k=self.quantities[0].k if self.quantities else 2.0)
 
 
-class _StudyFile(RootModel[Annotated[_Repeats | _Type1 | _Grr | _Acceptance, Field(discriminator="kind")]]):
-    pass
+_StudyFile: Any = Annotated[_Repeats | _Type1 | _Grr | _Acceptance, Field(discriminator="kind")]
 
 
 def read_study(path: Path) -> Study:
@@ -346,6 +345,6 @@ def read_study(path: Path) -> Study:
         If it is missing, damaged, or no study can be made of what it holds.
     """
     tables = read_json(path, todo=_TODO)
-    file = checked(_StudyFile, tables, path)
+    file: _Repeats | _Type1 | _Grr | _Acceptance = checked(_StudyFile, tables, path)
     with fitting(path, todo=_TODO):
-        return file.root.study()
+        return file.study()

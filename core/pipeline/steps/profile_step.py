@@ -100,13 +100,13 @@ def profile_step(
         for index, (name, picture) in enumerate(stream):
             progress("profiles", index, len(paths))
             if isinstance(picture, Message):
-                pictures.append(PictureStep(index, name, reason=picture))
+                pictures.append(PictureStep.none(index, name, picture))
                 continue
             check_size(paths[index], picture.shape, camera)
             try:
                 profiles = read_profiles(picture, index, camera, fan, looking)
             except InputError as error:
-                pictures.append(PictureStep(index, name, reason=error.what))
+                pictures.append(PictureStep.none(index, name, error.what))
                 continue
             seen.append(profiles)
             step = step_of(
@@ -199,7 +199,7 @@ def _tilt_settings(tilt: StatedTilt | None) -> dict[str, object]:
 
 def _row(index: int, name: str, step: Step | Message) -> PictureStep:
     if isinstance(step, Message):
-        return PictureStep(index, name, reason=step)
+        return PictureStep.none(index, name, step)
     points = len(step.pair.upper), len(step.pair.lower)
     return PictureStep(index, name, step.thickness_mm, step.own_mm, points)
 

@@ -45,6 +45,19 @@ def test_a_damaged_history_is_named():
         keep_check("bench", FIRST)
 
 
+def test_what_a_dataclass_of_a_file_must_be_is_told_in_words():
+    keep_check("bench", FIRST)
+    short = history_file("bench").read_text().replace('"likelihoods": null', '"likelihoods": [1]')
+    for text, wrong in (
+        (short, r"checks\[0\]\.likelihoods is \[1\], not \d+ finite numbers"),
+        ('{"rig": "bench", "checks": 3}', "checks is 3, not a list"),
+        ('{"rig": "bench"}', r"checks is missing\."),
+    ):
+        history_file("bench").write_text(text)
+        with pytest.raises(InputError, match=wrong):
+            read_history("bench")
+
+
 def test_a_drift_beyond_the_rigs_own_scatter_is_told_though_the_pictures_pass():
     scatter = (0.010, 0.012, 0.009, 0.011, 0.010, 0.012, 0.011, 0.009)
     history = RigHistory("bench", tuple(later(day, mm) for day, mm in enumerate(scatter)))

@@ -65,7 +65,7 @@ def test_the_result_is_told_with_every_picture_that_gave_none(
     monkeypatch.setattr(type(bench), "run_long", run_long)
     panel.measure.click()
     assert not panel.measure.isEnabled()
-    pictures = (PictureStep(0, "scan/a.png", 20.0, 0.01), PictureStep(1, "scan/b.png", reason=plain("no face")))
+    pictures = (PictureStep(0, "scan/a.png", 20.0, 0.01, (5, 5)), PictureStep.none(1, "scan/b.png", plain("no face")))
     given["on_done"](ProfilesSummary(gauge(), pictures, (), tmp_path / "report.pdf"))
     assert panel.measure.isEnabled()
     assert panel.open.isVisible()
