@@ -107,7 +107,6 @@ def faces_in_polygons(
     lower_polygon_px: ArrayLike,
     *,
     margin_mm: float = 1.5,
-    seed: int = 0,
 ) -> FacePair:
     """The points of the largest plane inside each of two polygons (n ≥ 3, 2) in pixels of the picture.
 
@@ -127,7 +126,7 @@ def faces_in_polygons(
                 where=region_field(face),
             )
         inside = inside_polygon(cloud.uv, corners)
-        indices = face_inside(cloud, inside, margin_mm=margin_mm, seed=seed)
+        indices = face_inside(cloud, inside, margin_mm=margin_mm)
         if len(indices) < FEWEST_POINTS:
             raise InputError(
                 Message(
@@ -148,17 +147,11 @@ def faces_in_polygons(
     return FacePair(chosen[0], chosen[1])
 
 
-def face_inside(
-    cloud: Cloud,
-    inside: NDArray[np.bool_],
-    *,
-    margin_mm: float = 1.5,
-    seed: int = 0,
-) -> NDArray[np.int64]:
+def face_inside(cloud: Cloud, inside: NDArray[np.bool_], *, margin_mm: float = 1.5) -> NDArray[np.int64]:
     """Indices of the points of the largest plane among the points `inside`, less the margin of the whole face."""
     part = cloud.select(inside)
     tolerance = search_tolerance(part)
-    plane = largest_plane(part, tolerance, 0.0, seed)
+    plane = largest_plane(part, tolerance, 0.0, seed=0)
     if plane is None:
         return np.empty(0, dtype=np.int64)
     near = points_on(cloud, plane, tolerance)

@@ -80,7 +80,6 @@ def fit_gauge(
     *,
     errors: PointErrors | None = None,
     regions: Polygons | FacePair | None = None,
-    seed: int = 0,
     progress: Progress = silent,
 ) -> GaugeFit:
     """Find the two faces and fit them.
@@ -94,8 +93,6 @@ def fit_gauge(
     regions
         (upper, lower) polygons, each (n, 2) in pixels, or the points of the faces themselves; None: the two largest
         parallel faces are found.
-    seed
-        Of the random search for faces.
     progress
         Called with how far it is.
 
@@ -105,11 +102,11 @@ def fit_gauge(
         If there are no two parallel faces, or the one given as the upper is not nearer to the camera.
     """
     if regions is None:
-        pair = find_faces(cloud, seed=seed, progress=progress)
+        pair = find_faces(cloud, progress=progress)
     elif isinstance(regions, FacePair):
         pair = regions
     else:
-        pair = faces_in_polygons(cloud, *regions, seed=seed)
+        pair = faces_in_polygons(cloud, *regions)
     errors = errors or PointErrors()
     upper, lower = cloud.select(pair.upper), cloud.select(pair.lower)
     robust = fit_parallel_planes(upper.points, lower.points, upper.sigma, lower.sigma)
@@ -144,7 +141,6 @@ def measure_gauge(
     nominal_mm: float | None = None,
     tolerance_mm: float | None = None,
     k: float = 2.0,
-    seed: int = 0,
     progress: Progress = silent,
 ) -> GaugeResult:
     """Thickness with uncertainty and verdict.
@@ -155,7 +151,7 @@ def measure_gauge(
         The measured points.
     errors
         How their errors hang together; what it does not know is not in the uncertainty, and a note says so.
-    regions, seed
+    regions
         As for `fit_gauge`.
     nominal_mm, tolerance_mm
         What the part should be, ±; without both of them there is no verdict.
@@ -170,7 +166,7 @@ def measure_gauge(
         As `fit_gauge`.
     """
     errors = errors or PointErrors()
-    fit = fit_gauge(cloud, errors=errors, regions=regions, seed=seed, progress=progress)
+    fit = fit_gauge(cloud, errors=errors, regions=regions, progress=progress)
     u, factor = combined(fit.budget), student_factor(k, fit.budget)
     verdict = Verdict.NONE
     if nominal_mm is not None and tolerance_mm is not None:

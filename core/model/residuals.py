@@ -117,7 +117,7 @@ class Judgement:
         return self.run_length / _INDEPENDENT_RUN
 
 
-def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
+def judge_residuals(residuals: Residuals) -> Judgement:
     """Compare residuals with their stated uncertainty and look for runs and for a pattern common to all groups."""
     values, group = residuals.values, np.unique(residuals.group, return_inverse=True)[1]
     if not len(values):
@@ -128,7 +128,7 @@ def judge_residuals(residuals: Residuals, seed: int = 0) -> Judgement:
     count = np.bincount(residuals.cell, minlength=cells)
     scaled = sums / np.sqrt(np.maximum(count, 1))
     seen = float((scaled.sum(axis=0) ** 2).sum())
-    p = _chance(scaled, seen, np.random.default_rng(seed))
+    p = _chance(scaled, seen, np.random.default_rng(0))
     by_chance = float((scaled**2).sum())
     square = (seen - by_chance) / len(values) / (1 - 1 / max(groups, 2))
     return Judgement(

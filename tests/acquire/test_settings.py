@@ -4,7 +4,7 @@ import pickle
 
 import pytest
 
-from core.acquire.drivers.frame_numbers import FrameNumbers
+from core.acquire.drivers.genicam import FrameNumbers
 from core.acquire.settings import Capabilities, Region, SourceSettings
 from core.errors import InputError
 

@@ -9,7 +9,6 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
-from core.acquire.drivers.frame_numbers import FrameNumbers
 from core.acquire.drivers.genicam_features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
 from core.acquire.drivers.pixel_formats import decode
 from core.acquire.grey import Channel
@@ -19,9 +18,10 @@ from core.messages import Message
 
 BUFFERS = 8
 """Frames that a driver keeps for a reader that is a little late; it counts those it has no room for."""
-
 ASK_AGAIN_S = 5.0
 """A picture that was asked for and has not come for so long is asked for again."""
+_MOST_16_BIT = 0xFFFF
+"""The largest frame number of cameras that count in 16 bits; 0 or 1 follows."""
 
 
 class DriverError(Exception):
@@ -73,6 +73,31 @@ class Driver(Protocol):
 
     def close(self) -> None:
         """Let go of it, also when it is gone."""
+
+
+class FrameNumbers:
+    """Counts the gaps in a camera's frame numbers.
+
+    Numbers of 16 bits (GigE Vision 1) begin again at 1 behind 65535, 0 being none. A number that goes back in another
+    way is a camera that counts anew: nothing is known to be missing then.
+    """
+
+    def __init__(self) -> None:
+        self._last: int | None = None
+
+    def restart(self) -> None:
+        """The next number follows nothing."""
+        self._last = None
+
+    def missing_before(self, number: int) -> int:
+        """How many frames are missing between the last number and this one."""
+        last, self._last = self._last, number
+        if last is None or number == last:
+            return 0
+        if number > last:
+            return number - last - 1
+        wrapped = _MOST_16_BIT - last + max(number - 1, 0)
+        return wrapped if last <= _MOST_16_BIT and wrapped < _MOST_16_BIT // 2 else 0
 
 
 class GenICamSource:

@@ -232,14 +232,12 @@ def spread(
     return Spread(float(high - low), (sampling, *budget_of([(np.ones(1), acting)])), len(values))
 
 
-def u_of_quantiles(
-    values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64], seed: int = 0
-) -> float:
+def u_of_quantiles(values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64]) -> float:
     """Standard uncertainty of Σ sign · quantile of `values` (N,), by drawing their groups (N,) again, with repeats."""
     order = np.argsort(values, kind="stable")
     order = order[:: max(1, len(order) // MOST_DRAWN)]
     ranked, of = values[order], group[order]
-    rng, count = np.random.default_rng(seed), int(group.max()) + 1
+    rng, count = np.random.default_rng(0), int(group.max()) + 1
     found = np.empty(DRAWS)
     for draw in range(DRAWS):
         times = np.bincount(rng.integers(count, size=count), minlength=count)

@@ -92,7 +92,7 @@ class Aligned:
     left_mm: float
 
 
-def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress = silent, *, seed: int = 0) -> Aligned:
+def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress = silent) -> Aligned:
     """Lay a nominal surface on measured points.
 
     Parameters
@@ -105,15 +105,13 @@ def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress
         The surface, made ready to be asked.
     progress
         Called with how far it is.
-    seed
-        Of the choice of points.
 
     Raises
     ------
     InputError
         If no start leads to a fit: the part is another one, or seen too little of.
     """
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(0)
     shuffled = points[rng.permutation(len(points))]
     poses = _starts(shuffled[: STAGES[0][0]], up, query.surface)
     done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)

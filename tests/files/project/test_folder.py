@@ -27,20 +27,9 @@ from core.files.project.folder import (
     write_autosave,
     write_project,
 )
-from core.files.recording.rig import read_rig
+from core.files.recording.rig import default_rig, read_rig, rig_to_toml
 
-RIG = """
-[camera_target]
-kind = "checkerboard"
-inner_corners = [9, 6]
-square_mm = 10.0
-[plane_target]
-kind = "black_square"
-side_mm = 60.0
-[laser_fan]
-lines = 3
-angle_deg = 5.0
-"""
+RIG = rig_to_toml(default_rig())
 
 
 def named(name):

@@ -7,20 +7,10 @@ import pytest
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
+from core.files.recording.rig import default_rig, rig_to_toml
 from core.messages import Message
 
-RIG = """
-[camera_target]
-kind = "checkerboard"
-inner_corners = [9, 6]
-square_mm = 10.0
-[plane_target]
-kind = "black_square"
-side_mm = 60.0
-[laser_fan]
-lines = 3
-angle_deg = 5.0
-"""
+RIG = rig_to_toml(default_rig())
 
 
 def picture(value=7, size=(40, 30), dtype=np.uint8):
