@@ -37,7 +37,6 @@ from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.scan.method import Method
 
-_Above0 = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 _Name = Annotated[str, Field(pattern=r"^(camera|planes|scan)/.")]
 
 
@@ -52,13 +51,6 @@ class CameraOptionsTable(Table):
     outliers: Literal["keep", "gross", "all"] = Field(default="gross", description='"keep", "gross" or "all"')
 
 
-class StripeTable(Table):
-    """Under "stripe" of the options."""
-
-    width_px: _Above0 = Field(description="a width in pixels above 0")
-    contrast: _Above0 = Field(description="a number of grey levels above 0")
-
-
 class OptionsTable(Table):
     """Under "options"."""
 
@@ -70,14 +62,14 @@ class OptionsTable(Table):
     )
     camera: CameraOptionsTable = CameraOptionsTable()
     part: str = ""
-    stripe: StripeTable | None = Field(default=None, description="a table of width_px and contrast, or null")
+    stripe: StripeSettings | None = Field(default=None, description="a table of width_px and contrast, or null")
     excluded: frozenset[_Name] = Field(
         default=frozenset(),
         description='a list of pictures as "camera/view00.png", "planes/pose00", "scan/frame0000.png"',
     )
     constrain_fan: bool = True
     adjust_camera: bool = False
-    plane_stripe: StripeTable | None = Field(default=None, description="a table of width_px and contrast, or null")
+    plane_stripe: StripeSettings | None = Field(default=None, description="a table of width_px and contrast, or null")
     accept_few_poses: bool = False
 
 
@@ -218,11 +210,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
 
 
 def _options(table: OptionsTable) -> Options:
-    stripe, plane_stripe = (
-        StripeSettings(**dict(told)) if told else None for told in (table.stripe, table.plane_stripe)
-    )
-    kept = {"camera": CameraOptions(**dict(table.camera)), "stripe": stripe, "plane_stripe": plane_stripe}
-    return Options(**{**dict(table), **kept})
+    return Options(**{**dict(table), "camera": CameraOptions(**dict(table.camera))})
 
 
 def _options_table(options: Options) -> dict[str, Any]:

@@ -21,7 +21,7 @@ from core.inspect.results import Contribution
 from core.messages import Command, Message
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, Reading, acceptance_check
 from core.study.budget import UncertaintyBudget, add_up
-from core.study.grr import Component, GrrStudy, grr_study
+from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
 from core.study.type1 import Type1Study, type1_study
 
@@ -162,25 +162,13 @@ def _grr(study: GrrStudy) -> dict[str, Any]:
         "tolerance_width": study.tolerance,
         "anova": [asdict(row) for row in study.anova],
         "anova_pooled": [asdict(row) for row in study.pooled_anova],
-        "components": [_component(one) for one in study.components],
+        "components": [asdict(one) | {"sigma": one.sigma} for one in study.components],
         "grr_of_total": {"value": study.component("gauge R&R").of_total, "interval": study.grr_interval},
         "grr_of_tolerance": {
             "value": study.component("gauge R&R").of_tolerance,
             "interval": study.tolerance_interval,
         },
         "ndc": {"value": study.ndc, "categories": study.categories, "interval": study.ndc_interval},
-    }
-
-
-def _component(one: Component) -> dict[str, Any]:
-    return {
-        "source": one.source,
-        "variance": one.variance,
-        "variance_interval": one.variance_interval,
-        "sigma": one.sigma,
-        "contribution": one.contribution,
-        "of_total": one.of_total,
-        "of_tolerance": one.of_tolerance,
     }
 
 

@@ -213,7 +213,7 @@ def spoilt(tmp_path, change):
     (("options", "sigma_cut_mm"), 0, "options.sigma_cut_mm is 0, not a length in mm above 0 and at most 10"),
     (("options", "camera", "fixed"), ["k3"], "options.camera.fixed"),
     (("options", "camera", "skew"), 1, "options.camera.skew is 1, not true or false"),
-    (("options", "stripe", "contrast"), -1, "options.stripe.contrast is -1, not a number of grey levels above 0"),
+    (("options", "stripe", "contrast"), -1, "options.stripe: contrast is −1.0, not a positive number"),
     (("options", "excluded"), ["view.png"], "options.excluded[0]"),
     (("accepted", "fan"), "../../x", 'accepted.fan is "../../x", not the id of a calibration'),
     (("repeats", 0, "U_mm"), -1, "repeats[0].U_mm is -1, not a length in mm"),
