@@ -3,8 +3,13 @@
 A γ that is many of its σ away from zero may still be nothing: what else is wrong (a curled board, a lens that the model
 does not have) goes into whatever is free. Then it does not help with views it has not seen.
 
+Of the two models the simpler one is kept unless the other foretells surely better, by MANY_ERRORS standard errors of
+the mean gain: in the manner of the one-standard-error rule. Nothing is lost by it: a skew that is there and too small
+to show is in the uncertainty of the camera without it (`core.calibrate.camera.calibration`).
+
 References
 ----------
+Breiman, L. et al., Classification and Regression Trees (1984), §3.4.3 (the one-standard-error rule).
 Stone, M., Cross-validatory choice and assessment of statistical predictions, J. R. Stat. Soc. B 36 (1974) 111–147,
 doi:10.1111/j.2517-6161.1974.tb00994.x.
 """
@@ -28,13 +33,17 @@ PARTS = 5
 FEWEST_VIEWS = 6
 """With fewer views each fifth is one view at most, and the cameras of the others hardly determined."""
 
+MANY_ERRORS = 2.0
+"""Standard errors of the mean gain that are hardly chance: 2 in 100 above it."""
+
 
 def skew_helps(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> bool:
     """Whether views left out fit a camera with skew better than one without, both `solved` from the other views.
 
     `free` are the free parameters with the skew among them. A left-out view's pose is fitted to all its corners, for
     nothing else can tell it; what is compared is the mean square of its residuals, view by view, relative to that
-    without skew. False with fewer than FEWEST_VIEWS views.
+    without skew: the gain must be above zero by MANY_ERRORS of its standard errors, told by how much the views differ.
+    False with fewer than FEWEST_VIEWS views.
     """
     if len(counted) < FEWEST_VIEWS:
         return False
@@ -47,7 +56,8 @@ def skew_helps(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.int
             for parameters in (free, free[free != SKEW])
         )
         gains[left] = 1 - with_skew / np.maximum(without, 1e-300)
-    return bool(gains.mean() > 0)  # no surer than that: a skew that is there and left out would be in no σ
+    error = gains.std(ddof=1) / np.sqrt(len(gains))
+    return bool(gains.mean() > MANY_ERRORS * error)
 
 
 def _solved_from(

@@ -32,10 +32,17 @@ def test_a_skew_that_is_there_is_found_and_the_solution_is_that_with_the_skew_fr
     assert by_itself.camera.matrix[0, 1] == pytest.approx(0.39, abs=0.15)
 
 
+def test_a_gain_within_its_own_scatter_does_not_free_the_skew():
+    """These views are foretold better by 4 in a million, a hundredth of that gain's standard error."""
+    calibration = calibrate_camera(views_without_skew(2), TRUTH.image_size)
+    assert calibration.camera.matrix[0, 1] == 0
+    assert calibration.sd["gamma"] > 0
+
+
 @pytest.mark.accuracy
 def test_a_skew_that_is_not_there_stays_zero():
     cameras = [calibrate_camera(views_without_skew(seed), TRUTH.image_size).camera for seed in range(4)]
-    assert sum(camera.matrix[0, 1] == 0 for camera in cameras) >= 3
+    assert [camera.matrix[0, 1] for camera in cameras] == [0, 0, 0, 0]
 
 
 def test_few_views_do_not_tell():
