@@ -3,7 +3,7 @@
 from core.image.targets.detect import detect
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.pose import PoseEstimate, estimate_pose
-from core.image.targets.shift import camera_shift, picture_shift
+from core.image.targets.shift import camera_shift, followed_shift, picture_shift
 from core.image.targets.target_view import TargetNotFound
 
 __all__ = [
@@ -17,5 +17,6 @@ __all__ = [
     "camera_shift",
     "detect",
     "estimate_pose",
+    "followed_shift",
     "picture_shift",
 ]

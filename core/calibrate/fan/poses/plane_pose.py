@@ -32,7 +32,7 @@ from core.image.stripes.noise import (
 from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import USUAL_STRIPE
 from core.image.stripes.told_width import as_measured
-from core.image.targets import Target, TargetNotFound, camera_shift, detect, picture_shift
+from core.image.targets import CircleGrid, Target, TargetNotFound, camera_shift, detect, followed_shift, picture_shift
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
@@ -45,6 +45,9 @@ TARGET_MOVED = "fan.target_moved"
 """Code of the reason that the target moved between the two pictures of a pair."""
 MOVED_PX = 0.5
 """A target that moved so far between the two pictures of a pair spoils its pose."""
+SURELY_STILL_PX = 0.25
+"""A grid of circles followed from picture to picture no farther than this, with an error far smaller, need not be found
+again to know that."""
 PULL_PX = 0.05
 """A point that the plate's change of brightness may pull further than this is left out."""
 DARK = 0.4
@@ -191,10 +194,15 @@ def _stripes(
 def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
     """How far in pixels the target is from `view` in the picture with the fan on; None if that cannot be told.
 
-    Where a line of the fan lies along an edge, the target is not found, but its other edges tell.
+    Where a line of the fan lies along an edge, the target is not found, but its other edges tell. A grid of circles,
+    which takes long to find, is only found anew where following its circles does not show that it stood still.
     """
     if not view.placed:
         return picture_shift(view, off, on)
+    if isinstance(target, CircleGrid):
+        followed = followed_shift(view, off, on)
+        if followed is not None and followed < SURELY_STILL_PX:
+            return followed
     try:
         return camera_shift(view, detect(target, on, view.name, camera, thorough=False))
     except TargetNotFound:

@@ -1,20 +1,23 @@
 import re
 from dataclasses import dataclass
 
+import cv2
 import numpy as np
 import pytest
 from scipy.special import expit
 
 from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.calibrate.fan.poses import plane_pose
 from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import NO_STRIPE, PoseFeatures, usual_stripe
 from core.image.stripes.stripe import StripeSettings
-from core.image.targets import BlackSquare, TargetNotFound, detect
+from core.image.targets import BlackSquare, CircleGrid, TargetNotFound, detect
 from core.model import Pose
 from tests.calibrate import fan_scenes
 from tests.calibrate.fan.test_calibration import worst_mm
 from tests.calibrate.fan_scenes import ALPHA, PAPER
+from tests.image import rendered_targets
 
 CAMERA = fan_scenes.CAMERA.scaled(0.5)
 SIDE = 60.0
@@ -141,6 +144,37 @@ def test_a_target_that_moved_between_the_pictures_is_left_out():
     spoilt = render(POSE, seed=2, moved=moved)
     features = measure_plane_pose("p", spoilt.on, spoilt.off, TARGET, CAMERA)
     assert "moved by" in str(features.reason)
+
+
+GRID = CircleGrid(7, 7, 12.0)
+
+
+@pytest.mark.parametrize(("moved_px", "searches", "told"), [(0.1, 1, None), (0.4, 2, None), (1.0, 2, "moved by 1.00")])
+def test_a_grid_of_circles_is_found_again_only_where_it_may_have_moved(monkeypatch, moved_px, searches, told):
+    """A line of light falls on the middle of the grid in the second picture."""
+    off = rendered_targets.render(CAMERA, POSE, rendered_targets.circles(GRID.points, 3.5), grey=(30, 150))
+    on = cv2.warpAffine(
+        off,
+        np.array([[1.0, 0.0, moved_px], [0.0, 1.0, 0.0]]),
+        off.shape[::-1],
+        flags=cv2.INTER_CUBIC,
+        borderMode=cv2.BORDER_REPLICATE,
+    ).astype(float)
+    middle = CAMERA.project_pose(POSE, GRID.points).mean(axis=0)
+    on += 80 * np.exp(-0.5 * ((np.arange(len(on))[:, None] - middle[1]) / 2) ** 2)
+    found = []
+
+    def counted(*args, **kwargs):
+        found.append(detect(*args, **kwargs))
+        return found[-1]
+
+    monkeypatch.setattr(plane_pose, "detect", counted)
+    features = measure_plane_pose("p", np.clip(on, 0, 255).astype(np.uint8), off, GRID, CAMERA)
+    assert len(found) == searches
+    if told is None:
+        assert features.reason is None
+    else:
+        assert told in str(features.reason)
 
 
 def with_a_line_along_the_upper_edge(picture: np.ndarray, pose: Pose) -> np.ndarray:
