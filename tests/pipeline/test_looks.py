@@ -53,6 +53,14 @@ def test_difference_and_ridge_are_bright_on_the_sweep_and_dark_on_the_fan(done):
         assert np.median(on_fan) < 20
 
 
+def test_a_pose_on_which_only_clutter_was_found_shows_what_looks_most_like_a_stripe(done):
+    bare = replace(done.poses[0], centrelines=())
+    stages = show_pose(done.folder, done.project, bare)
+    assert stages.reason.code == "fan.no_straight_stripe"
+    assert stages.ridge.shape == stages.picture.shape
+    assert show_pose(done.folder, done.project, done.poses[0]).ridge is None
+
+
 def test_without_calibrations_stripes_are_shown_without_numbers(done):
     stages = show_frame(done.folder, replace(done.project, accepted=Accepted()), frame(5))
     assert stages.seen is None

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.calibrate.fan.poses.plane_pose import stripe_strength
-from core.calibrate.fan.poses.pose_features import NO_STRIPE, PoseFeatures
+from core.calibrate.fan.poses.located_pose import locate
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages, numbered_stripes
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
-from core.image.stripes.stripe import USUAL_STRIPE, StripeSettings
+from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
+from core.pipeline.steps.no_stripe import ridge_of
 from core.progress import Progress, silent
 
 
@@ -40,11 +41,7 @@ def pose_stages(
     picture = found.read(pair.on)
     corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
     stripes = numbered_stripes(pose, camera, fan)
-    ridge = None
-    if pose.reason is not None and pose.reason.code == NO_STRIPE:
-        off = None if pair.off is None else found.read(pair.off)
-        strength = stripe_strength(picture, off, stripe or USUAL_STRIPE)
-        ridge = in_8_bit(strength, float(strength.max()))
+    ridge = ridge_of(found, pose, camera, stripe)
     progress("pose", 1, 1)
     shown = in_8_bit(picture, white_level(picture))
-    return PoseStages(pose.name, shown, corners, stripes, pose.reason, pose.notes, ridge)
+    return PoseStages(pose.name, shown, corners, stripes, locate(pose, camera).reason, pose.notes, ridge)

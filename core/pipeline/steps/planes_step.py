@@ -25,6 +25,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
 from core.model import Camera
+from core.pipeline.steps.no_stripe import also_look_at_ridges, write_ridges
 from core.pipeline.steps.target_sizes import with_compared_sizes
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
@@ -58,12 +59,17 @@ def planes_step(
         log.settings.update(planes_settings(work.found.rig, options))
         log.settings.update(work.found.laser_channel("planes").settings)
         poses = measure_poses(work.found, camera, progress, options.plane_stripe, beside)
-        calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
+        ridges = write_ridges(work, poses, camera, options.plane_stripe)
+        try:
+            calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
+        except InputError as error:
+            raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, options.accept_few_poses)
         calibration, sizes = with_compared_sizes(calibration, work.found, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
+        log.notes.extend(() if ridges is None else (ridges,))
         write_fan(log.path("planes"), calibration, camera)
         write_poses(log.path("poses"), fan_id(calibration.fan), poses)
     return read_fan(work.path("planes"), camera)

@@ -11,10 +11,14 @@ from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.folder_lock import NEW_FOLDER
+from core.files.pictures import write_picture
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.camera_file import camera_id, read_camera
@@ -53,6 +57,10 @@ CLEARED = (
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
 _PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
 """And in which they come."""
+
+RIDGES = "planes"
+"""Folder beside the results with a picture of each pose on which the last search found no stripe: NAME-ridge.png. It is
+of the recording set alone: no result rests on it, nor it on any, and it is there where no planes came of the search."""
 
 _OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
 _OF_CLOUD = ("gauge", "faces", "inspection", "inspected")
@@ -131,7 +139,27 @@ class Workspace:
 
     def clear(self) -> None:
         """Remove the results of an earlier run: old and new never stand side by side, wherever it is cut off."""
+        self.put_ridges({})
         put_results(self.out, None, CLEARED)
+
+    def put_ridges(self, ridges: Mapping[str, NDArray[np.uint8]]) -> None:
+        """Put pictures (H, W), by the names of their poses, in place of all older ones in RIDGES.
+
+        Raises
+        ------
+        InputError
+            If nothing can be written there.
+        """
+        folder = self.out / RIDGES
+        try:
+            for old in folder.glob("*-ridge.png"):
+                old.unlink()
+            if folder.is_dir() and not any(folder.iterdir()):
+                folder.rmdir()
+        except OSError as error:
+            raise cannot_write(folder, error) from error
+        for name, ridge in ridges.items():
+            write_picture(make_folder(folder) / f"{name}-ridge.png", ridge)
 
     def written(self) -> dict[str, Path]:
         """The results that are there, by their keys in FILES."""

@@ -66,6 +66,7 @@ class Planes:
         self.measuring, self.quick = cast(HandLane, bench.measuring), cast(HandLane, bench.quick)
         self.kept: list[Any] = []
         self.shown: list[tuple[str, bool]] = []
+        self.ridges: dict[str, Any] = {}
         self.measuring.answers[jobs.FIND_POSES] = self.find
         self.quick.answers |= {
             jobs.SOLVE_POSES: self.solve,
@@ -106,7 +107,15 @@ class Planes:
         self.shown.append((pose.name, fan is not None))
         corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
         stripes = tuple(NumberedStripe(line.uv, place) for place, line in enumerate(pose.centrelines))
-        return PoseStages(pose.name, np.zeros((12, 16), np.uint8), corners, stripes, pose.reason, pose.notes)
+        return PoseStages(
+            pose.name,
+            np.zeros((12, 16), np.uint8),
+            corners,
+            stripes,
+            pose.reason,
+            pose.notes,
+            self.ridges.get(pose.name),
+        )
 
 
 def project_with(camera: str = "c1", planes: Path | None = None) -> Project:

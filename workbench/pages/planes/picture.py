@@ -7,7 +7,6 @@ from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
-from core.calibrate.fan.poses.pose_features import NO_STRIPE
 from core.pipeline.live.events import PlanesDetail
 from workbench.language import text_of, tr
 from workbench.pages.calibration.picture import PictureTab
@@ -26,15 +25,18 @@ class PoseTab(PictureTab):
         self, presenter: PlanesPresenter, choose_folder: Callable[[], None], parent: QWidget | None = None
     ) -> None:
         super().__init__(presenter, choose_folder, parent)
+        self._stages: Any = None
+        """PoseStages of the pose that was looked at last."""
         presenter.look.measured.connect(self._show_pose)
 
     def _sentence(self) -> str:
         p = self._presenter
         features = p.look.features_of(p.current)
         notes = " ".join(map(text_of, features.notes)) if features is not None else ""
-        reason = text_of(features.reason or "") if features is not None else ""
+        looked_at = self._stages if self._stages is not None and self._stages.name == p.current else None
+        reason = text_of((features and features.reason) or (looked_at and looked_at.reason) or "")
         said = words.pose_sentence(p.current, p.quality_of(p.current), reason)
-        if features is not None and features.reason is not None and features.reason.code == NO_STRIPE:
+        if looked_at is not None and looked_at.ridge is not None:
             notes = tr("Shown is how strongly each place looks like a stripe.")
         return f"{said} {notes}".strip()
 
@@ -57,9 +59,11 @@ class PoseTab(PictureTab):
             )
 
     def _show_pose(self, stages: Any) -> None:
+        self._stages = stages
         self._show_picture(stages.name, stages.picture if stages.ridge is None else stages.ridge)
         if self._presenter.live.running:
             return
+        self.line.setText(self._sentence())
         if len(stages.corners):
             self._draw_corners(stages.corners)
         self._draw_stripes([(stripe.uv, stripe.line) for stripe in stages.stripes])

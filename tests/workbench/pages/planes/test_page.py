@@ -214,6 +214,18 @@ def test_a_pose_without_a_plate_says_why(solved: PlanesPage, qtbot: Any) -> None
     assert not [name for name in solved.picture.image.layer_names() if name.startswith(("corners", "stripe"))]
 
 
+def test_a_pose_without_a_stripe_shows_what_looks_most_like_one_until_another_is_chosen(
+    solved: PlanesPage, planes: Planes, qtbot: Any
+) -> None:
+    planes.ridges["pose06"] = np.full((12, 16), 200, np.uint8)
+    solved.presenter.choose("pose06")
+    settled(qtbot, solved)
+    assert solved.picture.line.text().endswith("Shown is how strongly each place looks like a stripe.")
+    solved.presenter.choose("pose03")
+    settled(qtbot, solved)
+    assert solved.picture.line.text().endswith("3 lines seen")
+
+
 def test_a_click_on_a_bar_shows_its_pose(solved: PlanesPage) -> None:
     solved.bars.bar_clicked.emit("pose04")
     solved.refreshing.at_once()

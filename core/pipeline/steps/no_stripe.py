@@ -1,0 +1,73 @@
+"""Why no stripe was found on a pose: a picture of how strongly each place looks like one."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.calibrate.fan.poses.located_pose import shows_no_stripe
+from core.calibrate.fan.poses.plane_pose import stripe_strength
+from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.errors import InputError
+from core.files.recording.recording_set import RecordingSet
+from core.image.display import in_8_bit
+from core.image.stripes.stripe import USUAL_STRIPE, StripeSettings
+from core.messages import Message
+from core.model import Camera
+from core.pipeline.steps.workspace import RIDGES, Workspace
+
+
+def ridge_of(
+    found: RecordingSet, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
+) -> NDArray[np.uint8] | None:
+    """How strongly each pixel (H, W) of a pose without a straight stripe looks like `stripe`, the strongest white.
+
+    None where one was found, or no target.
+
+    Raises
+    ------
+    InputError
+        If a picture cannot be read.
+    """
+    pair = next((pair for pair in found.planes if pair.name == pose.name), None)
+    if pair is None or not shows_no_stripe(pose, camera):
+        return None
+    off = None if pair.off is None else found.read(pair.off)
+    strength = stripe_strength(found.read(pair.on), off, stripe or USUAL_STRIPE)
+    return in_8_bit(strength, float(strength.max()))
+
+
+def write_ridges(
+    work: Workspace, poses: Sequence[PoseFeatures], camera: Camera, stripe: StripeSettings | None
+) -> Message | None:
+    """Write these pictures into the folder RIDGES of the results, in place of older ones; a note that tells of them.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    ridges = {pose.name: ridge_of(work.found, pose, camera, stripe) for pose in poses}
+    shown = {name: ridge for name, ridge in ridges.items() if ridge is not None}
+    work.put_ridges(shown)
+    if not shown:
+        return None
+    return Message(
+        "fan.ridges_written",
+        "where no stripe was found, {n} pictures in {folder} show how strongly each place looks like one",
+        n=len(shown),
+        folder=f"{RIDGES}/",
+    )
+
+
+def also_look_at_ridges(error: InputError) -> InputError:
+    """The error that ended a calibration, with the pictures that were written among what to do."""
+    todo = Message(
+        "advice.look_at_ridges",
+        "look at the pictures in {folder}, where what looks most like a stripe is white; {advice}",
+        folder=f"{RIDGES}/",
+        advice=error.todo,
+    )
+    return InputError(error.what, where=error.where, todo=todo)
