@@ -426,6 +426,12 @@ class Rig:
     readjust: bool = False
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
 
+    @property
+    def one_target(self) -> bool:
+        """Whether camera and planes are stated to be calibrated with the same target."""
+        stated = self.unstated.isdisjoint({"camera_target", "plane_target"})
+        return stated and self.camera_target == self.plane_target
+
     def channel_of(self, part: str) -> Channel | None:
         """The channel in which a part of a set ("camera", "planes", "scan", "check") is looked at, if any.
 

@@ -181,7 +181,7 @@ def solve_planes(
     excluded = {name.removeprefix(FOLDER) for name in options.excluded if name.startswith(FOLDER)}
     adjusted = calibration.covariance if calibration is not None and options.adjust_camera else None
     known = fan_options(rig, options)
-    if calibration is not None and rig.camera_target == rig.plane_target:
+    if calibration is not None and rig.one_target:
         known = replace(known, board=calibration.board)
     return fit_fan(poses, camera, known, progress, excluded, adjusted)
 

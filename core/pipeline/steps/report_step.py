@@ -218,12 +218,15 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], channel: str | None, wo
         label("Picture"): words("{width} × {height} px, {channel} channel", **size, channel=channel)
         if channel
         else words("{width} × {height} px", **size),
-        label("Camera target"): target_in_words(rig.camera_target, words),
-        label("Plane target"): target_in_words(rig.plane_target, words),
-        label("Fixed laser"): words("{n} lines, {angle}° apart", n=rig.lines, angle=angle)
-        if rig.lines > 1
-        else words("1 line"),
     }
+    if "camera_target" not in rig.unstated:
+        said[label("Camera target")] = target_in_words(rig.camera_target, words)
+    if "plane_target" not in rig.unstated:
+        said[label("Plane target")] = target_in_words(rig.plane_target, words)
+    if "laser_fan" not in rig.unstated:
+        said[label("Fixed laser")] = (
+            words("{n} lines, {angle}° apart", n=rig.lines, angle=angle) if rig.lines > 1 else words("1 line")
+        )
     if rig.gauge and rig.gauge.nominal_mm is not None and rig.gauge.tolerance_mm is not None:
         nominal, tolerance = words.general(rig.gauge.nominal_mm), words.general(rig.gauge.tolerance_mm)
         said[label("Nominal")] = f"{nominal} mm ± {tolerance} mm"

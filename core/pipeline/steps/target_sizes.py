@@ -29,6 +29,8 @@ TARGETS = "targets"
 def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
     """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
 
+    None as well where rig.toml does not say what the camera's target is.
+
     Raises
     ------
     InputError
@@ -36,7 +38,7 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     """
     rig = found.rig
     paths = pictures_in(found.rig_file.parent / TARGETS)
-    if not paths or rig.camera_target == rig.plane_target:
+    if not paths or rig.one_target or "camera_target" in rig.unstated:
         return None, ()
     shown: list[tuple[TargetView, TargetView]] = []
     notes: list[Message] = []

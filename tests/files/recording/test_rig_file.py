@@ -226,6 +226,16 @@ def test_each_step_wants_its_own_tables_only(tmp_path):
     assert read(tmp_path, rig_to_toml(rig)) == rig
 
 
+def test_a_target_that_is_not_stated_is_not_the_same_as_one_that_is(tmp_path):
+    """The paper's checkerboard stands in for a camera target that is not there."""
+    board = 'kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0\n'
+    both = read(tmp_path, f"[camera_target]\n{board}[plane_target]\n{board}")
+    planes_only = read(tmp_path, f"[plane_target]\n{board}")
+    assert both.one_target
+    assert planes_only.camera_target == planes_only.plane_target
+    assert not planes_only.one_target
+
+
 def written(tmp_path, rig):
     (tmp_path / "rig.toml").write_text(rig_to_toml(rig), encoding="utf-8")
     return read_rig(tmp_path / "rig.toml")
