@@ -142,6 +142,18 @@ def judge_residuals(residuals: Residuals) -> Judgement:
     )
 
 
+def of_vectors(
+    values: Array, expected: Array, group: NDArray[np.intp], cell: NDArray[np.intp], cells: int
+) -> Residuals:
+    """Both coordinates of residual vectors `values` (N, 2), the first in `cells` places of its own, then the second.
+
+    `expected` (N,) is the standard uncertainty of each coordinate; else as :class:`Residuals`.
+    """
+    return Residuals(
+        values.T.ravel(), np.tile(expected, 2), np.tile(group, 2), np.concatenate([cell, cell + cells]), 2 * cells
+    )
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class SharedErrors:
     """What N residuals have in common, and what the fit has taken out of them.

@@ -14,8 +14,7 @@ from core.calibrate.camera.coverage import REGIONS
 from core.calibrate.camera.expected_error import residual_field
 from core.calibrate.results import CameraCalibration
 from core.messages import Message
-from core.model.arrays import Array
-from core.model.residuals import Judgement, Residuals, judge_residuals, over_picture
+from core.model.residuals import Judgement, Residuals, judge_residuals, of_vectors, over_picture
 
 GRID = (3, 3)
 """Columns and rows in which residuals of all views are compared: the parts of a picture that have names."""
@@ -43,14 +42,7 @@ def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
     field, camera = residual_field(calibration), calibration.camera
     sigma = np.concatenate([view.view.sigma[view.counted] for view in calibration.views if view.used])
     cell = over_picture(field.uv, camera.image_size, GRID)
-    cells = GRID[0] * GRID[1]
-    both = Residuals(
-        field.residual.T.ravel(),
-        np.tile(sigma, 2),
-        np.tile(field.view, 2),
-        np.concatenate([cell, cell + cells]),
-        2 * cells,
-    )
+    both = of_vectors(field.residual, sigma, field.view, cell, GRID[0] * GRID[1])
     off = field.uv - camera.matrix[:2, 2]
     radius = np.linalg.norm(off, axis=1)
     outwards = (field.residual * off).sum(axis=1) / np.maximum(radius, 1e-9)
@@ -103,7 +95,7 @@ def _on_regions(found: Judgement) -> Message:
         "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px: the lens or the "
         "print is not fully described, or corners are drawn aside by blur. The standard deviations contain it.",
         place=REGIONS[region],
-        direction=_direction(u, v),
+        direction=direction_of(u, v),
         px=float(np.hypot(u, v)),
     )
 
@@ -111,7 +103,8 @@ def _on_regions(found: Judgement) -> Message:
 _OUTWARDS, _INWARDS = Message("camera.outwards", "outwards"), Message("camera.inwards", "inwards")
 
 
-def _direction(u: Array, v: Array) -> Message:
+def direction_of(u: float, v: float) -> Message:
+    """Which way in the picture (u, v) points."""
     if abs(u) > abs(v):
         return Message("camera.to_the_right", "to the right") if u > 0 else Message("camera.to_the_left", "to the left")
     return Message("camera.downwards", "downwards") if v > 0 else Message("camera.upwards", "upwards")

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
+from core.calibrate.fan.picture_residuals import judge_points, notes_on_points
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.straightness import bends_of, bow_or_bend, judge_lines, notes_on_lines, off_planes_mm
@@ -86,6 +87,7 @@ def summarise(
             *notes,
             *_notes(located, poses),
             *of_lines,
+            *notes_on_points(judge_points(located, used)),
             *_notes_on_scatter(prediction_errors, max(used.expected_mm, bent_mm)),
             *_notes_on_predictions(poses),
             *_notes_on_bow(used.shape),
