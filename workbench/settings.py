@@ -18,6 +18,7 @@ class AppSettings(QObject):
     recent_changed = Signal()
     theme_changed = Signal(str)
     language_changed = Signal(str)
+    part_frame_changed = Signal()
 
     def __init__(self, file: Path | None = None, parent: QObject | None = None) -> None:
         super().__init__(parent)
@@ -58,6 +59,16 @@ class AppSettings(QObject):
     def language(self, name: str) -> None:
         self._store.setValue("language", name)
         self.language_changed.emit(name)
+
+    @property
+    def part_frame(self) -> bool:
+        """Whether 3D views show a part in its own frame, where that is known, rather than in the camera's."""
+        return self.text("frame of 3D views", "part") == "part"
+
+    @part_frame.setter
+    def part_frame(self, wanted: bool) -> None:
+        self.keep_text("frame of 3D views", "part" if wanted else "camera")
+        self.part_frame_changed.emit()
 
     @property
     def projects_folder(self) -> Path:

@@ -83,6 +83,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
         stripe=None if features is None else features.sweep_stripe,
         notes=tuple(note for note in _scan_notes(results) if note.code not in WITHOUT_POINTS),
         problems=results.problems,
+        ground=None if results.gauge is None else results.gauge.lower.plane,
     )
 
 

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from core.inspect.results import Face, GaugeResult
 from core.inspect.shown.deviation_map import classes_of, mark
+from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
@@ -38,7 +39,7 @@ from core.report.plots.figures import (
     plot_style,
     round_up,
 )
-from core.report.plots.surface_view import Ground, SurfacePicture, surface_picture, viewer_axes
+from core.report.plots.surface_view import SurfacePicture, surface_picture, viewer_axes
 from core.report.wording import points_counted
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import compiled
-from core.model import LightPlane
+from core.inspect.shown.view_frame import Ground
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -25,30 +25,6 @@ AZIMUTH, ELEVATION = np.radians(-32.0), np.radians(42.0)
 
 LAMP = np.array([-0.45, 0.75, 0.65]) / np.linalg.norm([-0.45, 0.75, 0.65])
 """Direction to the lamp in the viewer's frame (right, up, towards the viewer)."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Ground:
-    """The frame the surface stands in: rows of `axes` are along (picture's right), across, and up; `origin` on it."""
-
-    axes: Array
-    origin: Array
-
-    @classmethod
-    def of(cls, plane: LightPlane | None, points: Array) -> Ground:
-        """Up is out of `plane`, towards the camera; without one, up is towards the camera from the farthest points."""
-        away = np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
-        along = np.array([1.0, 0.0, 0.0]) - away[0] * away
-        along /= np.linalg.norm(along)
-        up = -away
-        farthest = float(np.quantile(points @ away, 0.999)) if len(points) else 0.0
-        distance = farthest if plane is None else plane.d_mm
-        return cls(np.array([along, np.cross(up, along), up]), away * distance)
-
-    def local(self, points: Array) -> Array:
-        """`points` (N, 3) of the camera frame in this one: along, across, height; mm."""
-        local: Array = (points - self.origin) @ self.axes.T
-        return local
 
 
 def viewer_axes() -> Array:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
+from core.model import LightPlane
 from core.model.arrays import Array
 from core.scan.features.frames import NO_REASON, FrameRecord
 
@@ -235,6 +236,8 @@ class ShownScan:
         Notes for the technician about the scan; that about `left_out` is not among it.
     problems
         Why a result that exists cannot be shown: whole sentences.
+    ground
+        Plane of the lower face, where the thickness of this scan was measured.
     """
 
     points: NDArray[np.float32]
@@ -251,6 +254,7 @@ class ShownScan:
     stripe: StripeSettings | None
     notes: tuple[Message, ...]
     problems: tuple[Message, ...]
+    ground: LightPlane | None = None
 
     def __len__(self) -> int:
         return len(self.points)

@@ -11,6 +11,7 @@ from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
 from core.pipeline.live.events import ScanDetail
 from core.pipeline.project.details import accepted_calibration, show_scan
+from core.pipeline.project.results import load_results
 from core.pipeline.project.thumbnails import display_picture
 from core.pipeline.project.watched_scan import WatchReporter, measure_watched
 from tests.simulated import copy_of
@@ -78,6 +79,7 @@ def test_the_look_of_a_scan_says_what_the_measurement_said(done):
     assert look.median_sigma_mm < look.sigma_95_mm <= done.project.options.sigma_cut_mm
     assert 0 < look.share < 1 and look.stripe.width_px > 1
     assert not look.problems
+    assert look.ground is not None and look.ground.d_mm == load_results(done.folder).gauge.lower.plane.d_mm
     assert len(pickle.dumps(look)) < 40 * len(look) + 20_000
 
 

@@ -1,8 +1,9 @@
 import numpy as np
 import pytest
 
+from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
-from core.report.plots.surface_view import Ground, surface_picture, viewer_axes
+from core.report.plots.surface_view import surface_picture, viewer_axes
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
@@ -36,14 +37,6 @@ def where(picture, ground_point):
     column = (seen[0] - left) / (right - left) * columns - 0.5
     row = (top - seen[1]) / (top - bottom) * rows - 0.5
     return round(row), round(column)
-
-
-def test_ground_frame_is_right_handed_and_heights_are_distances_from_the_plane():
-    ground = Ground.of(TABLE, np.zeros((0, 3)))
-    assert np.allclose(ground.axes @ ground.axes.T, np.eye(3))
-    assert np.linalg.det(ground.axes) == pytest.approx(1)
-    points = np.random.default_rng(1).uniform([-90, -90, 400], [90, 90, 600], (50, 3))
-    assert np.allclose(ground.local(points)[:, 2], -TABLE.distances(points))
 
 
 def test_viewer_stands_above_the_ground():

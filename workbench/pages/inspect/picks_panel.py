@@ -5,6 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import Signal
 from PySide6.QtWidgets import QHBoxLayout, QListWidget, QListWidgetItem, QPushButton, QWidget
 
+from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from workbench.language import tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.buttons import PicksFacts, picks_buttons
@@ -24,6 +25,7 @@ class PicksPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self._names: list[str] = []
+        self._frame: ViewFrame | None = None
         self.tools: dict[Mode, QPushButton] = {
             "point": QPushButton(icon("mdi6.crosshairs-gps"), tr("Pick points")),
             "distance": QPushButton(icon("mdi6.ruler"), tr("Measure distance")),
@@ -41,6 +43,7 @@ class PicksPanel(QWidget):
             above.addWidget(button, 1)
         below.addWidget(self.remove, 1)
         below.addWidget(self.clear, 1)
+        self.frame = muted()
         self.help = muted(
             tr(
                 "± of a point is the standard uncertainty (sd) of its depth, u of a distance the two points' share. "
@@ -48,7 +51,7 @@ class PicksPanel(QWidget):
             )
         )
         self.help.setObjectName("help")
-        in_column(above, self.list, below, self.help, on=self)
+        in_column(above, self.frame, self.list, below, self.help, on=self)
         self.remove.clicked.connect(self._remove)
         self.clear.clicked.connect(lambda: presenter.picks.clear())
         self.list.currentRowChanged.connect(lambda _: self._show_buttons())
@@ -59,22 +62,25 @@ class PicksPanel(QWidget):
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)
         names = [item.name for item in picks.items]
-        if names != self._names:
-            self._names = names
+        frame, row = self._presenter.frame, self.list.currentRow()
+        if names != self._names or self._frame is None or not frame.same_as(self._frame):
+            row = row if names == self._names else len(names) - 1
+            self._names, self._frame = names, frame
+            self.frame.setText(tr("x, y, z: {frame}", frame=tr(FRAME_NAMES[frame.kind])))
             self.list.clear()
             for item in picks.items:
-                lines = words.pick_lines(item) if isinstance(item, Pick) else words.span_lines(item)
+                lines = words.pick_lines(item, frame) if isinstance(item, Pick) else words.span_lines(item, frame)
                 self.list.addItem(QListWidgetItem("\n".join(lines)))
-            self.list.setCurrentRow(len(names) - 1)
+            self.list.setCurrentRow(row)
         self._show_buttons()
 
     def _show_buttons(self) -> None:
-        for widget in (self.list, self.remove, self.clear):
+        for widget in (self.frame, self.list, self.remove, self.clear):
             widget.setVisible(bool(self._names))
         chosen = 0 <= self.list.currentRow() < len(self._names)
         can = picks_buttons(PicksFacts(self._presenter.scan.buttons.use, bool(self._names), chosen))
         tips: dict[Mode, str] = {
-            "point": tr("Click points in 3D: x, y, z in mm in the camera's frame, with frame and pixel"),
+            "point": tr("Click points in 3D: x, y, z in mm in the frame of the view, with picture and pixel"),
             "distance": tr("Click two points in 3D: their distance in mm with its standard uncertainty"),
         }
         for mode, button in self.tools.items():

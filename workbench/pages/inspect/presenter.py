@@ -12,6 +12,7 @@ from PySide6.QtCore import Signal
 from core.files.project.data import Project
 from core.files.project.folder import source_folder
 from core.files.project.keys import finished
+from core.inspect.shown.view_frame import ViewFrame, part_frame, shown_frame
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.clicked import InspectClicked, Target
@@ -71,6 +72,7 @@ class InspectPresenter(StepPresenter):
             part.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(self._look_at_scan)
+        bench.settings.part_frame_changed.connect(self.changed)
 
     def _look_at_scan(self) -> None:
         self.scan.look(seen=self._seen)
@@ -162,6 +164,17 @@ class InspectPresenter(StepPresenter):
         self.changed.emit()
 
     # ---- what is shown
+
+    @property
+    def part_frame(self) -> ViewFrame | None:
+        """The part's own frame, if it is known."""
+        gauge = self.scan.gauge
+        return part_frame(self.features.pose_camera_part, None if gauge is None else gauge.lower.plane)
+
+    @property
+    def frame(self) -> ViewFrame:
+        """The frame the surface is shown in."""
+        return shown_frame(self.part_frame, wanted=self.bench.settings.part_frame)
 
     def points_shown(self) -> int:
         """How many of the points are shown."""

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
 from workbench.language import tr
+from workbench.pages.frame_tool import FrameTool
 from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.clicked import Mode
@@ -61,7 +62,6 @@ class SurfaceTab(QWidget):
         self._highlights: list[str] = []
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
-        self._oriented = False
         self._proposal: ClickedFaces | None = None
         self._picking = ""
         self._later = QTimer(self)
@@ -93,6 +93,7 @@ class SurfaceTab(QWidget):
         self._tips = {mode: action.toolTip() for mode, action in self.clicks.items()}
         for mode, action in self.clicks.items():
             action.triggered.connect(lambda on, mode=mode: presenter.start_clicking(mode if on else ""))
+        self.frame = FrameTool(self.scene, presenter.bench.settings)
         presenter.measured.connect(self._show_faces)
 
     def _show_faces(self) -> None:
@@ -104,6 +105,7 @@ class SurfaceTab(QWidget):
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
+        self.frame.show(p.part_frame)
         if view is None:
             self._clear()
             return
@@ -157,8 +159,9 @@ class SurfaceTab(QWidget):
             message = tr("Reading the scan …")
         self._later.stop()
         self._drawn = self._cloud = self._mesh = ()
-        self._marked, self._oriented, self._feature, self._highlights = [], False, None, []
+        self._marked, self._feature, self._highlights = [], None, []
         self._proposal = None
+        self.frame.show(None)
         self.scene.clear(message)
         self.line.setText("")
         self.hint.setText("")
@@ -171,9 +174,6 @@ class SurfaceTab(QWidget):
         self._later.stop()
         count, seen = p.points_shown(), self.shape != "mesh"
         before, self._drawn = self._drawn, (p.scan.serial, self.shape, self.colour, count)
-        if view.gauge is not None and view.gauge.normal is not None and not self._oriented:
-            self._oriented = True
-            self.scene.set_orientation(-view.gauge.normal, (0.0, -1.0, 0.0))
         self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
         cloud = (p.scan.serial, count, self.colour if seen else "plain")

@@ -18,6 +18,7 @@ from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
+    from core.inspect.shown.view_frame import ViewFrame
     from core.study.type1 import Type1Study
 
 CAPABLE = "capable"
@@ -197,28 +198,28 @@ def scan_name(stored: str) -> str:
     return f"{path.parent.name}/{path.name}" if path.name == "scan" and path.parent.name else path.name
 
 
-def pick_lines(pick: Pick) -> tuple[str, str]:
-    """Where a picked point is, and where it was seen."""
+def pick_lines(pick: Pick, frame: ViewFrame) -> tuple[str, str]:
+    """Where a picked point is in a frame, and where it was seen."""
     decimals = max(decimals_of(pick.sigma_mm), 0)
-    x, y, z = (wording().fixed(float(value), decimals) for value in pick.place)
+    x, y, z = (wording().fixed(float(value), decimals) for value in frame.coordinates(pick.place))
     place = tr("{name}   x {x}   y {y}   z {z} mm", name=pick.name, x=x, y=y, z=z)
     u, v = pick.uv
-    frame = PurePosixPath(pick.frame).name or tr("fan, no frame")
+    picture = PurePosixPath(pick.frame).name or tr("fan, no frame")
     return place, tr(
         "± {sigma} mm (sd), {frame}, u {u} v {v} px",
         sigma=wording().fixed(pick.sigma_mm, decimals),
-        frame=frame,
+        frame=picture,
         u=wording().fixed(u, 1),
         v=wording().fixed(v, 1),
     )
 
 
-def span_lines(span: Span) -> tuple[str, str]:
-    """A distance with its standard uncertainty, and its ends."""
+def span_lines(span: Span, frame: ViewFrame) -> tuple[str, str]:
+    """A distance with its standard uncertainty, and its ends in a frame."""
     text = tr("{name}   {value} mm, u = {u} mm", name=span.name, **_span(span))
     ends = []
     for pick in (span.a, span.b):
-        x, y, z = (wording().fixed(float(value), 1) for value in pick.place)
+        x, y, z = (wording().fixed(float(value), 1) for value in frame.coordinates(pick.place))
         ends.append(f"({x}, {y}, {z})")
     return text, tr("from {start} to {end} mm", start=ends[0], end=ends[1])
 

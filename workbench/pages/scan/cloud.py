@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QWidget
 
+from core.inspect.shown.view_frame import part_frame
 from core.pipeline.live.events import LiveView, ScanDetail
 from workbench.language import tr
+from workbench.pages.frame_tool import FrameTool
 from workbench.pages.scan.overlays import PREVIEW_SIGMA_MM
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.stage import Stage
@@ -29,6 +31,7 @@ class ScanCloud(QWidget):
         self._limit = 0.0
         self.scene = SceneView()
         self.scene.setAccessibleName(tr("Measured points in 3D"))
+        self.frame = FrameTool(self.scene, presenter.bench.settings)
         in_column(self.scene, on=self)
         self.scene.clear(self._message())
 
@@ -46,6 +49,7 @@ class ScanCloud(QWidget):
         if look is self._look and not self._growing:
             return
         self._look, self._growing = look, False
+        self.frame.show(part_frame(None, look.ground))
         self.scene.set_cloud(look.points, values=look.sigma, colouring=Colouring("σ", "mm", (0.0, limit)))
 
     def begin_live(self) -> None:
@@ -74,6 +78,7 @@ class ScanCloud(QWidget):
 
     def _grow_anew(self) -> None:
         self._growing = True
+        self.frame.show(None)  # where the part lies is not known before it is measured
         points, sigma = _NOTHING
         self.scene.set_cloud(points, values=sigma, colouring=Colouring("σ", "mm", (0.0, PREVIEW_SIGMA_MM)))
 

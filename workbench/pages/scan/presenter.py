@@ -268,6 +268,7 @@ class ScanPresenter(StepPresenter):
 
     def entered(self) -> None:
         self._shown = True
+        self.work.look_again()
         self._follow_frames()
 
     def left(self) -> None:

@@ -42,7 +42,7 @@ class ScanWork(QObject):
         self.fan: Fan | None = None
         self.calibrations_read = False
         self.look: ShownScan | None = None
-        self._listed = self._calibrated = self._looked = ""
+        self._listed = self._calibrated = self._looked = self._thickness = ""
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -72,6 +72,12 @@ class ScanWork(QObject):
         self._list_frames()
         self._read_calibration(self._model.folder)
         self._read_result(self._model.folder)
+
+    def look_again(self) -> None:
+        """Read the result again if another thickness of it was measured: its lower face is what the part stands on."""
+        if self._model.folder is not None and self.look is not None and self._thickness != self._thickness_now():
+            self._looked = ""
+            self._read_result(self._model.folder)
 
     def _list_frames(self) -> None:
         folder, wanted = folder_of(self._model, "scan"), self._model.project.sources.scan
@@ -142,7 +148,7 @@ class ScanWork(QObject):
         wanted = f"{folder}|{done.key}|{done.at}" if done is not None else ""
         if wanted == self._looked:
             return
-        self._looked = wanted
+        self._looked, self._thickness = wanted, self._thickness_now()
         if done is None:
             self.look = None
             return
@@ -153,3 +159,8 @@ class ScanWork(QObject):
                 self.changed.emit()
 
         self._bench.run_quick(self, jobs.SHOW_SCAN, folder, label=tr("Reading the scan"), on_done=read)
+
+    def _thickness_now(self) -> str:
+        """Tells one measurement of the thickness from another; nothing without one."""
+        done = self._model.results.get("inspect")
+        return "" if done is None else f"{done.key}|{done.at}"

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame
 from core.model.arrays import Array
 
 VIEW_ANGLE = np.radians(30.0)
@@ -26,27 +27,30 @@ BORDER_PX = 10
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Orientation:
-    """Which way is up and which is north, away from the viewer of the front view: unit vectors (3,)."""
+    """Which way is up and which is north, away from the viewer of the front view: unit vectors (3,).
+
+    `origin` (3,) in mm is where the lines of a grid are counted from.
+    """
 
     up: Array
     north: Array
+    origin: Array
 
     @classmethod
-    def of(cls, up: ArrayLike, north: ArrayLike) -> Orientation:
-        """From any two vectors that are not parallel; north is made perpendicular to up."""
-        u = np.asarray(up, dtype=np.float64).ravel()
-        u = u / np.linalg.norm(u)
-        n = np.asarray(north, dtype=np.float64).ravel()
-        n = n - u * (n @ u)
-        length = np.linalg.norm(n)
-        if not np.isfinite(length) or length < 1e-9:
-            raise ValueError("up and north must be finite and not parallel")
-        return cls(u, n / length)
+    def of(cls, frame: ViewFrame) -> Orientation:
+        """Up is z and north y; of the camera's frame, whose z points away from it and y down, both turned round."""
+        _, y, z = frame.axes if frame.kind is not FrameKind.CAMERA else -frame.axes
+        return cls(z, y, frame.pose_camera_frame.translation)
 
     @property
     def east(self) -> Array:
         """To the right in the front view and in the view from above."""
         return np.cross(self.north, self.up)
+
+    @property
+    def axes(self) -> Array:
+        """East, north and up as rows (3, 3)."""
+        return np.array([self.east, self.north, self.up])
 
     def direction(self, view: str) -> tuple[Array, Array]:
         """Where the viewer stands, seen from the scene, and what is up on the screen: unit vectors (3,), (3,)."""
@@ -63,7 +67,7 @@ class Orientation:
         }[view]
 
 
-CAMERA_FRAME = Orientation(np.array([0.0, 0.0, -1.0]), np.array([0.0, -1.0, 0.0]))
+FROM_CAMERA = Orientation.of(CAMERA_FRAME)
 """Without other knowledge: up is towards the camera, north is up in its picture."""
 
 
@@ -132,6 +136,10 @@ class SceneCamera:
         tilt = float(np.clip(rise + tilt, lowest, highest) - rise)
         axes = axes @ _rotation(axes[0], -tilt).T
         return replace(self, axes=_axes(axes[2], axes[1]))
+
+    def turned(self, before: Orientation, after: Orientation) -> SceneCamera:
+        """Turned about what it looks at, so that it looks in the second orientation as it did in the first."""
+        return replace(self, axes=self.axes @ before.axes.T @ after.axes)
 
     def panned(self, dx: float, dy: float, size: tuple[int, int]) -> SceneCamera:
         """Moved so that the scene follows a drag of (dx, dy) pixels."""

@@ -6,11 +6,11 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
-from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, QPointF, Signal
 
+from core.inspect.shown.view_frame import ViewFrame
 from core.model.arrays import Array
-from workbench.views.scene.camera import CAMERA_FRAME, VIEW_ANGLE, Orientation, SceneCamera, from_origin
+from workbench.views.scene.camera import FROM_CAMERA, VIEW_ANGLE, Orientation, SceneCamera, from_origin
 from workbench.views.scene.contents import Scene
 
 GROWN = 1.15
@@ -45,11 +45,11 @@ class Navigator(QObject):
         self._scene, self._size, self._margin = scene, size, margin
         self.pyramid: Array | None = None
         """Corners (5, 3) of the measuring camera's pyramid, if it is known."""
-        self.orientation = CAMERA_FRAME
+        self.orientation = FROM_CAMERA
         self._name = "iso"
         self._touched = False
         self._extent, self._box = 0.0, np.empty((0, 3))
-        self.camera = SceneCamera.looking(*CAMERA_FRAME.direction("iso"), np.zeros(3), 500.0)
+        self.camera = SceneCamera.looking(*FROM_CAMERA.direction("iso"), np.zeros(3), 500.0)
 
     def view(self, name: str) -> None:
         """Look from a standard direction and fit."""
@@ -107,10 +107,12 @@ class Navigator(QObject):
         """The scene is empty: what comes next is fitted, seen from a corner."""
         self._extent, self._touched, self._name, self.pyramid = 0.0, False, "iso", None
 
-    def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
-        """Another up and north; a standard view is taken again."""
-        self.orientation = Orientation.of(up, north)
-        if not self._touched:
+    def set_frame(self, frame: ViewFrame) -> None:
+        """Another up and north; a standard view is taken again, one turned by hand turned with them."""
+        before, self.orientation = self.orientation, Orientation.of(frame)
+        if self._touched:
+            self._move(self.camera.turned(before, self.orientation))
+        else:
             self.view(self._name)
 
     def set_parallel(self, parallel: bool) -> None:

@@ -12,6 +12,7 @@ import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
 
+from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from core.model.arrays import Array
 from workbench.language import number, tr
 from workbench.views.scene.camera import SceneCamera
@@ -22,9 +23,9 @@ MARGIN, BAR_WIDTH = 14.0, 14.0
 """Round the overlay, and of the colour bar; in logical pixels."""
 
 AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
-    ("X", (200, 45, 45), (255, 110, 105)),
-    ("Y", (30, 130, 60), (95, 205, 115)),
-    ("Z", (35, 95, 210), (105, 165, 255)),
+    ("x", (200, 45, 45), (255, 110, 105)),
+    ("y", (30, 130, 60), (95, 205, 115)),
+    ("z", (35, 95, 210), (105, 165, 255)),
 )
 """Name, colour on a light ground, colour on a dark one."""
 
@@ -63,18 +64,21 @@ def paint_overlay(
     size: tuple[int, int],
     colours: OverlayColours,
     *,
-    axes: bool,
+    axes: ViewFrame | None,
     grid_mm: float,
 ) -> None:
-    """Everything that belongs to the picture; what belongs to a tool is painted by the tool."""
+    """Everything that belongs to the picture; what belongs to a tool is painted by the tool.
+
+    `axes` is the frame whose axes are shown, if they are.
+    """
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for item in scene.items.values():
         if isinstance(item, Labels):
             _paint_labels(painter, item, camera, size, colours)
         elif isinstance(item, Measure):
             _paint_measure(painter, item, camera, size, colours)
-    if axes:
-        _paint_triad(painter, camera, size, colours)
+    if axes is not None:
+        _paint_triad(painter, axes, camera, size, colours)
         _paint_scale(painter, camera, size, colours, grid_mm)
     if scene.colouring is not None:
         _paint_bar(painter, scene.colouring, size, colours)
@@ -145,11 +149,15 @@ def _paint_measure(
     text_plate(painter, (a + b) / 2, measure.text, colours)
 
 
-def _paint_triad(painter: QPainter, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours) -> None:
-    """Directions of the axes, those that point away first."""
+def _paint_triad(
+    painter: QPainter, frame: ViewFrame, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours
+) -> None:
+    """Directions of the frame's axes, those that point away first, and above them which frame it is."""
     centre, length = QPointF(MARGIN + 30, size[1] - MARGIN - 30), 24.0
     painter.setFont(_small(painter.font()))
-    right, up, back = camera.axes
+    painter.setPen(colours.text)
+    painter.drawText(QPointF(MARGIN, centre.y() - length - 20), tr(FRAME_NAMES[frame.kind]))
+    right, up, back = camera.axes @ frame.axes.T
     for k in np.argsort(back):
         name, on_light, on_dark = AXES[k]
         colour = QColor(*(on_dark if colours.dark else on_light))

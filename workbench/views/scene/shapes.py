@@ -61,9 +61,12 @@ def target_outline(pose: Pose, points: Array) -> Array:
 
 
 def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
-    """Lines under `points` (N, 3) along east and north, and the distance between them in mm."""
-    axes = np.array([orientation.east, orientation.north, orientation.up])
-    local = points @ axes.T
+    """Lines under `points` (N, 3) along east and north, and the distance between them in mm.
+
+    They stand at whole multiples of that distance from the orientation's origin.
+    """
+    axes = orientation.axes
+    local = (points - orientation.origin) @ axes.T
     low, high = local.min(axis=0), local.max(axis=0)
     step = nice_step(max(float((high - low)[:2].max()), 1e-6) / 12)
     floor = low[2] - 0.02 * max(float((high - low).max()), step)
@@ -75,7 +78,7 @@ def ground_grid(points: Array, orientation: Orientation) -> tuple[Lines, float]:
             ends[:, axis] = k * step
             ends[:, 1 - axis] = first[1 - axis] * step, last[1 - axis] * step
             ends[:, 2] = floor
-            lines.append(ends @ axes)
+            lines.append(ends @ axes + orientation.origin)
     return Lines(tuple(lines), (GREY,) * len(lines), 1.0), step
 
 

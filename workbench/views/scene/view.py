@@ -19,6 +19,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from core.errors import InputError
 from core.files import atomic
+from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.model.arrays import Array
 from workbench.language import text_of, tr
 from workbench.views.layouts import in_column
@@ -85,9 +86,9 @@ class DrawingState:
 class SceneView(QWidget):
     """A 3D scene with its tool bar, colour bar, axes and scale.
 
-    All coordinates are in mm, in the camera's frame unless `set_orientation` says which way is up. Arrays are kept,
-    not copied: do not change them afterwards. Nothing of OpenGL is made before there is something to see in a view
-    that is seen. Where nothing can be drawn in 3D, the view says so in place of the scene.
+    All coordinates are given and told in mm in the camera's frame, whatever frame is shown (`set_frame`). Arrays are
+    kept, not copied: do not change them afterwards. Nothing of OpenGL is made before there is something to see in a
+    view that is seen. Where nothing can be drawn in 3D, the view says so in place of the scene.
     """
 
     notice = Signal(str)
@@ -110,6 +111,7 @@ class SceneView(QWidget):
         self._scene = Scene()
         self._message = ""
         self._axes = True
+        self._frame = CAMERA_FRAME
         self._grid_mm = 0.0
         self._marked: Array | None = None
         self._canvas = Canvas(Navigate(self), self._paint_overlay, self)
@@ -306,18 +308,21 @@ class SceneView(QWidget):
         """Parallel projection, in which lengths can be compared, or perspective."""
         self._buttons.parallel.setChecked(parallel)
 
-    def set_orientation(self, up: ArrayLike, north: ArrayLike) -> None:
-        """Say which way is up and which is away from the viewer of the front view, both (3,).
+    def set_frame(self, frame: ViewFrame) -> None:
+        """Show the scene in a frame: standard views, turning, axes, grid and coordinates that are read out follow it.
 
-        Until then up is towards the camera and north is up in the camera's picture.
-
-        Raises
-        ------
-        ValueError
-            If they are parallel or not finite.
+        In the camera's own, up is towards the camera and north is up in the camera's picture. What is given to the view
+        and what it tells stays in the camera's frame.
         """
-        self._navigator.set_orientation(up, north)
-        self._changed()
+        if not frame.same_as(self._frame):
+            self._frame = frame
+            self._navigator.set_frame(frame)
+            self._changed()
+
+    @property
+    def frame(self) -> ViewFrame:
+        """The frame the scene is shown in."""
+        return self._frame
 
     def screen_positions(self, points: ArrayLike) -> Array:
         """Where points (N, 3) are in this view: (N, 2) in logical pixels of its canvas; NaN behind the viewer."""
@@ -546,11 +551,13 @@ class SceneView(QWidget):
     def _paint_overlay(self, painter: QPainter) -> None:
         colours, size = OverlayColours.of(self.palette()), self._canvas.logical_size
         painter.setFont(self.font())
-        paint_overlay(painter, self._scene, self._camera, size, colours, axes=self._axes, grid_mm=self._grid_mm)
+        axes = self._frame if self._axes else None
+        paint_overlay(painter, self._scene, self._camera, size, colours, axes=axes, grid_mm=self._grid_mm)
         if self._marked is not None:
             x, y = self._camera.project(self._marked, size)[0][0]
             if np.isfinite([x, y]).all():
-                paint_marker(painter, QPointF(float(x), float(y)), place_text(self._marked), colours)
+                place = place_text(self._frame.coordinates(self._marked))
+                paint_marker(painter, QPointF(float(x), float(y)), place, colours)
 
     def _ask_and_save(self) -> None:
         """Ask for a place, and write the picture there."""

@@ -5,12 +5,15 @@ from typing import cast
 
 import numpy as np
 import pytest
+from numpy.testing import assert_allclose
 from PySide6.QtCore import Qt
 
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.keys import finished
+from core.inspect.shown.view_frame import FrameKind
 from core.messages import plain
+from core.model import LightPlane
 from core.pipeline.live.commands import Resume
 from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
 from core.scan.preview.preflight import Check
@@ -71,6 +74,66 @@ def start_live(page, lane, qtbot):
     page.source.set_mode("live")
     qtbot.mouseClick(page.live_panel.start, LEFT)
     lane.current.reported.emit(LiveStarted("Camera 1", cases.SIZE))
+
+
+# ---- the frame of the points
+
+
+TABLE = LightPlane.from_normal([0.05, -0.1, 0.99], 640.0)
+
+
+@pytest.fixture
+def on_table(measured, scan_bench, qtbot):
+    """The page with a scan whose thickness was measured while another page was shown."""
+    p = measured.presenter
+    p.left()
+    cast(HandLane, scan_bench.quick).answers[jobs.SHOW_SCAN] = lambda folder: replace(cases.look(), ground=TABLE)
+    p.model.record("inspect", replace(p.model.results["inspect"], key="another"))
+    p.entered()
+    qtbot.waitUntil(lambda: p.work.look.ground is not None)
+    measured.refreshing.at_once()
+    return measured
+
+
+def test_without_a_thickness_the_points_are_in_the_cameras_frame(measured):
+    assert measured.cloud.scene.frame.kind is FrameKind.CAMERA
+    assert not measured.cloud.frame.action.isEnabled() and "Inspect" in measured.cloud.frame.action.toolTip()
+
+
+def test_a_thickness_measured_since_stands_the_points_on_the_lower_face(on_table):
+    scene = on_table.cloud.scene
+    assert scene.frame.kind is FrameKind.GROUND
+    points = on_table.presenter.work.look.points
+    assert_allclose(scene.frame.coordinates(points)[:, 2], -TABLE.distances(points), atol=1e-9)
+
+
+def test_a_page_entered_again_reads_nothing_twice(on_table, scan_bench, qtbot):
+    quick = cast(HandLane, scan_bench.quick)
+    read = quick.ran.count(jobs.SHOW_SCAN)
+    on_table.presenter.left()
+    on_table.presenter.entered()
+    qtbot.waitUntil(lambda: not quick.busy)
+    assert quick.ran.count(jobs.SHOW_SCAN) == read
+
+
+def test_points_that_grow_are_in_the_cameras_frame_until_the_part_is_known(on_table, measuring, qtbot):
+    quick = cast(HandLane, on_table.presenter.bench.quick)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    qtbot.mouseClick(on_table.stage.buttons["run"], LEFT)
+    measuring.current.reported.emit(cases.detail(0, renewed=True))
+    qtbot.waitUntil(lambda: on_table.cloud.scene.state().points == 30)
+    assert on_table.cloud.scene.frame.kind is FrameKind.CAMERA
+    measuring.finish(cases.summary())
+    qtbot.waitUntil(lambda: on_table.cloud.scene.state().points == 1500)
+    assert on_table.cloud.scene.frame.kind is FrameKind.GROUND
+
+
+def test_the_choice_of_the_frame_is_that_of_all_pages(on_table, qtbot):
+    settings = on_table.presenter.bench.settings
+    settings.part_frame = False
+    assert on_table.cloud.scene.frame.kind is FrameKind.CAMERA and not on_table.cloud.frame.action.isChecked()
+    qtbot.mouseClick(on_table.cloud.scene._buttons.widgetForAction(on_table.cloud.frame.action), LEFT)
+    assert settings.part_frame and on_table.cloud.scene.frame.kind is FrameKind.GROUND
 
 
 # ---- what is seen when

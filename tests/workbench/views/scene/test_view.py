@@ -5,20 +5,24 @@ from __future__ import annotations
 import logging
 import sys
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QColor, QGuiApplication, QMouseEvent, QPalette
+from PySide6.QtGui import QColor, QGuiApplication, QMouseEvent, QPainter, QPalette
 from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QStackedWidget, QWidget
 from pyvistaqt import QtInteractor
 
 from core.errors import InputError
+from core.inspect.shown.view_frame import CAMERA_FRAME, FRAME_NAMES, FrameKind, ViewFrame
+from core.model import Pose
 from tests.workbench.views.scene.test_view_numbers import crossing_number
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
-from workbench.views.scene import drawing
+from workbench.views.scene import drawing, overlay
 from workbench.views.scene import ready as ready_module
+from workbench.views.scene import view as view_module
 from workbench.views.scene.buttons import SceneButtons
 from workbench.views.scene.contents import Scene
 from workbench.views.scene.ready import Readiness, readiness
@@ -27,6 +31,10 @@ from workbench.views.scene.view import Colouring, SceneView
 RED, LEFT = "#ff0000", Qt.MouseButton.LeftButton
 RNG = np.random.default_rng(3)
 FLAT = np.column_stack([*(RNG.random((2, 4000)) * 100 - 50), np.full(4000, 500.0)])
+UPRIGHT = ViewFrame(FrameKind.PART, Pose(np.array([[1.0, 0, 0], [0, 0, -1], [0, 1, 0]]), np.zeros(3)))
+"""z up in the camera's picture."""
+PART = ViewFrame(FrameKind.PART, Pose.from_vector([2.9, 0.3, -0.1, 12.0, -7.0, 490.0]))
+"""Tilted against the camera, z towards it."""
 SPARSE = np.array([[x, y, 500.0] for y in (-30, -10, 10, 30) for x in (-40, -20, 0, 20, 40)])
 
 
@@ -103,6 +111,25 @@ def count(picture: np.ndarray, colour: str, tolerance: int = 40) -> int:
     return int(
         (np.abs(picture.astype(int) - [wanted.red(), wanted.green(), wanted.blue()]).max(axis=2) < tolerance).sum()
     )
+
+
+def matrix(frame: ViewFrame) -> np.ndarray:
+    """(4, 4) from the frame's coordinates to the camera's."""
+    pose = frame.pose_camera_frame
+    return np.vstack([np.column_stack([pose.rotation, pose.translation]), [0, 0, 0, 1]])
+
+
+def texts_written(monkeypatch) -> set[str]:
+    """Every text that is painted over the scene from now on."""
+    written: set[str] = set()
+
+    class Painter(QPainter):
+        def drawText(self, *args: Any) -> None:  # type: ignore[override]
+            written.add(args[-1])
+            super().drawText(*args)
+
+    monkeypatch.setattr(view_module, "QPainter", Painter)
+    return written
 
 
 def click(view: SceneView, qtbot, at, button=LEFT) -> None:
@@ -355,8 +382,92 @@ def test_another_orientation_turns_the_standard_views(view, qtbot):
     view.set_cloud(FLAT)
     view.view("front")
     edge_on = np.ptp(view.screen_positions(FLAT)[:, 1])
-    view.set_orientation(up=(0, -1, 0), north=(0, 0, 1))
+    view.set_frame(UPRIGHT)
     assert np.ptp(view.screen_positions(FLAT)[:, 1]) > 5 * edge_on + 20
+
+
+@pytest.mark.parametrize("frame", [CAMERA_FRAME, PART])
+def test_dragging_sideways_turns_about_the_z_of_the_frame(view, qtbot, frame):
+    view.set_cloud(FLAT)
+    view.set_frame(frame)
+    view.view("front")
+    upright = frame.pose_camera_frame.apply([[0, 0, 0], [0, 0, -30]])
+    before = np.diff(view.screen_positions(upright), axis=0)[0]
+    drag(view, qtbot, [(300, 200), (340, 200), (400, 200)])
+    after = np.diff(view.screen_positions(upright), axis=0)[0]
+    assert_allclose([before[0], after[0]], 0, atol=abs(after[1]) / 20)
+    assert abs(after[1]) > 20
+
+
+@pytest.mark.parametrize("frame", [CAMERA_FRAME, PART])
+def test_the_view_says_its_frame_and_reads_points_out_in_it(view, qtbot, frame, monkeypatch):
+    read = []
+    monkeypatch.setattr(view_module, "place_text", lambda place: read.append(place) or "")
+    written = texts_written(monkeypatch)
+    view.set_axes(True)
+    view.set_cloud(SPARSE)
+    view.set_frame(frame)
+    view.view("top" if frame is CAMERA_FRAME else "iso")
+    view.start_picking()
+    with qtbot.waitSignal(view.point_picked) as picked:
+        click(view, qtbot, view.screen_positions(SPARSE)[7])
+    view.picture()
+    assert picked.args[0] == 7
+    assert_array_equal(picked.args[1], SPARSE[7])  # what is told stays in the camera's frame
+    assert_allclose(read[-1], np.linalg.inv(matrix(frame))[:3] @ [*SPARSE[7], 1])
+    assert FRAME_NAMES[frame.kind] in written
+    assert {"x", "y", "z"} <= written
+    others = {name for kind, name in FRAME_NAMES.items() if kind is not frame.kind}
+    assert not others & written
+
+
+@pytest.mark.parametrize("frame", [CAMERA_FRAME, PART])
+def test_a_region_drawn_in_any_frame_holds_what_is_seen_in_it(view, qtbot, frame):
+    view.set_cloud(SPARSE)
+    view.set_frame(frame)
+    view.view("top" if frame is CAMERA_FRAME else "iso")
+    view.start_polygon()
+    at = view.screen_positions(SPARSE)
+    corners = at[[0, 1, 6, 5]]
+    out = corners - corners.mean(axis=0)
+    outwards = corners + 8 * out / np.linalg.norm(out, axis=1)[:, None]
+    with qtbot.waitSignal(view.region_selected) as chosen:
+        for corner in outwards:
+            click(view, qtbot, corner)
+        qtbot.keyClick(view.focusProxy(), Qt.Key.Key_Return)
+    assert_array_equal(np.flatnonzero(chosen.args[0]), [0, 1, 5, 6])
+
+
+@pytest.mark.parametrize("frame", [CAMERA_FRAME, PART])
+def test_lines_marks_and_callouts_are_drawn_where_their_points_are_in_any_frame(view, qtbot, frame, monkeypatch):
+    view.set_cloud(SPARSE, colours="#808080")
+    view.set_frame(frame)
+    view.view("top" if frame is CAMERA_FRAME else "iso")
+    at = view.screen_positions(SPARSE)
+    view.set_polylines("section", [SPARSE[[0, 4]]], RED, 4.0)
+    view.set_highlight("face", SPARSE[[12]], "#00ff00")
+    plates = []
+    monkeypatch.setattr(overlay, "text_plate", lambda painter, place, text, *rest: plates.append((text, place)))
+    view.set_labels("callout", [(SPARSE[19], "P1")])
+    view.set_measure("distance", SPARSE[15], SPARSE[17], "20 mm")
+    complete(view, qtbot)
+    picture = view.picture()
+    scale = picture.shape[0] / view.focusProxy().height()
+    for place, colour in ((at[[1, 3]].mean(axis=0), RED), (at[12], "#00ff00")):
+        x, y = np.round(place * scale).astype(int)
+        assert count(picture[y - 3 : y + 4, x - 3 : x + 4], colour) >= 3
+    written = {text: (place.x(), place.y()) for text, place in plates}
+    assert_allclose(written["P1"], at[19] - [0, 14])
+    assert_allclose(written["20 mm"], at[[15, 17]].mean(axis=0))
+
+
+def test_a_frame_given_again_moves_nothing(view, qtbot):
+    view.set_cloud(FLAT)
+    view.set_frame(PART)
+    drag(view, qtbot, [(300, 200), (340, 210), (380, 220)])
+    before = view.screen_positions(SPARSE)
+    view.set_frame(ViewFrame(FrameKind.PART, PART.pose_camera_frame))
+    assert_array_equal(view.screen_positions(SPARSE), before)
 
 
 # ---- choosing

@@ -4,14 +4,15 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 
-from core.model import Camera, LightPlane
-from workbench.views.scene.camera import CAMERA_FRAME, Orientation, SceneCamera, from_origin
+from core.inspect.shown.view_frame import FrameKind, ViewFrame
+from core.model import Camera, LightPlane, Pose
+from workbench.views.scene.camera import FROM_CAMERA, Orientation, SceneCamera, from_origin
 from workbench.views.scene.chooser import Outline, nearest_point, points_inside
 from workbench.views.scene.cloud import CHUNK, SceneCloud
 from workbench.views.scene.colours import UNKNOWN, Colouring, table, ticks
 from workbench.views.scene.contents import Scene, as_mesh
 from workbench.views.scene.passes import TRIANGLES, Part, all_parts, gather, quick_pass, size, whole_passes
-from workbench.views.scene.shapes import frustum, plane_patch
+from workbench.views.scene.shapes import frustum, ground_grid, plane_patch
 
 SIZE = (800, 600)
 RNG = np.random.default_rng(7)
@@ -19,7 +20,7 @@ BOX = RNG.random((500, 3)) * [80, 60, 40] + [-40, -30, 400]
 
 
 def looking(view: str) -> SceneCamera:
-    back, up = CAMERA_FRAME.direction(view)
+    back, up = FROM_CAMERA.direction(view)
     return SceneCamera.looking(back, up, (0, 0, 420), 300)
 
 
@@ -88,8 +89,8 @@ def test_a_drag_moves_the_scene_with_the_mouse():
 def test_turning_stops_at_the_poles_and_stays_upright():
     camera = looking("front")
     for _ in range(30):
-        camera = camera.orbited(17, 40, CAMERA_FRAME.up)
-    assert_allclose(camera.axes[2] @ CAMERA_FRAME.up, 1, atol=1e-6)
+        camera = camera.orbited(17, 40, FROM_CAMERA.up)
+    assert_allclose(camera.axes[2] @ FROM_CAMERA.up, 1, atol=1e-6)
     assert_allclose(camera.axes @ camera.axes.T, np.eye(3), atol=1e-12)
 
 
@@ -103,9 +104,33 @@ def test_what_the_camera_sees_fills_the_view_with_its_picture():
     assert np.ptp(screen[:, 1]) / SIZE[1] > 0.9 or np.ptp(screen[:, 0]) / SIZE[0] > 0.9
 
 
-def test_an_orientation_needs_two_directions():
-    with pytest.raises(ValueError, match="parallel"):
-        Orientation.of((0, 0, 1), (0, 0, -2))
+PART = ViewFrame(FrameKind.PART, Pose.from_vector([2.9, 0.3, -0.1, 12.0, -7.0, 440.0]))
+
+
+@pytest.mark.parametrize(
+    ("view", "right", "up"),
+    [("top", "+x", "+y"), ("front", "+x", "+z"), ("right", "+y", "+z"), ("bottom", "-x", "+y")],
+)
+def test_standard_views_of_a_part_have_its_z_up(view, right, up):
+    back, upward = Orientation.of(PART).direction(view)
+    axes = SceneCamera.looking(back, upward, (0, 0, 420), 300).axes
+    for seen, (sign, name) in zip(axes, (right, up), strict=False):
+        assert_allclose(seen, float(f"{sign}1") * PART.axes["xyz".index(name)], atol=1e-12)
+
+
+def test_a_view_turned_by_hand_looks_in_another_frame_as_it_did():
+    first, second = FROM_CAMERA, Orientation.of(PART)
+    camera = looking("iso").orbited(70, -15, first.up)
+    turned = camera.turned(first, second)
+    assert_allclose(second.axes @ turned.axes.T, first.axes @ camera.axes.T, atol=1e-12)
+    assert_array_equal(turned.focal, camera.focal)
+
+
+def test_the_grid_counts_from_the_origin_of_its_frame():
+    lines, step = ground_grid(BOX, Orientation.of(PART))
+    ends = PART.coordinates(np.vstack(lines.lines))
+    assert_allclose(ends[:, :2], np.round(ends[:, :2] / step) * step, atol=1e-9)
+    assert np.ptp(ends[:, 2]) < 1e-9 and ends[0, 2] < PART.coordinates(BOX)[:, 2].min()
 
 
 # ---- cloud

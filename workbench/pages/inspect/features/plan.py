@@ -190,9 +190,9 @@ class InspectFeatures(QObject):
     def pose_camera_part(self) -> Pose | None:
         """Part coordinates into the camera frame, if they are known and still those of this plan."""
         frame = self.plan.frame
-        if frame is None or self._shown is None or any(self.result(name) is None for name in frame.names):
+        if frame is None or self._shown is None or self._shown_for is None or self._shown_for[0].frame != frame:
             return None
-        return self._shown.pose_camera_part
+        return None if any(self.result(name) is None for name in frame.names) else self._shown.pose_camera_part
 
     def result(self, name: str) -> ShownFeature | None:
         """What a feature gave; None if it is not measured, or something it depends on has changed since."""

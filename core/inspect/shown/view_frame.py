@@ -1,0 +1,113 @@
+"""The frame in which measured points are looked at: the part's as far as it is known, else the camera's.
+
+Points stay in the camera frame; a view turns about the axes of its frame and reads coordinates out in it. Light to
+import.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from enum import StrEnum
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from core.messages import label
+from core.model import LightPlane, Pose
+from core.model.arrays import Array
+
+
+class FrameKind(StrEnum):
+    """What a frame rests on."""
+
+    CAMERA = "camera"
+    GROUND = "ground"
+    """On the lower face's plane, z out of it."""
+    PART = "part"
+    """The part coordinates of an inspection plan."""
+
+
+FRAME_NAMES: Mapping[FrameKind, str] = {
+    FrameKind.CAMERA: label("camera frame"),
+    FrameKind.GROUND: label("frame of the lower face"),
+    FrameKind.PART: label("part coordinates"),
+}
+"""As they are shown beside coordinates."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ground:
+    """The frame the surface stands in: rows of `axes` are along (picture's right), across, and up; `origin` on it."""
+
+    axes: Array
+    origin: Array
+
+    @classmethod
+    def of(cls, plane: LightPlane | None, points: Array) -> Ground:
+        """Up is out of `plane`, towards the camera; without one, up is towards the camera from the farthest points."""
+        away = np.array([0.0, 0.0, 1.0]) if plane is None else plane.normal
+        along = np.array([1.0, 0.0, 0.0]) - away[0] * away
+        along /= np.linalg.norm(along)
+        up = -away
+        farthest = float(np.quantile(points @ away, 0.999)) if len(points) else 0.0
+        distance = farthest if plane is None else plane.d_mm
+        return cls(np.array([along, np.cross(up, along), up]), away * distance)
+
+    def local(self, points: Array) -> Array:
+        """`points` (N, 3) of the camera frame in this one: along, across, height; mm."""
+        local: Array = (points - self.origin) @ self.axes.T
+        return local
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ViewFrame:
+    """A frame: `pose_camera_frame` maps its coordinates into the camera frame."""
+
+    kind: FrameKind
+    pose_camera_frame: Pose
+
+    @property
+    def axes(self) -> Array:
+        """Its x, y and z as rows (3, 3) of unit vectors in the camera frame."""
+        return self.pose_camera_frame.rotation.T
+
+    def coordinates(self, points: ArrayLike) -> Array:
+        """`points` (N, 3) or (3,) in mm of the camera frame in this one."""
+        return self.pose_camera_frame.inverse().apply(points)
+
+    def same_as(self, other: ViewFrame) -> bool:
+        """Whether it is the same one."""
+        ours, theirs = self.pose_camera_frame, other.pose_camera_frame
+        return (
+            self.kind is other.kind
+            and np.array_equal(ours.rotation, theirs.rotation)
+            and np.array_equal(ours.translation, theirs.translation)
+        )
+
+
+CAMERA_FRAME = ViewFrame(FrameKind.CAMERA, Pose.identity())
+
+
+def shown_frame(part: ViewFrame | None, *, wanted: bool) -> ViewFrame:
+    """The part's own frame where it is known and wanted, else the camera's."""
+    return part if part is not None and wanted else CAMERA_FRAME
+
+
+def part_frame(pose_camera_part: Pose | None, lower: LightPlane | None) -> ViewFrame | None:
+    """The part's own frame: its part coordinates, else that of its lower face, else none.
+
+    Parameters
+    ----------
+    pose_camera_part
+        Part coordinates into the camera frame, where an inspection has any.
+    lower
+        Plane of the lower face, where a thickness was measured. Its frame has z out of it, towards the camera, x along
+        the camera's, and its origin where the camera's centre falls on it.
+    """
+    if pose_camera_part is not None:
+        return ViewFrame(FrameKind.PART, pose_camera_part)
+    if lower is None:
+        return None
+    ground = Ground.of(lower, np.empty((0, 3)))
+    return ViewFrame(FrameKind.GROUND, Pose(ground.axes.T, ground.origin))
