@@ -155,8 +155,9 @@ def _paint_triad(
     """Directions of the frame's axes, those that point away first, and above them which frame it is."""
     centre, length = QPointF(MARGIN + 30, size[1] - MARGIN - 30), 24.0
     painter.setFont(_small(painter.font()))
-    painter.setPen(colours.text)
-    painter.drawText(QPointF(MARGIN, centre.y() - length - 20), tr(FRAME_NAMES[frame.kind]))
+    name = tr(FRAME_NAMES[frame.kind])
+    middle = MARGIN + painter.fontMetrics().horizontalAdvance(name) / 2
+    text_plate(painter, QPointF(middle, centre.y() - length - 24), name, colours)
     right, up, back = camera.axes @ frame.axes.T
     for k in np.argsort(back):
         name, on_light, on_dark = AXES[k]
