@@ -48,6 +48,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("one", "1", label("Picture: one screen pixel a picture pixel")),
     ("views", "1 … 7, R", label("3D view: standard views, fit")),
     ("frame", "Z", label("3D view: the part's frame with z up, or the camera's")),
+    ("cut", "X", label("Inspect, 3D view: lay a plane through the surface")),
     ("click", "C, Shift+C", label("Inspect, 3D view: click a face, or two, to measure them")),
     ("frames", "Left, Right", label("Scan: go through the frames")),
     ("polygon", "Return, Esc", label("Drawing a region, clicking a face: take it, give it up")),

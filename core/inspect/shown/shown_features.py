@@ -13,6 +13,9 @@ from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
 
+UNSEEN_STEPS = 3
+"""Over more steps of a section without points no line is drawn."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShownProfile:
@@ -33,6 +36,13 @@ class ShownProfile:
     mean_position: Array
     mean_height: Array
     mean_piece: NDArray[np.int64]
+
+    @classmethod
+    def of(cls, position: Array, height: Array, means: tuple[Array, Array], step_mm: float, most: int) -> ShownProfile:
+        """Of points (N,), `most` of which are drawn, and their means over steps of `step_mm`."""
+        order = np.argsort(position, kind="stable")[:: max(1, -(-len(position) // most))]
+        far = np.diff(means[0], prepend=means[0][:1]) > UNSEEN_STEPS * step_mm
+        return cls(position[order], height[order], *means, np.cumsum(far))
 
     @property
     def mean_line(self) -> tuple[Array, Array]:

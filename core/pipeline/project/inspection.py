@@ -29,9 +29,6 @@ from core.scan.surface.cloud import Cloud
 MOST_DRAWN = 20_000
 """So many of the points that a feature used are drawn."""
 
-UNSEEN_STEPS = 3
-"""Over more steps of a section without points no line is drawn."""
-
 Memory: TypeAlias = MutableMapping[str, Inspection]
 LAST = "last inspection"
 """Its name in the memory: only of the last one, which knows by its keys what is still true."""
@@ -111,10 +108,8 @@ def _feature(result: FeatureResult, cloud: Cloud) -> ShownFeature:
 
 
 def _profile(profile: Profile, step_mm: float) -> ShownProfile:
-    order = np.argsort(profile.position, kind="stable")[:: max(1, -(-len(profile.position) // MOST_DRAWN))]
-    mean = profile.mean_position
-    far = np.diff(mean, prepend=mean[:1]) > UNSEEN_STEPS * step_mm
-    return ShownProfile(profile.position[order], profile.height[order], mean, profile.mean_height, np.cumsum(far))
+    means = profile.mean_position, profile.mean_height
+    return ShownProfile.of(profile.position, profile.height, means, step_mm, MOST_DRAWN)
 
 
 def _deviations(found: DeviationMap) -> ShownDeviations:

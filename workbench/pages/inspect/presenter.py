@@ -17,6 +17,7 @@ from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.clicked import InspectClicked, Target
 from workbench.pages.inspect.clicked import Mode as ClickMode
+from workbench.pages.inspect.cut import InspectCut
 from workbench.pages.inspect.faces import FACES, InspectFaces
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
@@ -67,6 +68,7 @@ class InspectPresenter(StepPresenter):
         self.features = InspectFeatures(bench, self.scan)
         self.feature = InspectFeatureEdit(self.features, self.scan)
         self.clicked = InspectClicked(self.features, self.scan)
+        self.cut = InspectCut(self.features, self.scan, lambda: self.frame)
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
         for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked):
             part.changed.connect(self.changed)
@@ -328,6 +330,7 @@ class InspectPresenter(StepPresenter):
         if self.scan.is_new:
             self.picks.clear()
             self.clicked.stop()
+            self.cut.show(False)
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
         if self.scan.view is None or self.picture not in (RELIEF, *self.scan.view.pictures):

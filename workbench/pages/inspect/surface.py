@@ -17,6 +17,7 @@ from workbench.pages.frame_tool import FrameTool
 from workbench.pages.inspect import words
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.clicked import Mode
+from workbench.pages.inspect.cut_panel import CutPanel
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
@@ -35,6 +36,12 @@ PLAIN = "#8A96A3"
 
 MOST_MARKED = 100_000
 """So many of the points used are marked on a mesh; more would be no clearer."""
+
+CUT = "cut"
+"""Name of the plane that is laid through the surface."""
+
+CUT_OPACITY = 0.15
+"""The surface behind it stays to be seen."""
 
 PROPOSALS = ("proposed 1", "proposed 2")
 """Names of the highlights of faces that were clicked."""
@@ -62,6 +69,7 @@ class SurfaceTab(QWidget):
         self._highlights: list[str] = []
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
+        self._cut: tuple[object, ...] = ()
         self._proposal: ClickedFaces | None = None
         self._picking = ""
         self._later = QTimer(self)
@@ -76,7 +84,9 @@ class SurfaceTab(QWidget):
         self.line.setWordWrap(True)  # else the legend of a deviation would widen the page and narrow what is beside it
         foot.addWidget(self.line, 1)
         foot.addWidget(self.hint)
-        in_column(self.choices, (self.scene, 1), foot, on=self, margins=(6, 6, 6, 4), spacing=4)
+        self.cut = CutPanel(presenter.cut)
+        self.cut.hide()
+        in_column(self.choices, (self.scene, 1), self.cut, foot, on=self, margins=(6, 6, 6, 4), spacing=4)
         self.scene.point_picked.connect(lambda point, _: presenter.click(point))
         self.scene.taken.connect(presenter.clicked.take)
         self.scene.region_selected.connect(self._selected)
@@ -93,6 +103,11 @@ class SurfaceTab(QWidget):
         self._tips = {mode: action.toolTip() for mode, action in self.clicks.items()}
         for mode, action in self.clicks.items():
             action.triggered.connect(lambda on, mode=mode: presenter.start_clicking(mode if on else ""))
+        self.cutting = self.scene.add_tool(tr("Lay a plane through the surface and see the profile"), "X", "mdi6.knife")
+        self._tips_of_cutting = self.cutting.toolTip()
+        self.cutting.triggered.connect(presenter.cut.show)
+        self.scene.handle_pulled.connect(presenter.cut.pull)
+        presenter.cut.changed.connect(Refresh(self._show_cut, self).soon)
         self.frame = FrameTool(self.scene, presenter.bench.settings)
         presenter.measured.connect(self._show_faces)
 
@@ -105,6 +120,7 @@ class SurfaceTab(QWidget):
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
+        enable(self.cutting, p.scan.buttons.use, self._tips_of_cutting)
         self.frame.show(p.part_frame)
         if view is None:
             self._clear()
@@ -118,6 +134,7 @@ class SurfaceTab(QWidget):
         self._show_proposal()
         self._show_picks()
         self._show_tool()
+        self._show_cut()
         self._show_words(view)
 
     @property
@@ -158,7 +175,10 @@ class SurfaceTab(QWidget):
         else:
             message = tr("Reading the scan …")
         self._later.stop()
-        self._drawn = self._cloud = self._mesh = ()
+        self._drawn = self._cloud = self._mesh = self._cut = ()
+        self._presenter.cut.show(False)
+        self.cut.hide()
+        self.scene.set_handle(None)
         self._marked, self._feature, self._highlights = [], None, []
         self._proposal = None
         self.frame.show(None)
@@ -279,6 +299,25 @@ class SurfaceTab(QWidget):
         if len(places):
             self.scene.set_highlight(name, places, colour)
             self._highlights.append(name)
+
+    def _show_cut(self) -> None:
+        """The plane that is laid through the surface, and its profile."""
+        plane, count = self._presenter.cut.plane, self._presenter.points_shown()
+        self.cutting.setChecked(plane is not None)
+        self.cut.setVisible(plane is not None)
+        self.cut.show_keep()
+        if (plane, count) == self._cut:
+            return
+        self._cut = (plane, count)
+        if plane is None:
+            self.scene.remove(CUT)
+            self.scene.set_handle(None)
+            return
+        corners = self._presenter.cut.corners()
+        self.scene.set_planes(CUT, [corners], PROPOSED, CUT_OPACITY)
+        self.scene.set_polylines(CUT, [corners[[0, 1, 2, 3, 0]]], PROPOSED)
+        self.scene.set_handle((corners[2:].mean(axis=0), plane.normal))
+        self.cut.refresh(count)
 
     # ---- picks
 

@@ -19,6 +19,9 @@ from workbench.views.scene.camera import SceneCamera
 from workbench.views.scene.colours import Colouring, Rgb, nice_step, table, ticks
 from workbench.views.scene.contents import Labels, Measure, Scene
 
+HANDLE_PX = 9.0
+"""Radius of the ring that is dragged."""
+
 MARGIN, BAR_WIDTH = 14.0, 14.0
 """Round the overlay, and of the colour bar; in logical pixels."""
 
@@ -268,6 +271,17 @@ def paint_outline(painter: QPainter, corners: Sequence[QPointF], colours: Overla
     for pen in (QPen(colours.ground, 4), QPen(colours.accent, 2)):
         painter.setPen(pen)
         draw(QPolygonF(list(corners)))
+
+
+def paint_handle(painter: QPainter, at: QPointF, along: QPointF, colours: OverlayColours) -> None:
+    """A ring that can be dragged, with strokes to both sides along the unit vector `along`."""
+    painter.setRenderHint(QPainter.RenderHint.Antialiasing)
+    painter.setBrush(colours.plate)
+    for pen in (QPen(colours.ground, 6), QPen(colours.accent, 2.4)):
+        painter.setPen(pen)
+        for side in (-1, 1):
+            painter.drawLine(at + along * (side * HANDLE_PX), at + along * (side * 2 * HANDLE_PX))
+        painter.drawEllipse(at, HANDLE_PX, HANDLE_PX)
 
 
 def paint_marker(painter: QPainter, at: QPointF, text: str, colours: OverlayColours) -> None:

@@ -35,6 +35,12 @@ class ViewControl(Protocol):
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
         """Nearer by a factor, towards a point of the screen or its middle."""
 
+    def holds(self, at: QPointF) -> bool:
+        """Whether the handle is there."""
+
+    def pull(self, dx: float, dy: float) -> None:
+        """Move what the handle is on, by a drag in pixels."""
+
     def pick(self, at: QPointF) -> None:
         """Choose the point of the cloud under the cursor."""
 
@@ -52,7 +58,10 @@ class ViewControl(Protocol):
 
 
 class Navigate:
-    """Left button turns; right button, or left with Shift, moves; wheel and middle button go nearer."""
+    """Left button turns; right button, or left with Shift, moves; wheel and middle button go nearer.
+
+    A handle that is shown is dragged with the left button.
+    """
 
     cursor = Qt.CursorShape.ArrowCursor
     hint = ""
@@ -62,12 +71,13 @@ class Navigate:
         self._last: QPointF | None = None
         self._start = QPointF()
         self._button = Qt.MouseButton.NoButton
-        self._dragged = False
+        self._dragged = self._pulls = False
 
     def press(self, event: QMouseEvent) -> None:
         """A button goes down."""
         self._last = self._start = event.position()
         self._button, self._dragged = event.button(), False
+        self._pulls = event.button() == Qt.MouseButton.LeftButton and self.view.holds(event.position())
 
     def move(self, event: QMouseEvent) -> None:
         """The mouse moves."""
@@ -79,7 +89,9 @@ class Navigate:
         self._dragged = True
         step, self._last = at - self._last, at
         shift = bool(event.modifiers() & Qt.KeyboardModifier.ShiftModifier)
-        if self._button == Qt.MouseButton.RightButton or (self._button == Qt.MouseButton.LeftButton and shift):
+        if self._pulls:
+            self.view.pull(step.x(), step.y())
+        elif self._button == Qt.MouseButton.RightButton or (self._button == Qt.MouseButton.LeftButton and shift):
             self.view.pan(step.x(), step.y())
         elif self._button == Qt.MouseButton.LeftButton:
             self.view.orbit(step.x(), step.y())

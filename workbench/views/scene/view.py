@@ -43,7 +43,15 @@ from workbench.views.scene.contents import (
 )
 from workbench.views.scene.drawing import Drawing
 from workbench.views.scene.navigator import Navigator
-from workbench.views.scene.overlay import OverlayColours, bar_width, paint_marker, paint_overlay, place_text
+from workbench.views.scene.overlay import (
+    HANDLE_PX,
+    OverlayColours,
+    bar_width,
+    paint_handle,
+    paint_marker,
+    paint_overlay,
+    place_text,
+)
 from workbench.views.scene.ready import Kind, readiness, reserve_opengl
 from workbench.views.scene.shapes import camera_pyramid, ground_grid
 from workbench.views.scene.tools import Lasso, Navigate, Pick, Polygon
@@ -57,6 +65,12 @@ PYRAMID = "#pyramid"
 
 HIGHLIGHT_WIDER_PX = 1.5
 """Highlighted points are wider than the cloud's by so much, to be seen among them."""
+
+HANDLE_REACH = 1.5
+"""The handle is taken up to so many of its radii from its middle."""
+
+LEAST_PX_PER_MM = 0.02
+"""A handle that moves less than this over the screen is seen end-on and cannot be dragged."""
 
 
 def prepare_3d() -> None:
@@ -103,6 +117,9 @@ class SceneView(QWidget):
     taken = Signal()
     """Enter was pressed while points are picked."""
 
+    handle_pulled = Signal(float)
+    """The handle was dragged by so many mm along its direction."""
+
     drawing_cancelled = Signal()
     """Picking or drawing was ended by Esc or `stop_drawing`, without a result."""
 
@@ -114,6 +131,7 @@ class SceneView(QWidget):
         self._frame = CAMERA_FRAME
         self._grid_mm = 0.0
         self._marked: Array | None = None
+        self._handle: tuple[Array, Array] | None = None
         self._canvas = Canvas(Navigate(self), self._paint_overlay, self)
         self._canvas.setAccessibleName(tr("3D view"))
         self.setFocusProxy(self._canvas)
@@ -275,6 +293,11 @@ class SceneView(QWidget):
         ends = as_points([np.asarray(a, dtype=np.float64), np.asarray(b, dtype=np.float64)], "ends")
         self._put(name, Measure(ends, text))
 
+    def set_handle(self, handle: tuple[ArrayLike, ArrayLike] | None) -> None:
+        """Show a ring at a place (3,) that can be dragged along a unit vector (3,), or none; see `handle_pulled`."""
+        self._handle = None if handle is None else (np.asarray(handle[0], float), np.asarray(handle[1], float))
+        self._canvas.update()
+
     def set_axes(self, shown: bool) -> None:
         """Show or hide the axes' triad and the scale bar."""
         self._axes = shown
@@ -410,6 +433,22 @@ class SceneView(QWidget):
         """Nearer by a factor, towards a point of the screen or its middle."""
         self._navigator.zoom(factor, at)
 
+    def holds(self, at: QPointF) -> bool:
+        """Whether the handle is under the cursor."""
+        if self._handle is None:
+            return False
+        x, y = self.screen_positions(self._handle[0][None])[0]
+        return float(np.hypot(at.x() - x, at.y() - y)) <= HANDLE_REACH * HANDLE_PX
+
+    def pull(self, dx: float, dy: float) -> None:
+        """Tell how far along its direction the handle goes, so that it follows a drag in pixels."""
+        if self._handle is None:
+            return
+        along = self._handle_on_screen()
+        squared = float(along @ along)
+        if squared > LEAST_PX_PER_MM**2:
+            self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
+
     def pick(self, at: QPointF) -> None:
         """Choose and mark the point of the cloud under the cursor."""
         number, points = self._under(at), self._points_seen()
@@ -457,6 +496,13 @@ class SceneView(QWidget):
         super().closeEvent(event)
 
     # ---- inside
+
+    def _handle_on_screen(self) -> Array:
+        """How the handle goes over the screen: (2,) in pixels for one mm."""
+        assert self._handle is not None
+        place, direction = self._handle
+        ends: Array = np.diff(self.screen_positions([place - direction / 2, place + direction / 2]), axis=0)[0]
+        return ends
 
     @property
     def _camera(self) -> SceneCamera:
@@ -553,6 +599,11 @@ class SceneView(QWidget):
         painter.setFont(self.font())
         axes = self._frame if self._axes else None
         paint_overlay(painter, self._scene, self._camera, size, colours, axes=axes, grid_mm=self._grid_mm)
+        if self._handle is not None:
+            at, along = self.screen_positions(self._handle[0][None])[0], self._handle_on_screen()
+            length = float(np.hypot(*along))
+            if np.isfinite([*at, length]).all() and length > LEAST_PX_PER_MM:
+                paint_handle(painter, QPointF(*at), QPointF(*(along / length)), colours)
         if self._marked is not None:
             x, y = self._camera.project(self._marked, size)[0][0]
             if np.isfinite([x, y]).all():

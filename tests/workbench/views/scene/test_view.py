@@ -461,6 +461,45 @@ def test_lines_marks_and_callouts_are_drawn_where_their_points_are_in_any_frame(
     assert_allclose(written["20 mm"], at[[15, 17]].mean(axis=0))
 
 
+@pytest.mark.parametrize("frame", [CAMERA_FRAME, PART])
+def test_a_handle_follows_the_mouse_along_its_direction_and_the_view_stands_still(view, qtbot, frame):
+    view.set_cloud(FLAT)
+    view.set_frame(frame)
+    view.view("top" if frame is CAMERA_FRAME else "iso")
+    view.set_parallel(True)
+    place, direction = np.array([5.0, -10.0, 500.0]), frame.axes[0]
+    view.set_handle((place, direction))
+    before = view.screen_positions(SPARSE)
+    start, end = view.screen_positions([place, place + 25 * direction])
+    pulled = []
+    view.handle_pulled.connect(pulled.append)
+    drag(view, qtbot, [start, (start + end) / 2, end])
+    assert sum(pulled) == pytest.approx(25, abs=0.5)
+    assert_array_equal(view.screen_positions(SPARSE), before)
+    view.set_handle(None)
+    drag(view, qtbot, [start, (start + end) / 2, end])
+    assert sum(pulled) == pytest.approx(25, abs=0.5)
+    assert np.abs(view.screen_positions(SPARSE) - before).max() > 5, "without a handle it turns"
+
+
+def test_beside_its_ring_a_drag_turns_the_view(view, qtbot):
+    view.set_cloud(FLAT)
+    view.set_handle((np.array([0.0, 0, 500]), np.array([1.0, 0, 0])))
+    x, y = view.screen_positions([[0.0, 0, 500]])[0]
+    with qtbot.assertNotEmitted(view.handle_pulled):
+        drag(view, qtbot, [(x + 40, y + 30), (x + 70, y + 30), (x + 90, y + 30)])
+
+
+def test_a_handle_seen_end_on_is_not_pulled(view, qtbot):
+    view.set_cloud(FLAT)
+    view.view("top")
+    view.set_parallel(True)
+    view.set_handle((np.array([0.0, 0, 500]), np.array([0.0, 0, 1])))
+    x, y = view.screen_positions([[0.0, 0, 500]])[0]
+    with qtbot.assertNotEmitted(view.handle_pulled):
+        drag(view, qtbot, [(x, y), (x + 30, y), (x + 60, y)])
+
+
 def test_a_frame_given_again_moves_nothing(view, qtbot):
     view.set_cloud(FLAT)
     view.set_frame(PART)

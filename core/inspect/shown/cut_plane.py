@@ -1,0 +1,82 @@
+"""A plane that is laid through measured points by hand, and the profile seen in it at once. Light to import.
+
+It is looked at, not measured: `CutPlane.section` is the cross-section that measures what is shown.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.inspect.plan.feature_spec import Section
+from core.inspect.profile import averaged
+from core.inspect.shown.shown_features import ShownProfile
+from core.inspect.shown.view_frame import FrameKind, ViewFrame
+from core.model import Pose
+from core.model.arrays import Array
+
+AXES = ("x", "y")
+"""What a plane can be square to."""
+USUAL = Section()
+"""Its half width and its step are those of the profile that is shown."""
+MOST_DRAWN = 2_000
+"""So many points of the profile are drawn while the plane is moved."""
+BEYOND = 0.05
+"""The plane is drawn larger than the points reach by this share of their reach, on every side."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class CutPlane:
+    """The plane on which coordinate number `axis` (an index of AXES) of `frame` is `at_mm`."""
+
+    frame: ViewFrame
+    axis: int
+    at_mm: float
+
+    @property
+    def normal(self) -> Array:
+        """(3,) unit vector of the axis it is square to, in the camera frame."""
+        normal: Array = self.frame.axes[self.axis]
+        return normal
+
+    @property
+    def upwards(self) -> int:
+        """1 where heights are the frame's z; −1 in the camera's, whose z points away from the viewer."""
+        return -1 if self.frame.kind is FrameKind.CAMERA else 1
+
+    def corners(self, coordinates: Array) -> Array:
+        """A patch of it as large as points reach, given in its frame (N, 3): corners (4, 3) in the camera frame.
+
+        Its lower edge comes first.
+        """
+        low, high = coordinates.min(axis=0), coordinates.max(axis=0)
+        low, high = low - BEYOND * (high - low), high + BEYOND * (high - low)
+        places = np.full((4, 3), self.at_mm)
+        places[:, 1 - self.axis] = low[1 - self.axis], high[1 - self.axis], high[1 - self.axis], low[1 - self.axis]
+        lower, upper = (low[2], high[2])[:: self.upwards]
+        places[:, 2] = lower, lower, upper, upper
+        return self.frame.pose_camera_frame.apply(places)
+
+    def profile(self, coordinates: Array) -> ShownProfile:
+        """What it cuts of points (N, 3), given in its frame: positions are the other axis of AXES, heights along z."""
+        near = coordinates[np.abs(coordinates[:, self.axis] - self.at_mm) <= USUAL.half_width_mm]
+        position, height = near[:, 1 - self.axis], self.upwards * near[:, 2]
+        means = averaged(position, height, USUAL.step_mm)
+        return ShownProfile.of(position, height, means, USUAL.step_mm, MOST_DRAWN)
+
+    def section(self, pose_camera_part: Pose | None) -> Section:
+        """The cross-section that measures it; without part coordinates it is placed in the camera's."""
+        pose = Pose.identity() if pose_camera_part is None else pose_camera_part
+        place = np.zeros(3)
+        place[self.axis] = self.at_mm
+        place = pose.inverse().apply(self.frame.pose_camera_frame.apply(place))
+        # a section's positions run along z × normal of its coordinates: so that they run as those shown
+        runs = np.cross(pose.rotation[:, 2], self.normal) @ self.frame.axes[1 - self.axis]
+        normal = pose.rotation.T @ self.normal * (1 if runs >= 0 else -1)
+        return Section(point_mm=_three(place, 3), normal=_three(normal, 9))
+
+
+def _three(values: Array, decimals: int) -> tuple[float, float, float]:
+    x, y, z = (round(float(value), decimals) + 0.0 for value in values)
+    return x, y, z

@@ -1,0 +1,149 @@
+"""A plane laid through the surface by hand: seen at once, kept as one edit."""
+
+from typing import cast
+
+import numpy as np
+import pytest
+from numpy.testing import assert_allclose
+from PySide6.QtCore import Qt
+
+from core.inspect.plan.feature_spec import Auto, FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages import inspect_cases as cases
+from workbench.pages.inspect.page import InspectPage
+from workbench.pages.inspect.surface import CUT
+from workbench.views.scene.contents import Patches
+from workbench.work import jobs
+
+LEFT = Qt.MouseButton.LeftButton
+
+
+@pytest.fixture
+def page(hand_bench, tmp_path, qtbot, monkeypatch):
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
+    cast(HandLane, hand_bench.measuring).held = {jobs.MEASURE_FEATURES}
+    quick = cast(HandLane, hand_bench.quick)
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    made = InspectPage(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
+    qtbot.addWidget(made)
+    made.resize(1280, 800)
+    made.show()
+    made.refreshing.at_once()
+    yield made
+    made.close()
+
+
+def press(page, qtbot, button):
+    assert button.isEnabled(), button.toolTip()
+    qtbot.mouseClick(button, LEFT)
+    settle(page, qtbot)
+
+
+def settle(page, qtbot):
+    qtbot.wait(30)
+    page.refreshing.at_once()
+
+
+def button(page):
+    return page.surface.scene._buttons.widgetForAction(page.surface.cutting)
+
+
+def patch(page):
+    """Corners of the plane as it is drawn, in the frame of the view."""
+    corners = page.surface.scene._scene.items[Patches, CUT].corners[0]
+    return page.surface.scene.frame.coordinates(corners)
+
+
+@pytest.fixture
+def cut(page, qtbot):
+    """The page with a plane laid through the surface."""
+    press(page, qtbot, button(page))
+    return page
+
+
+def test_the_button_lays_a_plane_through_the_part_and_takes_it_away(page, qtbot):
+    assert page.surface.cut.isHidden()
+    press(page, qtbot, button(page))
+    assert page.surface.cut.isVisible() and page.surface.cutting.isChecked()
+    upper = page.presenter.scan.view.points[page.presenter.scan.gauge.upper.indices]
+    middle = np.median(page.surface.scene.frame.coordinates(upper)[:, 0])
+    assert_allclose(patch(page)[:, 0], middle, atol=1e-9)
+    assert page.surface.cut.at.value() == pytest.approx(middle, abs=0.006)
+    press(page, qtbot, button(page))
+    assert page.surface.cut.isHidden() and (Patches, CUT) not in page.surface.scene._scene.items
+    assert page.presenter.model.undo_stack.count() == 0, "looking is no edit"
+
+
+def test_the_profile_holds_the_points_near_the_plane_as_it_is_moved(cut, qtbot):
+    for at in (-10.0, 12.5):
+        cut.surface.cut.at.setValue(at)
+        settle(cut, qtbot)
+        coordinates = cut.surface.scene.frame.coordinates(cut.presenter.scan.view.points)
+        near = coordinates[np.abs(coordinates[:, 0] - at) <= 1.0]
+        drawn = cut.surface.cut.chart._curves["points"]
+        assert_allclose(drawn.x, np.sort(near[:, 1]))
+        assert set(np.round(drawn.y, 6)) == set(np.round(near[:, 2], 6))
+        assert_allclose(patch(cut)[:, 0], at, atol=1e-9)
+
+
+def test_points_hidden_by_their_sigma_are_not_in_the_profile(cut, qtbot):
+    before = len(cut.surface.cut.chart._curves["points"].x)
+    cut.presenter.clip(0.02)
+    settle(cut, qtbot)
+    assert len(cut.surface.cut.chart._curves["points"].x) < before
+
+
+def test_the_ring_in_3d_moves_the_plane_up_to_where_points_are(cut, qtbot):
+    before = cut.presenter.cut.plane.at_mm
+    cut.surface.scene.handle_pulled.emit(4.0)
+    settle(cut, qtbot)
+    assert patch(cut)[0, 0] == pytest.approx(before + 4)
+    cut.surface.scene.handle_pulled.emit(1e4)
+    settle(cut, qtbot)
+    coordinates = cut.surface.scene.frame.coordinates(cut.presenter.scan.view.points)
+    assert patch(cut)[0, 0] == pytest.approx(coordinates[:, 0].max())
+
+
+def test_square_to_the_other_axis_it_runs_along_the_first(cut, qtbot):
+    cut.surface.cut.axis.setCurrentIndex(1)
+    settle(cut, qtbot)
+    assert np.ptp(patch(cut)[:, 1]) < 1e-9 and np.ptp(patch(cut)[:, 0]) > 10
+
+
+def test_in_another_frame_it_stands_square_to_that(cut, qtbot):
+    cut.presenter.bench.settings.part_frame = False
+    settle(cut, qtbot)
+    assert np.ptp(patch(cut)[:, 0]) < 1e-9
+    assert cut.surface.cut.chart._names[2] == "−z"
+
+
+def test_kept_it_is_a_section_of_the_plan_and_one_undo_takes_it_back(cut, qtbot):
+    cut.surface.cut.at.setValue(5.0)
+    press(cut, qtbot, cut.surface.cut.keep)
+    (spec,) = cut.presenter.features.plan.features
+    assert spec.kind == "section" and cut.presenter.features.chosen == spec.name
+    place, normal = np.array(spec.section.point_mm), np.array(spec.section.normal)
+    drawn = cut.surface.scene._scene.items[Patches, CUT].corners[0]
+    assert_allclose((drawn - place) @ normal, 0, atol=2e-3)
+    cut.presenter.features.plan.ordered()
+    cut.presenter.model.undo_stack.undo()
+    assert cut.presenter.features.plan.features == ()
+
+
+def test_without_the_plans_part_coordinates_it_cannot_be_kept_and_says_why(cut, qtbot):
+    base = FeatureSpec("base", "plane"), FeatureSpec("side", "plane", (Auto(2),))
+    cut.presenter.features.put_plan(InspectionPlan(base, PartFrame("base", "side")), "a frame")
+    settle(cut, qtbot)
+    keep = cut.surface.cut.keep
+    assert not keep.isEnabled() and "Measure the features first" in keep.toolTip()
+
+
+def test_another_scan_has_no_plane_yet(cut, qtbot):
+    cut.presenter.scan.forget()
+    settle(cut, qtbot)
+    assert cut.surface.cut.isHidden() and not cut.surface.cutting.isEnabled()
+    cut.presenter.entered()
+    qtbot.waitUntil(lambda: cut.presenter.scan.view is not None)
+    settle(cut, qtbot)
+    assert cut.surface.cut.isHidden() and cut.surface.cutting.isEnabled()

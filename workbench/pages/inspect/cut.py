@@ -1,0 +1,109 @@
+"""A plane laid through the surface by hand: where it is, what it shows, and how it becomes a cross-section."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+from PySide6.QtCore import QObject, Signal
+
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.shown.cut_plane import CutPlane
+from core.inspect.shown.shown_features import ShownProfile
+from core.inspect.shown.view_frame import ViewFrame
+from core.model.arrays import Array
+from workbench.language import tr
+from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.scan import InspectScan
+
+SECTION = "section"
+"""The kind of feature that measures it."""
+
+
+class InspectCut(QObject):
+    """The plane stands in the frame of the view; nothing of it is an edit before `keep`."""
+
+    changed = Signal()
+
+    def __init__(self, features: InspectFeatures, scan: InspectScan, frame: Callable[[], ViewFrame]) -> None:
+        super().__init__()
+        self._features, self._scan, self._frame = features, scan, frame
+        self._on, self._axis = False, 0
+        self._plane: CutPlane | None = None
+        self._points: Array | None = None
+        self._coordinates: Array = np.empty((0, 3))
+
+    @property
+    def plane(self) -> CutPlane | None:
+        """The plane, if one is shown; it keeps its coordinate as long as the frame is of one kind."""
+        view, frame = self._scan.view, self._frame()
+        if not self._on or view is None or not len(view):
+            return None
+        if self._plane is not None and self._points is view.points and frame.same_as(self._plane.frame):
+            return self._plane
+        before, self._points, self._coordinates = self._plane, view.points, frame.coordinates(view.points)
+        if before is not None and before.frame.kind is frame.kind:
+            self._plane = replace(before, frame=frame, at_mm=self._within_reach(before.at_mm))
+        else:
+            part = slice(None) if view.gauge is None else view.gauge.upper.indices
+            self._plane = CutPlane(frame, self._axis, float(np.median(self._coordinates[part, self._axis])))
+        return self._plane
+
+    @property
+    def reach(self) -> tuple[float, float]:
+        """From where to where it can be moved, in mm."""
+        along = self._coordinates[:, self._axis]
+        return float(along.min()), float(along.max())
+
+    def corners(self) -> Array:
+        """Of the plane, (4, 3) in mm in the camera frame."""
+        assert self.plane is not None
+        return self.plane.corners(self._coordinates)
+
+    def profile(self, count: int) -> ShownProfile:
+        """What it cuts of the first `count` points."""
+        assert self.plane is not None
+        return self.plane.profile(self._coordinates[:count])
+
+    def show(self, shown: bool) -> None:
+        """Lay it through the part, or take it away."""
+        if shown != self._on:
+            self._on, self._plane = shown, None
+            self.changed.emit()
+
+    def square_to(self, axis: int) -> None:
+        """Lay it square to another axis, through the middle of the part."""
+        if axis != self._axis:
+            self._axis, self._plane = axis, None
+            self.changed.emit()
+
+    def move_to(self, at_mm: float) -> None:
+        """Move it, as far as the points reach."""
+        plane = self.plane
+        if plane is not None:
+            self._plane = replace(plane, at_mm=self._within_reach(at_mm))
+            self.changed.emit()
+
+    def pull(self, by_mm: float) -> None:
+        """Move it along its axis."""
+        if self.plane is not None:
+            self.move_to(self.plane.at_mm + by_mm)
+
+    def _within_reach(self, at_mm: float) -> float:
+        low, high = self.reach
+        return min(max(at_mm, low), high)
+
+    @property
+    def cannot_keep(self) -> str:
+        """Why it cannot become a feature now, or ""."""
+        if self._features.plan.frame is not None and self._features.pose_camera_part is None:
+            return tr("Measure the features first: the plan's part coordinates are not known.")
+        return ""
+
+    def keep(self) -> None:
+        """Put it into the plan as a cross-section; one edit, undoable."""
+        plane, features = self.plane, self._features
+        if plane is not None and not self.cannot_keep:
+            section = plane.section(features.pose_camera_part)
+            features.put(FeatureSpec(features.free_name(SECTION), SECTION, section=section))

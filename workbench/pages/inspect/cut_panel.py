@@ -1,0 +1,68 @@
+"""Below the 3D view: where the plane is that is laid through the surface, and the profile in it."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QSignalBlocker
+from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QWidget
+
+from core.inspect.shown.cut_plane import AXES
+from workbench.language import tr
+from workbench.pages.inspect.cut import InspectCut
+from workbench.theme import icon
+from workbench.views.colours import PROPOSED
+from workbench.views.common import SpinBox
+from workbench.views.layouts import in_column, in_row
+from workbench.views.plots.lines import LineChart
+
+CHART_PX = 150
+
+
+class CutPanel(QWidget):
+    """Direction and place of the plane in numbers, and its profile."""
+
+    def __init__(self, cut: InspectCut, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._cut = cut
+        self._names = ("", "")
+        self.axis, self.at, self.chart = QComboBox(), SpinBox(), LineChart()
+        self.keep = QPushButton(icon("mdi6.plus"), tr("Add as a section"))
+        for name in AXES:
+            self.axis.addItem(tr("square to {axis}", axis=name))
+        self.axis.setAccessibleName(tr("What the cut is square to"))
+        self.at.setAccessibleName(tr("Where the cut is"))
+        self.at.setToolTip(tr("Where the cut is, in the frame of the view; or drag the ring in the 3D view"))
+        self.at.setSuffix(" mm")
+        self.at.setDecimals(2)
+        self.at.setKeyboardTracking(False)
+        self.chart.setFixedHeight(CHART_PX)
+        row = in_row(QLabel(tr("Cut")), self.axis, self.at, spacing=6)
+        row.addStretch(1)
+        row.addWidget(self.keep)
+        in_column(row, self.chart, on=self, spacing=4)
+        self.axis.currentIndexChanged.connect(cut.square_to)
+        self.at.valueChanged.connect(cut.move_to)
+        self.keep.clicked.connect(cut.keep)
+
+    def refresh(self, count: int) -> None:
+        """Show the plane and what it cuts of the first `count` points."""
+        cut, plane = self._cut, self._cut.plane
+        if plane is None:
+            return
+        low, high = cut.reach
+        with QSignalBlocker(self.at):
+            self.at.setRange(low, high)
+            self.at.setValue(plane.at_mm)
+        profile = cut.profile(count)
+        names = AXES[1 - plane.axis], "z" if plane.upwards > 0 else "−z"
+        if names != self._names:  # each call draws the chart anew
+            self._names = names
+            self.chart.set_axes(names[0], "mm", names[1], "mm")
+        self.chart.set_curve("points", profile.position, profile.height, colour=PROPOSED, points=True)
+        self.chart.set_curve("mean", *profile.mean_line)
+        self.show_keep()
+
+    def show_keep(self) -> None:
+        """Whether it can be kept, and why not."""
+        why_not = self._cut.cannot_keep
+        self.keep.setEnabled(not why_not)
+        self.keep.setToolTip(why_not or tr("Measure this cut as a feature of the plan; undoable"))
