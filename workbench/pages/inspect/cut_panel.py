@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QWidget
 
@@ -24,7 +26,7 @@ class CutPanel(QWidget):
         super().__init__(parent)
         self._cut = cut
         self._names = ("", "")
-        self.axis, self.at, self.chart = QComboBox(), SpinBox(), LineChart()
+        self.axis, self.at = QComboBox(), SpinBox()
         self.keep = QPushButton(icon("mdi6.plus"), tr("Add as a section"))
         for name in AXES:
             self.axis.addItem(tr("square to {axis}", axis=name))
@@ -34,14 +36,21 @@ class CutPanel(QWidget):
         self.at.setSuffix(" mm")
         self.at.setDecimals(2)
         self.at.setKeyboardTracking(False)
-        self.chart.setFixedHeight(CHART_PX)
         row = in_row(QLabel(tr("Cut")), self.axis, self.at, spacing=6)
         row.addStretch(1)
         row.addWidget(self.keep)
-        in_column(row, self.chart, on=self, spacing=4)
+        self._column = in_column(row, on=self, spacing=4)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)
         self.keep.clicked.connect(cut.keep)
+
+    @cached_property
+    def chart(self) -> LineChart:
+        """The profile; made when there first is one, so that the window's start does not wait for it."""
+        chart = LineChart()
+        chart.setFixedHeight(CHART_PX)
+        self._column.addWidget(chart)
+        return chart
 
     def refresh(self, count: int) -> None:
         """Show the plane and what it cuts of the first `count` points."""
