@@ -17,6 +17,7 @@ from workbench.views.layouts import in_column, in_row
 from workbench.views.plots.lines import LineChart
 
 CHART_PX = 150
+"""Height of the profile: the surface above it keeps most of the room."""
 
 
 class CutPanel(QWidget):
