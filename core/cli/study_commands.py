@@ -15,7 +15,7 @@ EPILOG = label(
 )
 
 studies = typer.Typer(
-    help="Judge a way of measuring: repeats, type-1 study, gauge R&R, acceptance check.",
+    help="Judge a way of measuring: repeats, type-1 study, gauge R&R, acceptance check; or a series of parts.",
     epilog=EPILOG,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
@@ -86,6 +86,37 @@ def type1(
     from core.cli import studying
 
     study = studying.type1(files, characteristic, nominal, tolerance, resolution)
+    studying.finish(study, out, as_json=json)
+
+
+@studies.command(epilog=EPILOG)
+def series(
+    files: Annotated[
+        list[Path],
+        typer.Argument(
+            metavar="FILE", help="One CSV table, or folders of results or projects, in the order they were measured."
+        ),
+    ],
+    characteristic: Characteristic = "thickness",
+    nominal: Nominal = None,
+    tolerance: Tolerance = None,
+    u: Annotated[
+        float | None,
+        typer.Option("--u", metavar="VALUE", help="Standard uncertainty common to all parts; else what they state."),
+    ] = None,
+    subgroup: Annotated[
+        int, typer.Option("--subgroup", metavar="N", help="So many parts in a row are a subgroup; 1: single values.")
+    ] = 1,
+    out: Out = None,
+    json: Json = False,
+) -> None:
+    """Control charts of parts measured one after another, Cp, Cpk, Pp and Ppk with intervals, Western Electric rules.
+
+    Columns of a table: value, and if you like part, u_mm (or U_mm and k).
+    """
+    from core.cli import studying
+
+    study = studying.series(files, characteristic, nominal, tolerance, u, subgroup)
     studying.finish(study, out, as_json=json)
 
 

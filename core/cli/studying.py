@@ -12,8 +12,9 @@ import typer
 from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, exit_code
 from core.cli.output import Rows, words
-from core.errors import InputError
-from core.files.study.input import read_crossed, read_readings, read_repeats
+from core.errors import InputError, WrongValue
+from core.files.project.folder import is_project, results_folder
+from core.files.study.input import Repeats, read_crossed, read_readings, read_repeats
 from core.files.study.study_file import Study, study_values, write_study
 from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
@@ -21,8 +22,10 @@ from core.progress import Progress
 from core.report.wording import decimals_of
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
+from core.study.capability import LIMIT as CAPABILITY
 from core.study.grr import ACCEPTABLE, AnovaRow, Component, GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
+from core.study.series import SeriesStudy, StatedUncertainty, series_study, stated_uncertainty
 from core.study.type1 import CAPABLE, LIMIT, Type1Study, type1_study
 
 GOOD = ("conforming", CAPABLE, ACCEPTABLE)
@@ -41,22 +44,10 @@ def repeats(
     files: Sequence[Path], name: str, nominal: float | None, tolerance: float | None, u: float | None, guard: float
 ) -> RepeatStudy:
     """Repeats of a table or of folders."""
-    _finite(nominal, "--nominal")
     _not_negative(u, "--u")
     _not_negative(guard, "--guard")
     found = read_repeats(files, name)
-    asked = found.limits
-    if nominal is None and asked is not None:
-        nominal = asked.nominal
-    limits = _both_sides(tolerance)
-    if limits is None and asked is not None and nominal == asked.nominal:
-        limits = asked.lower, asked.upper
-    if limits is not None and nominal is None:
-        raise InputError(
-            Message("study.tolerance_without_nominal", "a tolerance needs a nominal value"),
-            where="--tolerance",
-            todo=Message("advice.give_nominal", "give --nominal as well"),
-        )
+    nominal, limits = _asked(found, nominal, tolerance)
     if len(found.values) == 1 and u is None and found.u is None:
         raise InputError(
             Message("study.one_value_without_u", "one value alone, with no stated uncertainty, is no study"),
@@ -105,6 +96,34 @@ def type1(
             todo=Message("advice.give_value_above_zero", "give a value above 0"),
         )
     return type1_study(found.values, nominal, limits[1] - limits[0], resolution=resolution, unit=found.unit)
+
+
+def series(
+    files: Sequence[Path], name: str, nominal: float | None, tolerance: float | None, u: float | None, size: int
+) -> SeriesStudy:
+    """A series of a table, or of folders of results or projects in the order given."""
+    _not_negative(u, "--u")
+    found = read_repeats([results_folder(path) if is_project(path) else path for path in files], name)
+    nominal, limits = _asked(found, nominal, tolerance)
+    lower, upper = (-math.inf, math.inf) if limits is None or nominal is None else (nominal + end for end in limits)
+    stated = None
+    if u is not None:
+        stated = StatedUncertainty(0.0, u)
+    elif found.u is not None:
+        stated = stated_uncertainty(found.u, found.budgets)
+    if len(found.values) < 2:
+        raise InputError(
+            Message("study.series_too_few", "a series needs two finite values or more"),
+            where=files[0],
+            todo=Message("advice.measure_more_parts", "measure more parts"),
+        )
+    try:
+        return series_study(
+            found.values, (lower, upper), size=size, stated=stated, name=name, labels=found.labels, unit=found.unit,
+            doubted=found.doubted,
+        )  # fmt: skip
+    except WrongValue as error:
+        raise InputError(error.what, where="--subgroup") from error
 
 
 def grr(file: Path, name: str, tolerance: float | None) -> GrrStudy:
@@ -176,6 +195,26 @@ def acceptance(
     return acceptance_check(readings, given)
 
 
+def _asked(
+    found: Repeats, nominal: float | None, tolerance: float | None
+) -> tuple[float | None, tuple[float, float] | None]:
+    """Nominal value and deviations permitted: those given, else those that the results agree on."""
+    _finite(nominal, "--nominal")
+    asked = found.limits
+    if nominal is None and asked is not None:
+        nominal = asked.nominal
+    limits = _both_sides(tolerance)
+    if limits is None and asked is not None and nominal == asked.nominal:
+        limits = asked.lower, asked.upper
+    if limits is not None and nominal is None:
+        raise InputError(
+            Message("study.tolerance_without_nominal", "a tolerance needs a nominal value"),
+            where="--tolerance",
+            todo=Message("advice.give_nominal", "give --nominal as well"),
+        )
+    return nominal, limits
+
+
 def _is_length(value: float | None) -> bool:
     return value is not None and value > 0 and math.isfinite(value)
 
@@ -217,6 +256,8 @@ def study_rows(study: Study) -> Rows:
             found = _grr(study)
         case AcceptanceCheck():
             found = [row for one in study.quantities for row in _quantity(one)]
+        case SeriesStudy():
+            found = _series(study)
     return [*found, (tr("verdict"), told(study.verdict) if study.verdict else tr("none: no limit was given"))]
 
 
@@ -324,6 +365,32 @@ def _type1(study: Type1Study) -> Rows:
             value=study.resolution, unit=unit, share=study.resolution_share, judged=judged,
         )  # fmt: skip
         lines.append((tr("resolution"), said))
+    return lines
+
+
+def _series(study: SeriesStudy) -> Rows:
+    digits, unit = max(decimals_of(study.s) + 1, 3), study.unit
+
+    def shown(value: float) -> str:
+        return tr("none") if math.isinf(value) else f"{_fixed(value, digits)} {unit}"
+
+    lines = [
+        (told(study.name), tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s))),
+        (tr("limits"), tr("{lower} to {upper}", lower=shown(study.lower), upper=shown(study.upper))),
+    ]
+    if study.charts is not None:
+        names = (tr("X̄ chart"), tr("s chart")) if study.size > 1 else (tr("single values"), tr("moving range"))
+        for name, chart in zip(names, (study.charts.location, study.charts.spread), strict=True):
+            lower, centre, upper = map(shown, (chart.lower, chart.centre, chart.upper))
+            said = tr("centre {centre}, limits {lower} to {upper}", centre=centre, lower=lower, upper=upper)
+            lines.append((name, said))
+    for title, index in study.indices.items():
+        lines.append((title, _with_interval(_index(index.value), *map(_index, index.interval))))
+    if study.indices:
+        lines.append((tr("asked"), tr("Cpk and Ppk surely {limit} or more", limit=CAPABILITY)))
+    if study.share_of_u is not None:
+        low, high = map(_share, study.share_of_u)
+        lines.append((tr("measurement in s²"), tr("surely {low}, at most {high}", low=low, high=high)))
     return lines
 
 

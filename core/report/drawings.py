@@ -22,10 +22,10 @@ from core.report.plots import figures
 from core.report.plots.charts import deviation_figure, points_figure
 from core.report.plots.overlay_plot import overlay_figure
 from core.report.plots.profile_plot import profiles_figure
-from core.report.plots.run_chart import repeats_figure, run_chart_figure
-from core.report.sections.studies import study_lines, study_values
+from core.report.plots.run_chart import control_charts_figure, repeats_figure, run_chart_figure
+from core.report.sections.studies import study_charts, study_lines, study_values
 
-SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM = (
+SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM, CONTROL_MM = (
     104.0,
     116.0,
     78.0,
@@ -34,6 +34,7 @@ SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, P
     42.0,
     80.0,
     62.0,
+    76.0,
 )
 """Heights of the pictures at scale 1."""
 
@@ -84,6 +85,8 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
 
 
 def _study_figure(look: ReportLook, study: Mapping[str, Any], width: float) -> Figure:
+    if charts := study_charts(study):
+        return control_charts_figure(look, charts, study["unit"], width, CONTROL_MM)
     U = [scan["U"] if scan["U"] is not None else math.nan for scan in study.get("scans", ())]
     return run_chart_figure(look, study_values(study), U, study_lines(study), study["unit"], width, CHART_MM)
 

@@ -1,1 +1,1 @@
-"""Verdicts about a way of measuring: repeats, gauge studies, uncertainty budgets, acceptance checks."""
+"""Verdicts about a way of measuring: repeats, gauge studies, budgets, acceptance checks; and about series of parts."""

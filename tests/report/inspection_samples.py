@@ -18,6 +18,7 @@ from core.study.acceptance import Reading, acceptance_check
 from core.study.budget import from_stated
 from core.study.grr import grr_study
 from core.study.repeats import Requirement, repeat_study
+from core.study.series import StatedUncertainty, series_study
 from core.study.type1 import type1_study
 
 from .report_samples import block_content, repeats
@@ -66,11 +67,14 @@ def studies():
     repeated = (50.004 + 0.006 * rng.standard_normal(12)).tolist()
     budget = from_stated(repeated, [0.01] * 12)
     known = {"complete": True, "U": [0.02] * 12, "asked": Requirement(50.0, (-0.1, 0.1))}
+    series = (50.0 + 0.01 * rng.standard_normal(40)).tolist()
+    series[25] += 0.06
     readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place) for place in range(10)]
     readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
     made = (
         type1_study(values, 50.0, 0.4),
         grr_study(parts, tolerance=0.4),
+        series_study(series, (49.9, 50.1), stated=StatedUncertainty(0.003, 0.006), name="width"),
         repeat_study(repeated, budget, **known),
         acceptance_check(readings, {"form": 0.05, "size": 0.012}),
     )

@@ -257,3 +257,43 @@ def test_folders_that_are_none_and_names_that_are_not_there_are_told(tmp_path):
     assert "no calibrated value" in trisect("study", "acceptance", folder, folder).sentence
     bar = trisect("study", "acceptance", folder, "--artefact", "bar", "--nominal", 80)
     assert "the spheres of the bar have no diameter; give it in mm" in bar.sentence
+
+
+def test_a_series_has_charts_indices_and_the_point_that_breaks_a_rule(tmp_path):
+    values = 50 + 0.01 * np.random.default_rng(4).standard_normal(60)
+    values[30] += 0.08
+    rows = [f"part {n};{value};0.002" for n, value in enumerate(values, start=1)]
+    path = table(tmp_path, "\n".join(["part;value;u_mm", *rows]))
+    said = trisect("study", "series", path, "--nominal", 50, "--tolerance", 0.1, "--out", tmp_path / "study")
+    assert said.code == 1 and "Cpk" in said.out and "(95 %: " in said.out
+    assert "Rule 1" in said.out and "part 31" in said.out
+    found = json.loads((tmp_path / "study" / "study.json").read_text())
+    assert found["verdict"] == "not proven" and {"rule": 1, "place": 30} in found["chart"]["breaks"]
+    assert found["share_of_u"][1] == pytest.approx((0.002 / found["s"]) ** 2)
+
+
+def test_a_series_of_results_and_projects_takes_their_limits_and_budgets(tmp_path):
+    rows = (Contribution(CAMERA, 0.008), Contribution(SWEEP_PLANES, 0.006))
+    values = 50 + 0.02 * np.random.default_rng(4).standard_normal(21)
+    folders = []
+    for n, value in enumerate(values):
+        folder = tmp_path / f"part{n}"
+        if n:
+            folders.append(results(folder, float(value), 0.01, rows))
+        else:
+            folder.mkdir()
+            (folder / "project.json").write_text("{}")
+            results(folder / "results", float(value), 0.01, rows)
+            folders.append(folder)
+    found = json.loads(trisect("study", "series", *folders, "--json").out)
+    assert (found["lower_limit"], found["upper_limit"], found["n"]) == (49.8, 50.2, 21)
+    assert (
+        found["u"] == pytest.approx({"own": 0.006, "whole": 0.01})
+        and found["indices"]["Cpk"]["interval"][0] < found["indices"]["Cpk"]["value"]
+    )
+    assert trisect("study", "series", *folders, "--subgroup", 30).code == 2
+
+
+def test_a_short_series_says_so_instead_of_drawing_limits(tmp_path):
+    said = trisect("study", "series", of_values(tmp_path, [50.01, 50.03, 50.02]), "--nominal", 50, "--tolerance", 0.1)
+    assert said.code == 1 and "none are drawn" in said.out and "Cpk" not in said.out.replace("Cp or Cpk", "")

@@ -85,7 +85,10 @@ class KeptStudy:
     id: Annotated[str, Field(pattern=r"^[0-9a-f]+$", description="the name of a folder below studies")]
     kind: Annotated[
         str,
-        Field(pattern="^(repeats|type1|grr|acceptance)$", description='"repeats", "type1", "grr" or "acceptance"'),
+        Field(
+            pattern="^(repeats|type1|grr|acceptance|series)$",
+            description='"repeats", "type1", "grr", "acceptance" or "series"',
+        ),
     ]
     title: str
     included: bool = True

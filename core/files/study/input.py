@@ -2,7 +2,8 @@
 
 Columns (others are passed over):
 
-- repeats, type1: `value` (or value_mm, thickness_mm), and if you like `scan`, `u_mm` or `U_mm` with `k` (else k = 2);
+- repeats, type1, series: `value` (or value_mm, thickness_mm), and if you like `scan` or `part`, `u_mm` or `U_mm` with
+  `k` (else k = 2);
 - grr: `part`, `operator`, and `value`, or `result`: the folder of results of that measurement, seen from the table;
 - acceptance: `quantity` (form, size, spacing, flatness), `position`, `measured_mm`, and if you like `calibrated_mm`,
   `u_mm`.
@@ -89,9 +90,15 @@ def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
     table = _table_among(paths)
     if table is None:
         return _of_results(paths, [measured_in(path, name) for path in paths], name)
+    return repeats_of(table, name)
+
+
+def repeats_of(table: Table, name: str = THICKNESS) -> Repeats:
+    """Repeats from a table; InputError if something in it is wrong."""
     column = table.name_of(VALUE) or VALUE[0]
     values = table.numbers(column)
-    labels = table.texts("scan") if "scan" in table.columns else tuple(str(row + 1) for row in range(len(table)))
+    called = table.name_of(("scan", "part"))
+    labels = table.texts(called) if called else tuple(str(row + 1) for row in range(len(table)))
     u, expanded = table.numbers_if_any("u_mm", "u", "u_deg"), table.numbers_if_any("U_mm", "U", "U_deg")
     if expanded is not None:
         factors = table.numbers_if_any("k") or (2.0,) * len(table)

@@ -23,9 +23,11 @@ from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, Re
 from core.study.budget import UncertaintyBudget, add_up
 from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
+from core.study.series import SeriesStudy, StatedUncertainty, series_study
+from core.study.series_chart import Chart
 from core.study.type1 import Type1Study, type1_study
 
-Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck
+Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck | SeriesStudy
 
 SCHEMA = 1
 """Version of the file's layout."""
@@ -57,6 +59,8 @@ def study_values(study: Study) -> dict[str, Any]:
             values = {"kind": "grr", **_grr(study)}
         case AcceptanceCheck():
             values = {"kind": "acceptance", "unit": "mm", "quantities": [_quantity(one) for one in study.quantities]}
+        case SeriesStudy():
+            values = {"kind": "series", **_series(study)}
     return {**values, "verdict": study.verdict, "notes": [kept(note) for note in study.notes]}
 
 
@@ -196,6 +200,41 @@ def _quantity(one: CheckedQuantity) -> dict[str, Any]:
     }
 
 
+def _series(study: SeriesStudy) -> dict[str, Any]:
+    charts, stated = study.charts, study.stated
+    return {
+        "characteristic": study.name,
+        "unit": study.unit,
+        "parts": [
+            {"part": label, "value": value} for label, value in zip(study.labels, study.values.tolist(), strict=True)
+        ],
+        "subgroup_size": study.size,
+        "lower_limit": study.lower,
+        "upper_limit": study.upper,
+        "u": None if stated is None else {"own": stated.own, "whole": stated.whole},
+        "share_of_u": study.share_of_u,
+        "doubted": list(study.doubted),
+        "n": study.n,
+        "mean": study.mean,
+        "s": study.s,
+        "sigma_within": None if charts is None else charts.sigma,
+        "sigma_within_dof": None if charts is None else charts.dof,
+        "chart": None if charts is None else _chart(charts.location),
+        "spread_chart": None if charts is None else _chart(charts.spread),
+        "indices": {name: asdict(index) for name, index in study.indices.items()},
+    }
+
+
+def _chart(chart: Chart) -> dict[str, Any]:
+    return {
+        "points": chart.points,
+        "centre": chart.centre,
+        "lower": chart.lower,
+        "upper": chart.upper,
+        "breaks": [asdict(one) for one in chart.breaks],
+    }
+
+
 _TODO = Message(
     "advice.make_study_again", "make the study again{command}", command=Command("trisect study … --out DIR")
 )
@@ -321,7 +360,45 @@ class _Acceptance(ResultFile):
         return acceptance_check(readings, limits, k=self.quantities[0].k if self.quantities else 2.0)
 
 
-_StudyFile: Any = Annotated[_Repeats | _Type1 | _Grr | _Acceptance, Field(discriminator="kind")]
+class _Part(ResultFile):
+    part: str
+    value: Finite
+
+
+class _StatedU(ResultFile):
+    own: Finite = Field(ge=0)
+    whole: Finite = Field(ge=0)
+
+
+class _Series(ResultFile):
+    kind: Literal["series"]
+    characteristic: str
+    unit: str
+    parts: list[_Part]
+    subgroup_size: int
+    lower_limit: Finite | None = None
+    upper_limit: Finite | None = None
+    u: _StatedU | None = None
+    doubted: list[str] = Field(default_factory=list)
+
+    def study(self) -> SeriesStudy:
+        limits = (
+            -math.inf if self.lower_limit is None else self.lower_limit,
+            math.inf if self.upper_limit is None else self.upper_limit,
+        )
+        return series_study(
+            [one.value for one in self.parts],
+            limits,
+            size=self.subgroup_size,
+            stated=None if self.u is None else StatedUncertainty(self.u.own, self.u.whole),
+            name=self.characteristic,
+            labels=[one.part for one in self.parts],
+            unit=self.unit,
+            doubted=self.doubted,
+        )
+
+
+_StudyFile: Any = Annotated[_Repeats | _Type1 | _Grr | _Acceptance | _Series, Field(discriminator="kind")]
 
 
 def read_study(path: Path) -> Study:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Literal, cast
@@ -14,7 +15,7 @@ from core.files.json_text import to_json
 from core.files.project.data import KeptStudy
 from core.files.project.folder import is_project, read_project, results_folder
 from core.files.reading import read_bytes, read_text
-from core.files.study.input import THICKNESS, crossed_of, readings_of
+from core.files.study.input import THICKNESS, Repeats, crossed_of, readings_of, repeats_of
 from core.files.study.results import measured_in
 from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
 from core.files.study.table import separator_of, table_of
@@ -23,14 +24,16 @@ from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
 from core.study.grr import GrrStudy, grr_study
+from core.study.series import SeriesStudy, series_study, stated_uncertainty
 from core.study.type1 import Type1Study, type1_study
 
-Kind = Literal["grr", "acceptance"]
+Kind = Literal["grr", "acceptance", "series"]
 TABLE = "table.csv"
 """What a study was made of, beside its study.json."""
 HEADS: Mapping[str, str] = {
     "grr": "part;operator;value",
     "acceptance": "quantity;position;measured_mm;calibrated_mm;u_mm",
+    "series": "part;value_mm;u_mm",
 }
 _ID = 12
 """Hex digits of a study's hash that name it."""
@@ -46,13 +49,14 @@ def keep_study(
     folder
         The project's.
     kind
-        "grr" or "acceptance".
+        "grr", "acceptance" or "series".
     text
         The table as CSV with a head line; see `core.files.study.input`.
     base
         The folder that names of results in the table are seen from.
     limits
         In mm. Of a gauge R&R study "tolerance": T, its full width. Of an acceptance check the limit of each quantity.
+        Of a series "lower" and "upper", and "size": values a subgroup.
     progress
         Called with what is being done; may raise Cancelled.
 
@@ -71,6 +75,8 @@ def keep_study(
                 found.values, parts=found.parts, operators=found.operators,
                 tolerance=limits.get("tolerance"), unit=found.unit,
             )  # fmt: skip
+        elif kind == "series":
+            study = _series(repeats_of(table), limits)
         else:
             study = acceptance_check(readings_of(table), cast(Mapping[Quantity, float], limits))
     except InputError as error:
@@ -127,7 +133,8 @@ def project_rows(
     """Rows of a study's table, under its HEADS, from another project's results.
 
     For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
-    acceptance check what `read_positions` finds in its cloud, the project standing for the position.
+    acceptance check what `read_positions` finds in its cloud, the project standing for the position. For a series its
+    part, its thickness and the standard uncertainty of that.
 
     Parameters
     ----------
@@ -164,6 +171,9 @@ def project_rows(
         values = [one.thickness_mm for one in project.repeats]
         values = values or [measured_in(results_folder(folder), THICKNESS).value]
         rows: list[Sequence[object]] = [(part, operator, value) for value in values]
+    elif kind == "series":
+        found = measured_in(results_folder(folder), THICKNESS)
+        rows = [(project.info.serial or project.info.name or folder.name, found.value, found.u)]
     else:
         readings = read_positions(
             [results_folder(folder)], artefact, calibrated_mm=calibrated_mm, u_mm=u_mm, diameter_mm=diameter_mm,
@@ -189,6 +199,17 @@ def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
     return KeptStudy(id_, str(study_values(study)["kind"]), _title(study))
 
 
+def _series(found: Repeats, limits: Mapping[str, float]) -> SeriesStudy:
+    return series_study(
+        found.values,
+        (limits.get("lower", -math.inf), limits.get("upper", math.inf)),
+        size=int(limits.get("size", 1)),
+        stated=None if found.u is None else stated_uncertainty(found.u, ()),
+        labels=found.labels,
+        unit=found.unit,
+    )
+
+
 def _title(study: Study) -> str:
     match study:
         case GrrStudy():
@@ -197,5 +218,7 @@ def _title(study: Study) -> str:
             return f"{study.n} repeats, reference {study.reference:g} {study.unit}, T {study.tolerance:g} {study.unit}"
         case AcceptanceCheck():
             return ", ".join(f"{one.title} ×{len(one.readings)}" for one in study.quantities)
+        case SeriesStudy() if study.size > 1:
+            return f"{study.points} × {study.size} × {study.name}"
         case _:
             return f"{len(study.values)} × {study.name}"

@@ -1,8 +1,9 @@
-"""The run chart: values in the order of measuring, with lines to compare them with; beside it their histogram."""
+"""Values in the order of measuring: the run chart with its histogram, and the two control charts of a series."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -11,7 +12,7 @@ from matplotlib.ticker import MaxNLocator
 
 from core.messages import label
 from core.report.content import RepeatLine
-from core.report.layout.style import MUTED, ReportLook
+from core.report.layout.style import INK, MUTED, ReportLook
 from core.report.plots.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
 from core.study.repeats import histogram
 
@@ -79,6 +80,54 @@ def run_chart_figure(
             last = _histogram(look, figure.add_axes(place, sharey=axes), values)
         _lines(look, axes, last, lines)
     return figure
+
+
+def control_charts_figure(
+    look: ReportLook, charts: Mapping[str, Mapping[str, Any]], unit: str, width_mm: float, height_mm: float
+) -> Figure:
+    """Control charts one above the other, by what their points are called, each as study.json has it.
+
+    A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
+    """
+    with plot_style():
+        figure = new_figure(width_mm, height_mm)
+        each, count = height_mm / len(charts), max(len(chart["points"]) for chart in charts.values())
+        for place, (name, chart) in enumerate(charts.items()):
+            last = place == len(charts) - 1
+            foot, height = (len(charts) - 1 - place) * each + (9 if last else 5), each - (11 if last else 7)
+            room = (width_mm - LEFT_MM - WORDS_MM) / width_mm
+            axes = figure.add_axes((LEFT_MM / width_mm, foot / height_mm, room, height / height_mm))
+            _control_chart(look, axes, chart, count)
+            axes.set_ylabel(f"{look.words(name)}, {unit}", labelpad=2)
+        axes.set_xlabel(look.words("number of the point"), labelpad=1)
+    return figure
+
+
+def _control_chart(look: ReportLook, axes: Axes, chart: Mapping[str, Any], count: int) -> None:
+    values = np.asarray(chart["points"])
+    numbers = np.arange(count - len(values), count) + 1
+    rules: dict[int, list[str]] = {}
+    for one in chart["breaks"]:
+        rules.setdefault(one["place"], []).append(str(one["rule"]))
+    steady = np.array([place not in rules for place in range(len(values))])
+    axes.plot(numbers, values, "-", color=look.accent, lw=0.6)
+    axes.plot(numbers[steady], values[steady], "o", color=look.accent, ms=3, zorder=4)
+    axes.plot(numbers[~steady], values[~steady], "x", color=INK, ms=5, mew=1.2, zorder=5)
+    for place, broken in rules.items():
+        at, said = (numbers[place], values[place]), ", ".join(broken)
+        axes.annotate(said, at, (0, 4), textcoords="offset points", ha="center", color=INK)
+    axes.set_xlim(0.5, count + 0.5)
+    axes.margins(y=0.15)
+    axes.ticklabel_format(axis="y", useOffset=False)
+    axes.xaxis.set_major_locator(MaxNLocator(integer=True))
+    axes.yaxis.set_major_locator(MaxNLocator(4))
+    axes.spines[["top", "right"]].set_visible(False)
+    lines = {
+        label("mean"): chart["centre"],
+        label("upper control limit"): chart["upper"],
+        label("lower control limit"): chart["lower"],
+    }
+    _lines(look, axes, axes, lines)
 
 
 def _histogram(look: ReportLook, axes: Axes, values: Sequence[float]) -> Axes:

@@ -20,6 +20,7 @@ TITLES = {
     "repeats": label("Repeats of {name}"),
     "type1": label("Type-1 gauge study"),
     "grr": label("Gauge R&R (ANOVA)"),
+    "series": label("Series of {name}"),
     "acceptance": label("Acceptance check after the pattern of VDI/VDE 2634-2"),
 }
 """Heading of each kind of study."""
@@ -60,6 +61,8 @@ def study_values(study: Study) -> Sequence[float]:
     """The values of a run chart, in the order of measuring; none where a study has no such order."""
     if study["kind"] == "repeats":
         return [scan["value"] for scan in study["scans"]]
+    if study["kind"] == "series":
+        return [part["value"] for part in study["parts"]]
     return study["values"] if study["kind"] == "type1" else []
 
 
@@ -69,6 +72,9 @@ def study_lines(study: Study) -> dict[str, float]:
         run = study["run_chart"] or {}
         lines = {label("mean"): study["mean"], label("nominal"): study["nominal"]}
         lines |= {label("upper control limit"): run.get("upper"), label("lower control limit"): run.get("lower")}
+    elif study["kind"] == "series":
+        lines = {label("mean"): study["mean"]}
+        lines |= {label("upper limit"): study["upper_limit"], label("lower limit"): study["lower_limit"]}
     else:
         tenth = 0.1 * study["tolerance_width"]
         lines = {label("mean"): study["mean"], label("reference"): study["reference"]}
@@ -76,11 +82,19 @@ def study_lines(study: Study) -> dict[str, float]:
             label("reference + 0.1 T"): study["reference"] + tenth,
             label("reference − 0.1 T"): study["reference"] - tenth,
         }
-    return {name: value for name, value in lines.items() if value is not None}
+    return {name: value for name, value in lines.items() if value is not None and math.isfinite(value)}
+
+
+def study_charts(study: Study) -> dict[str, Mapping[str, Any]]:
+    """The control charts of a series, by what their points are called; none where they are too few for limits."""
+    if study["kind"] != "series" or study["chart"] is None:
+        return {}
+    names = (label("single value"), label("moving range")) if study["subgroup_size"] == 1 else (label("X̄"), label("s"))
+    return dict(zip(names, (study["chart"], study["spread_chart"]), strict=True))
 
 
 def _named(look: ReportLook, study: Study) -> dict[str, str]:
-    return {"name": look.words.known(study["characteristic"])} if study["kind"] == "repeats" else {}
+    return {"name": look.words.known(study["characteristic"])} if study["kind"] in ("repeats", "series") else {}
 
 
 def _parts(look: ReportLook, study: Study) -> list[Flowable]:
@@ -91,6 +105,8 @@ def _parts(look: ReportLook, study: Study) -> list[Flowable]:
             return [_figures(look, _repeats(look, study) | verdict)]
         case "type1":
             return [_figures(look, _type1(look, study) | verdict)]
+        case "series":
+            return [_figures(look, _series(look, study) | verdict)]
         case "grr":
             return [_components(look, study), Spacer(0, 1 * mm), _figures(look, _grr(look, study) | verdict)]
         case _:
@@ -124,6 +140,26 @@ def _type1(look: ReportLook, study: Study) -> dict[str, str]:
     ratios = {words("Cg"): _ratio(look, study["cg"]), words("Cgk"): _ratio(look, study["cgk"])}
     t_test = {words("p"): "" if study["p"] is None else words.general(float(f"{study['p']:.2g}"))}
     return {words("n"): f"{study['n']}"} | _lengths(look, lengths, decimals, unit) | ratios | t_test
+
+
+def _series(look: ReportLook, study: Study) -> dict[str, str]:
+    decimals, unit, words = max(decimals_of(study["s"] or math.nan), 3), study["unit"], look.words
+    limits = {
+        words("lower limit"): study["lower_limit"],
+        words("upper limit"): study["upper_limit"],
+        words("mean"): study["mean"],
+        words("s (n − 1)"): study["s"],
+    }
+    known = {name: value if value is not None and math.isfinite(value) else None for name, value in limits.items()}
+    found = {words("n"): f"{study['n']}"} | _lengths(look, known, decimals, unit)
+    for name, index in study["indices"].items():
+        low, high = (words.fixed(end, 2) for end in index["interval"])
+        said = words("{value} ({low} to {high})", value=words.fixed(index["value"], 2), low=low, high=high)
+        found[words("{index} (95 %)", index=name)] = said
+    if study["share_of_u"] is not None:
+        low, high = (words.fixed(100 * share, 1) for share in study["share_of_u"])
+        found[words("measurement in s²")] = words("{low} to {high} %", low=low, high=high)
+    return found
 
 
 def _grr(look: ReportLook, study: Study) -> dict[str, str]:

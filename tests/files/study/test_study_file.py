@@ -14,6 +14,7 @@ from core.study.acceptance import Reading, acceptance_check
 from core.study.budget import from_budgets
 from core.study.grr import grr_study
 from core.study.repeats import Requirement, repeat_study
+from core.study.series import StatedUncertainty, series_study
 from core.study.type1 import type1_study
 
 VALUES = [50.01, 50.03, 50.02, 50.04]
@@ -37,6 +38,14 @@ STUDIES = {
     "acceptance": acceptance_check(
         [Reading("size", "left", 30.01, 30.0, 0.001), Reading("form", "left", 0.02)], {"size": 0.05}, k=3.0
     ),
+    "series": series_study(
+        np.random.default_rng(0).normal(50.0, 0.01, 100).tolist(),
+        (49.9, math.inf),
+        size=4,
+        stated=StatedUncertainty(0.001, 0.003),
+        doubted=["7"],
+    ),
+    "short series": series_study(VALUES, (49.9, 50.1), labels="abcd"),
 }
 
 

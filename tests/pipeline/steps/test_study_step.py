@@ -87,6 +87,8 @@ def test_rows_come_from_other_projects(done, tmp_path):
     repeats = tuple(Repeat("scan", 50 + 0.25 * n, 0.02, 2.0, "c", datetime(2026, 1, 2, tzinfo=UTC)) for n in range(2))
     create_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
     assert project_rows("grr", folder, "plane", 0, 0, 0) == "no 7;Ada;50.0\nno 7;Ada;50.25\n"
+    part, value, u = project_rows("series", folder, "plane", 0, 0, 0).strip().split(";")
+    assert (part, float(value)) == ("no 7", thickness) and 0 < float(u) < 0.1
     quantity, position, flatness, _, u = project_rows("acceptance", folder, "plane", 0.0, 0.0002, 0).strip().split(";")
     assert (quantity, position, u) == ("flatness", "left below", "0.0002") and 0 < float(flatness) < 2
     with pytest.raises(InputError, match="no project"):

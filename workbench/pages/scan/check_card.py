@@ -191,7 +191,11 @@ class CheckCard(QFrame):
         tips = [when(one) + (f", {number(one.celsius, '.1f')} °C" if one.celsius is not None else "") for one in checks]
         chart = history.chart(past)
         self.chart.set_values(
-            values, [one.verdict == "passed" for one in checks], tips, (chart.lower, chart.centre, chart.upper)
+            values,
+            [one.verdict == "passed" for one in checks],
+            tips,
+            (chart.lower, chart.centre, chart.upper),
+            axes=(tr("step off by"), tr("check")),
         )
 
     def _run(self) -> None:

@@ -11,7 +11,6 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot
 
@@ -25,10 +24,12 @@ class _Chart:
     good: NDArray[np.bool_]
     tips: tuple[str, ...]
     limits: tuple[float, float, float]
+    axes: tuple[str, str]
+    unit: str
 
 
 class ControlPlot(Plot):
-    """One point a check, a cross where it did not pass; dashed the limits, dotted their middle."""
+    """One point a value, a cross where it is not good; dashed the limits, dotted their middle."""
 
     def __init__(self, parent: QWidget | None = None) -> None:
         self._chart: _Chart | None = None
@@ -36,12 +37,21 @@ class ControlPlot(Plot):
         self.setFixedHeight(_HEIGHT)
 
     def set_values(
-        self, values: ArrayLike, good: ArrayLike, tips: Sequence[str], limits: tuple[float, float, float]
+        self,
+        values: ArrayLike,
+        good: ArrayLike,
+        tips: Sequence[str],
+        limits: tuple[float, float, float],
+        *,
+        axes: tuple[str, str],
+        unit: str = "mm",
     ) -> None:
-        """Values (N,) in mm, whether each passed, what is said of each; `limits` are lower, centre and upper."""
-        self._chart = _Chart(
-            np.asarray(values, dtype=np.float64), np.asarray(good, dtype=np.bool_), tuple(tips), limits
-        )
+        """Values (N,) in `unit`, whether each is good, what is said of each.
+
+        `limits` are lower, centre and upper; `axes` what stands at the left and below.
+        """
+        shown = np.asarray(values, dtype=np.float64), np.asarray(good, dtype=np.bool_)
+        self._chart = _Chart(*shown, tuple(tips), limits, axes, unit)
         self._redraw()
 
     def clear(self, message: str = "") -> None:
@@ -54,8 +64,8 @@ class ControlPlot(Plot):
     def _draw(self) -> None:
         chart, s = self._chart, shades()
         assert chart is not None
-        self._set_axis("left", tr("step off by"), "mm")
-        self._set_axis("bottom", tr("check"))
+        self._set_axis("left", chart.axes[0], chart.unit)
+        self._set_axis("bottom", chart.axes[1])
         count = len(chart.values)
         every = max(1, count // 8)
         self._item.getAxis("bottom").setTicks([[(n, str(n)) for n in range(1, count + 1, every)]])

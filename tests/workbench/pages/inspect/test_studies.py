@@ -4,6 +4,7 @@ import json
 from dataclasses import replace
 from typing import cast
 
+import numpy as np
 import pytest
 from PySide6.QtCore import Qt
 
@@ -111,6 +112,38 @@ def test_an_acceptance_check_has_its_limits(tab, studies, qtbot):
     tab.window().refreshing.at_once()
     assert tab.rows.text_of("Decision") == "not conforming" and "not a certificate" in tab.notes.text()
     assert tab.table.copied().split("\n")[1].split("\t")[1:4] == ["2", "+0.0300", "right"]
+
+
+def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(tab, studies, qtbot):
+    tab.window().refreshing.at_once()
+    tab.buttons["series"].click()
+    tab.window().refreshing.at_once()
+    assert tab.editor.forms["series"].values() == {"nominal_mm": 50.0, "tolerance_mm": 0.2, "size": 1}
+    values = 50 + 0.01 * np.random.default_rng(5).standard_normal(40)
+    values[25] += 0.08
+    tab.editor.text.appendPlainText("".join(f"part {n}\t{value}\t0.002\n" for n, value in enumerate(values, start=1)))
+    tab.window().refreshing.at_once()
+    tab.editor.make.click()
+    made(studies, qtbot)
+    tab.window().refreshing.at_once()
+    assert all(chart.isVisible() for chart in tab.charts)
+    assert tab.charts[1].axis_text("left") == "moving range [mm]"
+    assert tab.rows.text_of("Decision") == "not proven" and "(" in tab.rows.text_of("Cpk")
+    assert tab.table.copied().split("\n")[26].split("\t")[0::2] == ["part 26", "1"]
+    assert "part 26" in tab.notes.text()
+
+
+def test_a_short_series_draws_no_limits_and_says_why(tab, studies, qtbot):
+    tab.window().refreshing.at_once()
+    tab.buttons["series"].click()
+    tab.window().refreshing.at_once()
+    tab.editor.text.appendPlainText("a;50.01;\nb;50.02;\n")
+    tab.window().refreshing.at_once()
+    tab.editor.make.click()
+    made(studies, qtbot)
+    tab.window().refreshing.at_once()
+    assert not any(chart.isVisible() for chart in tab.charts)
+    assert "20 or more" in tab.notes.text() and tab.rows.text_of("Decision") == "not proven"
 
 
 def test_rows_of_other_projects_and_of_a_file_go_into_the_table(tab, studies, presenter, qtbot, monkeypatch, tmp_path):

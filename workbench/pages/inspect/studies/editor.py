@@ -34,7 +34,7 @@ class StudyEditor(QWidget):
         self.text.setAccessibleName(tr("Table of the study"))
         self.text.setTabChangesFocus(True)
         self.text.textChanged.connect(self._written)
-        self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form()}
+        self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form(), "series": self._series_form()}
         self.open = QPushButton(icon("mdi6.table-arrow-left"), tr("Open a table …"))
         self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add a project …"))
         self.make = QPushButton(icon("mdi6.check"), tr("Make the study"))
@@ -95,6 +95,12 @@ class StudyEditor(QWidget):
                 "pasted from a spreadsheet. Every operator measures every part as often; 10 parts, 3 operators and "
                 "2 to 3 repeats are usual."
             )
+        if draft.kind == "series":
+            return tr(
+                "One line a part, in the order of measuring: part, value and its standard uncertainty u in mm, with "
+                "semicolons, commas or tabs between them; the column u may be left out. Control limits need 20 points "
+                "or more."
+            )
         return tr(
             "One line a reading: quantity (form, size, spacing or flatness), position, measured and calibrated value "
             "and u of the latter in mm. After the pattern of VDI/VDE 2634-2: 10 positions for a sphere, 7 for a ball "
@@ -104,6 +110,8 @@ class StudyEditor(QWidget):
     def _add_tip(self, draft: Draft) -> str:
         if draft.kind == "grr":
             return tr("Add part, operator and thickness of another project, a line for each of its repeats")
+        if draft.kind == "series":
+            return tr("Add part, thickness and u of another project; in the order of measuring")
         return tr("Look for the artefact in another project's scan, and add what is found as one position")
 
     def _grr_form(self) -> SettingsForm:
@@ -113,6 +121,29 @@ class StudyEditor(QWidget):
             tr("Tolerance ±"),
             NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=tr("none"), first=0.1),
             tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
+        )
+        form.edited.connect(self._studies.set_value)
+        return form
+
+    def _series_form(self) -> SettingsForm:
+        form = SettingsForm()
+        form.add_number(
+            "nominal_mm",
+            tr("Nominal"),
+            NumberRange(0.0001, LONGEST, decimals=4, step=1.0, unit="mm", none_text=tr("none"), first=50.0),
+            tr("None: control charts alone, without Cp and Cpk."),
+        )
+        form.add_number(
+            "tolerance_mm",
+            tr("Tolerance ±"),
+            NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=tr("none"), first=0.1),
+            tr("Of the parts, to either side of the nominal value."),
+        )
+        form.add_number(
+            "size",
+            tr("Subgroup"),
+            NumberRange(1, 25, decimals=0, step=1),
+            tr("So many parts in a row are a subgroup, as made within a short time; 1: single values."),
         )
         form.edited.connect(self._studies.set_value)
         return form

@@ -17,10 +17,11 @@ from workbench.pages.inspect.studies.buttons import StudiesButtons, StudiesFacts
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
-Kind = Literal["grr", "acceptance"]
+Kind = Literal["grr", "acceptance", "series"]
 HEADS: Mapping[Kind, str] = {
     "grr": "part;operator;value\n",
     "acceptance": "quantity;position;measured_mm;calibrated_mm;u_mm\n",
+    "series": "part;value_mm;u_mm\n",
 }
 """The head line a table begins with."""
 LIMITS = ("form", "size", "spacing", "flatness")
@@ -130,6 +131,8 @@ class InspectStudies(QObject):
         if kind == "acceptance":
             values = dict.fromkeys(LIMITS) | {"artefact": "sphere", "calibrated_mm": 25.0, "u_mm": 0.0}
             values |= {"diameter_mm": 25.0}
+        if kind == "series":
+            values |= {"nominal_mm": self._repeats.spec.nominal_mm, "size": 1}
         self.draft, self.problem = Draft(kind, HEADS[kind], folder, values), ""
         self.changed.emit()
 
@@ -186,6 +189,8 @@ class InspectStudies(QObject):
         if draft.kind == "grr":
             tolerance = draft.values["tolerance_mm"]
             limits = {} if tolerance is None else {"tolerance": 2 * tolerance}
+        elif draft.kind == "series":
+            limits = _limits_of_series(draft.values)
         else:
             limits = {key: draft.values[key] for key in LIMITS if draft.values[key] is not None}
         self._run(
@@ -254,6 +259,14 @@ class InspectStudies(QObject):
     def _ended(self) -> None:
         self._working = None
         self.changed.emit()
+
+
+def _limits_of_series(values: Mapping[str, Any]) -> dict[str, float]:
+    """Size of the subgroups, and the two limits where nominal value and tolerance are known."""
+    nominal, tolerance, size = values["nominal_mm"], values["tolerance_mm"], {"size": values["size"]}
+    if nominal is None or tolerance is None:
+        return size
+    return size | {"lower": nominal - tolerance, "upper": nominal + tolerance}
 
 
 def _one_separator(text: str) -> str:

@@ -26,6 +26,7 @@ from workbench.views import ask
 from workbench.views.layouts import UpAndDown, enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
+from workbench.views.plots.control import ControlPlot
 
 LIST_HEIGHT = 150
 """Pixels of the list of studies; what does not fit is scrolled to."""
@@ -40,6 +41,7 @@ class StudiesTab(QWidget):
         self._shown: tuple[KeptStudy, ...] = ()
         self._shown_study: object = None
         self.list, self.rows, self.table = QTreeWidget(), ValueRows(), DataTable()
+        self.charts = (ControlPlot(), ControlPlot())
         self.title, self.words, self.notes = QLabel(), muted(), muted()
         self.title.setObjectName("heading")
         self.editor = StudyEditor(studies)
@@ -73,6 +75,7 @@ class StudiesTab(QWidget):
             ("grr", "mdi6.account-group-outline", tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
             ("acceptance", "mdi6.clipboard-check-outline", tr("Acceptance check …"),
              lambda: self._studies.begin("acceptance")),
+            ("series", "mdi6.chart-timeline-variant", tr("Series …"), lambda: self._studies.begin("series")),
             ("type1", "mdi6.chart-bell-curve", tr("Keep type-1 of the repeats"), self._studies.keep_type1),
         )))  # fmt: skip
         self.list.setColumnCount(2)
@@ -92,6 +95,8 @@ class StudiesTab(QWidget):
             ("export", "mdi6.export", tr("Export …"), self._export),
         )))  # fmt: skip
         column.addWidget(self.title)
+        for chart in self.charts:
+            column.addWidget(chart)
         row = in_row((self.table, 1), spacing=14)
         row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
         self.rows.setMinimumWidth(250)
@@ -138,7 +143,8 @@ class StudiesTab(QWidget):
             else tr(
                 "How good is the way of measuring? A gauge R&R study compares parts, operators and repeats; an "
                 "acceptance check measures a sphere, a ball bar or a plane in several positions, after the pattern of "
-                "VDI/VDE 2634-2; a type-1 study judges the repeats of a reference part."
+                "VDI/VDE 2634-2; a type-1 study judges the repeats of a reference part. A series shows whether the "
+                "making of the parts is steady, and whether they fit their limits."
             )
         )
 
@@ -147,6 +153,7 @@ class StudiesTab(QWidget):
         for key, why_not, tip in (
             ("grr", can.begin, tr("Parts × operators × repeats, by analysis of variance")),
             ("acceptance", can.begin, tr("Probing error of a sphere, spacing of a ball bar, flatness of a plane")),
+            ("series", can.begin, tr("Control charts, Cp and Cpk of parts measured one after another")),
             ("type1", can.type1, tr("Bias, Cg and Cgk of the repeats as they are now")),
             ("remove", can.remove, tr("Take the chosen study out of the project")),
             ("export", can.export, tr("Write the study (JSON), or the table it was made of (CSV)")),
@@ -161,9 +168,14 @@ class StudiesTab(QWidget):
         study = None if kept is None else studies.study
         for widget in (self.title, self.table, self.rows, self.notes):
             widget.setVisible(study is not None)
+        shown = () if kept is None or study is None else words.charts(kept.kind, study)
+        for number, chart in enumerate(self.charts):
+            chart.setVisible(number < len(shown))
         if kept is None or study is None or study is self._shown_study:
             return
         self._shown_study = study
+        for chart, one in zip(self.charts, shown, strict=False):
+            chart.set_values(one.values, one.good, one.tips, one.limits, axes=one.axes, unit=study.unit)
         headers, body = words.table(kept.kind, study)
         self.title.setText(f"{words.kind_title(kept.kind)}: {kept.title}")
         self.rows.set_rows(words.rows(kept.kind, study))
