@@ -25,6 +25,9 @@ from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.study.repeats import RepeatStatistics, repeat_statistics
 
+MOST_CALLOUTS = 10
+"""On the picture of the surface; the table of results has all."""
+
 
 @dataclass(frozen=True, slots=True)
 class CalibrationMark:
@@ -180,6 +183,12 @@ class ReportContent:
         Every characteristic of an inspection, the thickness among them if it was one; empty where there was none.
     points
         By name, which points of the cloud a face or a feature rests on: indices.
+    features
+        By a characteristic's name, which feature it comes from.
+    seen_at
+        By a feature's name, which one's points show where it is, if not its own: of a distance the first of its two.
+    sections
+        By a feature's name, its profile: (M, 2) position along it and height, in mm.
     deviations
         Comparisons with nominal surfaces.
     studies
@@ -234,6 +243,9 @@ class ReportContent:
     gauge: GaugeResult | None = None
     inspected: tuple[Characteristic, ...] = ()
     points: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
+    features: Mapping[str, str] = field(default_factory=dict)
+    seen_at: Mapping[str, str] = field(default_factory=dict)
+    sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
     studies: tuple[Mapping[str, Any], ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
@@ -293,6 +305,22 @@ class ReportContent:
         return {**faces, **self.points}
 
     @property
+    def shown_at(self) -> tuple[tuple[Characteristic, NDArray[np.int64]], ...]:
+        """The worst characteristic of each feature, and the points it rests on; at most MOST_CALLOUTS, the worst first.
+
+        A thickness measured alone is shown on its upper face.
+        """
+        found: dict[str, tuple[Characteristic, NDArray[np.int64]]] = {}
+        for one in sorted(self.characteristics, key=lambda one: one.room):
+            feature = self.features.get(one.name, "")
+            indices = self.points.get(self.seen_at.get(feature, feature))
+            if indices is None and self.gauge is not None and one.kind == "thickness":
+                indices = self.gauge.upper.indices
+            if indices is not None and len(indices):
+                found.setdefault(feature, (one, indices))
+        return tuple(found.values())[:MOST_CALLOUTS]
+
+    @property
     def _thickness_inspected(self) -> bool:
         """Whether what was inspected has a thickness of its own, which stands for the one measured alone."""
         return any(one.kind == "thickness" for one in self.inspected)
@@ -340,6 +368,7 @@ class ReportContent:
         missing = {
             "frame": self.overlay is None,
             "profiles": self.profiles is None,
+            "sections": not self.sections,
             "points": not self.points_used or not len(self.cloud),
             "maps": self.gauge is None and not len(self.cloud),
             "deviation": not self.deviations,

@@ -21,11 +21,11 @@ from core.report.plots import charts as plots
 from core.report.plots import figures
 from core.report.plots.charts import deviation_figure, points_figure
 from core.report.plots.overlay_plot import overlay_figure
-from core.report.plots.profile_plot import profiles_figure
+from core.report.plots.profile_plot import profiles_figure, section_figure
 from core.report.plots.run_chart import control_charts_figure, repeats_figure, run_chart_figure
 from core.report.sections.studies import study_charts, study_lines, study_values
 
-SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM, CONTROL_MM = (
+SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM, CONTROL_MM, SECTION_MM = (
     104.0,
     116.0,
     78.0,
@@ -35,6 +35,7 @@ SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, P
     80.0,
     62.0,
     76.0,
+    50.0,
 )
 """Heights of the pictures at scale 1."""
 
@@ -47,12 +48,16 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
     if len(content.cloud) or len(content.mesh.triangles):
         plane = gauge.lower.plane if gauge else None
         drawings["surface"] = lambda: plots.surface_figure(
-            look, content.mesh, content.cloud, plane, width, SURFACE_MM, progress
+            look, content.mesh, content.cloud, plane, width, SURFACE_MM, plots.callouts(look, content), progress
         )
     if overlay is not None:
         drawings["frame"] = lambda: overlay_figure(look, overlay, width, OVERLAY_MM)
     if (profiles := content.profiles) is not None:
         drawings["profiles"] = lambda: profiles_figure(look, profiles, width, PROFILES_MM)
+    drawings |= {
+        f"section-{number}": partial(section_figure, look, profile, width, SECTION_MM)
+        for number, profile in enumerate(content.sections.values())
+    }
     if content.points_used and len(content.cloud):
         named = {look.words.known(name): indices for name, indices in content.points_used.items()}
         drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)
@@ -75,7 +80,7 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
         for number, study in enumerate(content.studies)
         if len(study_values(study)) > 1
     }
-    section_of = {"study": "studies"}
+    section_of = {"study": "studies", "section": "sections"}
     hidden = content.hidden
     return {
         name: draw

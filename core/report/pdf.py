@@ -6,7 +6,7 @@ import io
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
@@ -17,7 +17,7 @@ from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
-from core.report.layout.blocks import Limits
+from core.report.layout.blocks import LEAST_SCALE, Limits
 from core.report.layout.style import (
     HAIRLINE,
     INK,
@@ -41,6 +41,10 @@ MOST_PAGES = 4
 """Of one scan with one result; more results, repeats, studies or long remarks may have more."""
 RESULTS_A_PAGE = 2
 """Results whose rows and budgets ask for one page more: no budget is to be left out for want of a page."""
+LEAST_OF_A_PAGE = 0.3
+"""What is on the last page, unless smaller pictures do without it."""
+SMALLER = (0.94, 0.88, 0.82, 0.76)
+"""Scales of pictures that are tried to save a page."""
 LONG_REMARKS = 1000
 """Characters of remarks beyond which they need room of their own."""
 
@@ -106,15 +110,31 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
         longest = None if step_limits is LIMITS[-1] else most_pages
         try:
-            pages, _ = _typeset(look, content, pictures, limits, most_pages, longest, _Trial)
+            tried = _typeset(look, content, pictures, limits, most_pages, longest, _Trial)
         except _TooLongError:
             continue
         break
+    if tried.last_page < LEAST_OF_A_PAGE and tried.pages > 1:
+        limits, tried = _without_last_page(look, content, pictures, limits, tried)
     progress(step, total - 1, total)
-    _, data = _typeset(look, content, pictures, limits, pages)
-    data = archived(data)
+    data = archived(_typeset(look, content, pictures, limits, tried.pages).data)
     progress(step, total, total)
     return data
+
+
+def _without_last_page(
+    look: ReportLook, content: ReportContent, pictures: Mapping[str, ImageReader], limits: Limits, tried: _Typeset
+) -> tuple[Limits, _Typeset]:
+    """The same with smaller pictures, where that saves a last page with hardly anything on it; else as it was."""
+    for share in SMALLER:
+        smaller = replace(limits, picture_scale=limits.picture_scale * share)
+        if smaller.picture_scale < LEAST_SCALE:
+            break
+        try:
+            return smaller, _typeset(look, content, pictures, smaller, tried.pages - 1, tried.pages - 1, _Trial)
+        except _TooLongError:
+            continue
+    return limits, tried
 
 
 def _names(content: ReportContent) -> Iterator[str]:
@@ -148,6 +168,14 @@ class _Trial(Canvas):  # type: ignore[misc]
         """Paint nothing."""
 
 
+class _Typeset(NamedTuple):
+    """How many pages there are, how much of the last one is filled (0 … 1), and the file."""
+
+    pages: int
+    last_page: float
+    data: bytes
+
+
 class _TooLongError(Exception):
     """A report has begun a page more than it may have."""
 
@@ -160,8 +188,8 @@ def _typeset(
     pages: int,
     most_pages: int | None = None,
     canvas_kind: type[Canvas] = Canvas,
-) -> tuple[int, bytes]:
-    """Lay everything out; gives the number of pages and the file. `pages` is what the foot of each page says.
+) -> _Typeset:
+    """Lay everything out. `pages` is what the foot of each page says.
 
     Raises
     ------
@@ -205,7 +233,8 @@ def _typeset(
 
     document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
     document.build(story(look, content, pictures, limits), canvasmaker=canvas_kind)
-    return document.page, stream.getvalue()
+    filled = 1 - (document.frame._y - document.frame._y1p) / _page_room(content.paper)
+    return _Typeset(document.page, filled, stream.getvalue())
 
 
 def _subject(look: ReportLook, content: ReportContent) -> str:

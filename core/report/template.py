@@ -24,6 +24,7 @@ SECTIONS: Mapping[str, str] = MappingProxyType(
         "surface": label("Measured surface"),
         "frame": label("One frame of the scan"),
         "profiles": label("Light profiles"),
+        "sections": label("Cross-sections"),
         "points": label("Points the results rest on"),
         "maps": label("Residuals of both faces, or depth and σ of the cloud"),
         "deviation": label("Deviation from the nominal surface"),

@@ -86,6 +86,8 @@ VERDICTS = {
     Verdict.NOT_PROVEN: label("Not proven"),
     Verdict.NONE: label("No verdict"),
 }
+SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
+"""Of each decision: it is never told by colour alone."""
 
 
 def decimals_of(uncertainty: float) -> int:

@@ -106,6 +106,9 @@ def whole_content(**changes):
     given = {
         "inspected": characteristics(),
         "points": faces,
+        "features": {"top flatness": "top", "top to side": "side", "step 2 height": "cut A"},
+        "seen_at": {"side": "bottom"},
+        "sections": {"cut A": np.column_stack([np.linspace(0, 80, 400), 10.2 * (np.arange(400) > 150)])},
         "deviations": (Deviations("top to CAD", top.uv, deviation, 0.1),),
         "studies": studies(),
         "calibrations": (

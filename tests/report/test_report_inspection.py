@@ -13,8 +13,11 @@ from pypdf import PdfReader
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.results import Contribution
 from core.messages import plain
+from core.report import pdf
+from core.report.content import MOST_CALLOUTS
 from core.report.layout.style import ReportLook
 from core.report.pdf import build_report
+from core.report.plots.charts import callouts
 from core.report.plots.run_chart import run_chart_figure
 from core.report.template import SECTIONS, ReportTemplate
 from core.report.wording import Words
@@ -101,6 +104,26 @@ def test_a_length_stated_at_20_degrees_is_not_said_to_be_uncorrected(data):
     assert "nothing is corrected" not in text
 
 
+def test_the_worst_of_each_feature_is_called_out_on_the_surface_with_value_U_and_decision(content):
+    look = ReportLook(Words(), content.template.accent)
+    called = {one.said.split("\n")[0]: one for one in callouts(look, content)}
+    assert list(called) == ["top to side ?", "top flatness ✓", "block thickness ✓"], "the worst first"
+    assert called["top flatness ✓"].said.endswith("0.0310 ± 0.0080 mm")
+    top = content.cloud.points[content.points["top"]]
+    assert np.min(np.linalg.norm(top - called["top flatness ✓"].place, axis=1)) == 0
+    assert np.linalg.norm(called["top flatness ✓"].place - top.mean(axis=0)) < 5
+    many = {f"f{n}": np.arange(n, n + 5) for n in range(30)}
+    rows = tuple(Characteristic(f"f{n} flatness", "flatness", 0.1, 0.01) for n in range(30))
+    crowded = replace(content, inspected=rows, points=many, features={f"f{n} flatness": f"f{n}" for n in range(30)})
+    assert len(callouts(look, crowded)) == MOST_CALLOUTS
+
+
+def test_a_cross_section_has_its_profile_and_the_rows_measured_in_it(data):
+    text = words(data).replace("\u00a0", " ")
+    after = text[text.rindex("cut A: measured points near the plane of the section.") :]
+    assert after.index("step 2 height 10 mm ±0.05 mm 10.200 mm 0.020 2 +0.200 ✗ Not conforming") < 150
+
+
 def test_studies_are_printed_with_figures_and_notes(data):
     text = words(data)
     assert "Type-1 gauge study n reference T mean s (n − 1) bias 25 50.0000 mm 0.4000 mm" in text
@@ -113,6 +136,20 @@ def test_studies_are_printed_with_figures_and_notes(data):
     assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text
     assert "probing error, size 4 +0.0100 p0 0.012 conforming" in text
     assert "4 of the 10 positions the guideline asks for" in text
+
+
+@pytest.mark.parametrize(("fits_at", "pages"), [(0.9, 4), (0.6, 5)])
+def test_pictures_become_smaller_to_save_a_last_page_with_hardly_anything_on_it(monkeypatch, content, fits_at, pages):
+    def typeset(look, content, pictures, limits, pages, longest, kind):
+        if limits.picture_scale > fits_at:
+            raise pdf._TooLongError
+        return pdf._Typeset(longest, 0.9, b"")
+
+    monkeypatch.setattr(pdf, "_typeset", typeset)
+    was = pdf._Typeset(5, 0.1, b"")
+    limits, tried = pdf._without_last_page(ReportLook(Words(), "#14586E"), content, {}, pdf.LIMITS[0], was)
+    assert tried.pages == pages
+    assert limits == (replace(pdf.LIMITS[0], picture_scale=0.88) if pages == 4 else pdf.LIMITS[0])
 
 
 @pytest.mark.parametrize(("count", "panels"), [(12, 2), (4, 1)])

@@ -1,9 +1,11 @@
 import io
 
+from PIL import Image
 from pypdf import PdfReader
+from reportlab.lib.utils import ImageReader
 from reportlab.platypus import SimpleDocTemplate, Spacer
 
-from core.report.layout.blocks import section
+from core.report.layout.blocks import Figures, OnOnePage, Picture, section
 from core.report.layout.style import SANS, ReportLook, prepare_reportlab
 from core.report.wording import Words
 
@@ -19,6 +21,27 @@ def pages(above):
     return [page.extract_text() for page in PdfReader(io.BytesIO(stream.getvalue())).pages]
 
 
+def page_of_picture(above, height=200):
+    """On which page of 288 points a section with a picture is, below a gap, and how large the picture is."""
+    picture = Picture(ImageReader(Image.new("RGB", (600, 300))), 1.0)
+    picture.inner, picture.height = picture.inner * height / picture.height, height
+    picture.width = 200
+    seen = []
+    picture.draw = lambda: seen.append((picture.canv.getPageNumber(), picture.height))
+    document = SimpleDocTemplate(io.BytesIO(), pagesize=(400, 432), initialFontName=SANS)
+    document.build([Spacer(1, above), section(LOOK, "here", "Studies", [picture])])
+    return seen[0]
+
+
+def test_a_picture_becomes_smaller_where_that_keeps_it_on_the_page():
+    prepare_reportlab()
+    found = [page_of_picture(above) for above in range(0, 200, 4)]
+    first = [height for page, height in found if page == 1]
+    assert first[0] == 200 and 150 < min(first) < 190, "it shrinks, but stays readable"
+    assert first == sorted(first, reverse=True)
+    assert {height for page, height in found if page == 2} == {200}, "on a new page it has its own size"
+
+
 def test_a_heading_and_what_it_belongs_to_are_on_one_page_however_little_room_is_left():
     prepare_reportlab()
     broken = [pages(above) for above in range(20, 140, 2)]
@@ -26,3 +49,24 @@ def test_a_heading_and_what_it_belongs_to_are_on_one_page_however_little_room_is
     for one in broken:
         assert "Studies" in one[-1]
         assert "the last line" in one[-1]
+
+
+def heights_by_page(*heights, above):
+    """On which page of 288 points each of several sections of figures is, below a gap; they cannot shrink."""
+    places = {}
+
+    def block(number, height):
+        made = Spacer(1, height)
+        made.draw = lambda: places.setdefault(number, made.canv.getPageNumber())
+        return OnOnePage([made])
+
+    document = SimpleDocTemplate(io.BytesIO(), pagesize=(400, 432), initialFontName=SANS)
+    document.build([Spacer(1, above), Figures([block(number, height) for number, height in enumerate(heights)])])
+    return [places[number] for number in range(len(heights))]
+
+
+def test_a_figure_that_fits_goes_before_one_that_does_not():
+    prepare_reportlab()
+    assert heights_by_page(200, 100, 60, above=100) == [2, 1, 1]
+    assert heights_by_page(150, 100, 60, above=10) == [1, 1, 2], "in their order where they fit"
+    assert heights_by_page(250, 250, 20, above=0) == [1, 2, 1]

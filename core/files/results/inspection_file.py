@@ -25,6 +25,7 @@ from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.results import Contribution
 from core.messages import Command, Message
+from core.model.arrays import Array
 
 NAME = "inspection.json"
 """Among the results of a scan."""
@@ -59,6 +60,10 @@ class InspectionFile:
         Why features were not measured, and what else is to be known.
     points
         Indices of the points of the cloud that each feature used, by its name.
+    features
+        By a characteristic's name, the feature it comes from.
+    sections
+        By a feature's name, its profile: (M, 2) position along it and height, in mm.
     calibration_id
         Of the scan.
     """
@@ -68,6 +73,8 @@ class InspectionFile:
     problems: tuple[Message, ...]
     notes: tuple[Message, ...]
     points: dict[str, NDArray[np.int64]]
+    features: dict[str, str]
+    sections: dict[str, Array]
     calibration_id: str
 
 
@@ -166,12 +173,19 @@ def read_inspection(path: Path) -> InspectionFile:
         for number, feature in enumerate(file.features)
         if f"points_{number}" in arrays
     }
+    sections = {
+        feature.name: arrays[f"profile_{number}"]
+        for number, feature in enumerate(file.features)
+        if f"profile_{number}" in arrays
+    }
     return InspectionFile(
         characteristics=tuple(_characteristic(row, path) for row in file.characteristics),
         kinds={feature.name: feature.kind for feature in file.features},
         problems=tuple(feature.problem for feature in file.features if feature.problem),
         notes=tuple(file.notes),
         points=points,
+        features={row.name: row.feature for row in file.characteristics},
+        sections=sections,
         calibration_id=file.calibration_id,
     )
 

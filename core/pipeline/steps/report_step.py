@@ -326,6 +326,9 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
         content,
         inspected=file.characteristics,
         points={name: indices for name, indices in file.points.items() if len(indices)},
+        features=file.features,
+        seen_at=_seen_at(read_json(path).get("plan"), file),
+        sections={name: profile for name, profile in file.sections.items() if len(profile)},
         deviations=_deviations(path, file, content.camera.camera),
         notes=tuple(dict.fromkeys((*content.notes, *file.notes, *file.problems))),
     )
@@ -351,6 +354,18 @@ def _deviations(path: Path, file: InspectionFile, camera: Camera) -> tuple[Devia
             uv = camera.project(table[:, :3])
             shown.append(Deviations(name, uv, table[:, 3], _tolerance(plan, name)))
     return tuple(shown)
+
+
+def _seen_at(plan: Any, file: InspectionFile) -> dict[str, str]:
+    """Of features that used no points of their own, the first one they were derived from that did."""
+    features: Sequence[Any] = plan.get("feature", ()) if isinstance(plan, Mapping) else ()
+    derived = {one["name"]: one.get("of", ()) for one in features if isinstance(one, Mapping) and "name" in one}
+    used = {name for name, indices in file.points.items() if len(indices)}
+    return {
+        name: next(one for one in of if one in used)
+        for name, of in derived.items()
+        if name not in used and used.intersection(of)
+    }
 
 
 def _tolerance(plan: Any, name: str) -> float:

@@ -31,6 +31,10 @@ class Limits:
     picture_scale: float
 
 
+LEAST_SCALE = 0.72
+"""Of a picture, below which its numbers could not be read any more."""
+
+
 class Picture(Flowable):  # type: ignore[misc]
     """A picture of the text's width times `scale`, centred."""
 
@@ -39,6 +43,17 @@ class Picture(Flowable):  # type: ignore[misc]
         columns, rows = reader.getSize()
         self.reader, self.inner = reader, TEXT_WIDTH * scale
         self.width, self.height = TEXT_WIDTH, TEXT_WIDTH * scale * rows / columns
+
+    @property
+    def spare(self) -> float:
+        """Points of height that it can do without."""
+        spare: float = self.height * (1 - LEAST_SCALE * TEXT_WIDTH / self.inner)
+        return max(0.0, spare)
+
+    def shrink(self, points: float) -> None:
+        """Take so much off its height, in proportion."""
+        share = 1 - points / self.height
+        self.inner, self.height = self.inner * share, self.height * share
 
     def draw(self) -> None:
         """Paint it (called by reportlab)."""
@@ -83,10 +98,57 @@ class Heading(Paragraph):  # type: ignore[misc]
         super().draw()
 
 
-def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> Flowable:
+class OnOnePage(KeepTogether):  # type: ignore[misc]
+    """What stays together; its pictures become smaller where that keeps it on a page that is begun already."""
+
+    def least_height(self, width: float) -> float:
+        """Points of height it wants at least."""
+        self.wrap(width, 0)
+        height: float = self._H - self._spare
+        return height
+
+    @property
+    def _pictures(self) -> list[Picture]:
+        return [one for one in self._content if isinstance(one, Picture)]
+
+    @property
+    def _spare(self) -> float:
+        return sum(one.spare for one in self._pictures)
+
+    def split(self, width: float, height: float) -> list[Flowable]:
+        """Begin a page only if smaller pictures would not do (called by reportlab)."""
+        self.wrap(width, height)
+        spare, lack = self._spare, self._H - height
+        if not 0 < lack < spare:
+            parts: list[Flowable] = super().split(width, height)
+            return parts
+        share = min(1.0, (lack + 1) / spare)  # a point for rounding
+        for one in self._pictures:
+            one.shrink(share * one.spare)
+        return list(self._content)
+
+
+class Figures(KeepTogether):  # type: ignore[misc]
+    """Sections of pictures in their order, but where the next one does not fit on a page, one that does goes before."""
+
+    def __init__(self, sections: Sequence[OnOnePage]) -> None:
+        super().__init__(list(sections))
+        self.sections = list(sections)
+
+    def split(self, width: float, height: float) -> list[Flowable]:
+        """The first one that fits, if need be on a new page, and the rest (called by reportlab)."""
+        for one in self.sections:
+            one.canv, one._frame = self.canv, getattr(self, "_frame", None)
+        fitting = (one for one in self.sections if one.least_height(width) <= height)
+        chosen = next(fitting, self.sections[0])
+        rest = [one for one in self.sections if one is not chosen]
+        return [*chosen.split(width, height), *([Figures(rest)] if rest else [])]
+
+
+def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> OnOnePage:
     """A heading that stays with what follows it; `heading` is fixed words, `key` what links call it."""
     title = look.words(heading, **values)
-    return KeepTogether([Heading(look, key, title), *first])
+    return OnOnePage([Heading(look, key, title), *first])
 
 
 PLAIN = [

@@ -6,7 +6,8 @@ blindness and grey printing; lines differ in form.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -23,7 +24,7 @@ from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
-from core.report.content import Deviations
+from core.report.content import Deviations, ReportContent
 from core.report.layout.style import HAIRLINE, INK, MUTED, ReportLook
 from core.report.plots.figures import (
     DPI,
@@ -40,7 +41,7 @@ from core.report.plots.figures import (
     round_up,
 )
 from core.report.plots.surface_view import SurfacePicture, surface_picture, viewer_axes
-from core.report.wording import points_counted
+from core.report.wording import SIGNS, points_counted, shown_name, shown_unit, with_uncertainty
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
@@ -59,9 +60,13 @@ def surface_figure(
     plane: LightPlane | None,
     width_mm: float,
     height_mm: float,
+    callouts: Sequence[Callout] = (),
     progress: Progress = silent,
 ) -> Figure:
-    """The surface, shaded and coloured by height above `plane` (None: towards the camera), with its dimensions."""
+    """The surface, shaded and coloured by height above `plane` (None: towards the camera), with its dimensions.
+
+    Each callout points at its place.
+    """
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         bar_mm = 22.0
@@ -81,6 +86,7 @@ def surface_figure(
         _draw_footprint(axes, ground.local(points))
         axes.set_xlim(seen.extent[:2])
         axes.set_ylim(seen.extent[2:])
+        _draw_callouts(axes, callouts, ground)
         add_color_bar(figure, (1 - (bar_mm - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, look.words("height, mm"))
     return figure
 
@@ -127,6 +133,50 @@ def _draw_footprint(axes: Axes, local: Array) -> None:
             va="top",
             color=INK,
         )
+
+
+class Callout(NamedTuple):
+    """What is said of a place (3,) of the camera frame."""
+
+    said: str
+    place: Array
+
+
+def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
+    """Name, value ± U and decision of the worst characteristic of each feature, at a point in its middle."""
+    made = []
+    for one, indices in content.shown_at:
+        points = content.cloud.points[indices]
+        middle = points[np.argmin(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
+        unit, factor = shown_unit(one)
+        value, U = with_uncertainty(factor * one.value, factor * one.U, look.words)
+        name, sign = shown_name(one, look.words), f" {SIGNS[one.verdict]}" if one.limits is not None else ""
+        made.append(Callout(f"{name}{sign}\n{value} ± {U} {unit}", middle))
+    return made
+
+
+def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground) -> None:
+    """Words in a column at either side, in the order of their places from above, so that no two lines cross."""
+    left, right = axes.get_xlim()
+    bottom, top = axes.get_ylim()
+    seen = [(one.said, *(viewer_axes()[:2] @ ground.local(one.place[None])[0])) for one in shown]
+    seen.sort(key=lambda one: one[1])
+    half = (len(seen) + 1) // 2
+    for at, align, side in ((left, "left", seen[:half]), (right, "right", seen[half:])):
+        rows = max(len(side), 4)
+        for place, (said, x, y) in enumerate(sorted(side, key=lambda one: -one[2])):
+            axes.annotate(
+                said,
+                (x, y),
+                (at, top - (place + 0.5) / rows * 0.85 * (top - bottom)),
+                ha=align,
+                va="center",
+                color=INK,
+                zorder=8,
+                bbox={"boxstyle": "square,pad=0.25", "fc": "white", "ec": HAIRLINE, "lw": 0.4},
+                arrowprops={"arrowstyle": "-", "lw": 0.6, "color": INK, "shrinkB": 0, "patchB": None},
+            )
+            axes.plot([x], [y], "o", ms=2.5, mfc="white", mec=INK, mew=0.7, zorder=9)
 
 
 def residual_figure(look: ReportLook, gauge: GaugeResult, cloud: Cloud, width_mm: float, height_mm: float) -> Figure:

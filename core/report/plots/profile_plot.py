@@ -1,4 +1,4 @@
-"""The light profiles of one picture, and the thickness that each picture of the fan alone gives."""
+"""Light profiles of one picture with the thickness that each picture of the fan alone gives, and cross-sections."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import MaxNLocator
 
+from core.model.arrays import Array
 from core.report.content import LightProfiles
 from core.report.layout.style import MUTED, ReportLook
 from core.report.plots.figures import mixed, new_figure, plot_style
@@ -15,6 +16,8 @@ FORMS = ("o", "^", "s", "v", "D")
 """Marks of the lines: told apart without colour."""
 _LEFT_MM, _FOOT_MM, _HEAD_MM, _BESIDE_MM, _BETWEEN_MM = 13.0, 9.0, 2.0, 44.0, 17.0
 """Room in mm for the numbers at the left and below, above the plot, for the plot beside it, and between the two."""
+_MOST_SECTION_MARKS = 2000
+"""Points of a cross-section that are drawn."""
 _MOST_MARKS = 120
 """Points of a line that are drawn: more lie over each other."""
 
@@ -30,6 +33,24 @@ def profiles_figure(look: ReportLook, profiles: LightProfiles, width_mm: float, 
         if beside:
             left = (width_mm - beside - 1) / width_mm
             _of_each(look, profiles, figure.add_axes((left, foot, beside / width_mm, height)))
+    return figure
+
+
+def section_figure(look: ReportLook, profile: Array, width_mm: float, height_mm: float) -> Figure:
+    """A cross-section: height over position along it, `profile` (M, 2) in mm, M ≥ 1; to one scale unless it is flat."""
+    with plot_style():
+        figure = new_figure(width_mm, height_mm)
+        room = (width_mm - _LEFT_MM - 2.0, height_mm - _FOOT_MM - _HEAD_MM)
+        axes = figure.add_axes((_LEFT_MM / width_mm, _FOOT_MM / height_mm, room[0] / width_mm, room[1] / height_mm))
+        some = np.linspace(0, len(profile) - 1, min(len(profile), _MOST_SECTION_MARKS)).astype(np.int64)
+        axes.plot(profile[some, 0], profile[some, 1], "o", color=look.accent, ms=1.2, mew=0)
+        axes.margins(0.03, 0.1)
+        across, up = float(np.ptp(profile[:, 0])), float(np.ptp(profile[:, 1]))
+        if up * room[0] > 0.3 * across * room[1]:  # else a flat profile would be a line without any relief
+            axes.set_aspect("equal", adjustable="datalim")
+        axes.set_xlabel(look.words("position along the profile, mm"), labelpad=1)
+        axes.set_ylabel(look.words("height, mm"), labelpad=2)
+        axes.spines[["top", "right"]].set_visible(False)
     return figure
 
 

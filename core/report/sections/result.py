@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 from reportlab.lib.units import mm
@@ -29,6 +29,7 @@ from core.report.layout.style import (
     words_width,
 )
 from core.report.wording import (
+    SIGNS,
     VERDICTS,
     decimals_of,
     decision_sentence,
@@ -169,13 +170,18 @@ WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
 
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
     """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
+    keys = [budget_key(number) if number in budgets else "" for number in range(len(content.characteristics))]
+    return characteristics_table(look, content.characteristics, keys)
+
+
+def characteristics_table(look: ReportLook, shown: Sequence[Characteristic], keys: Sequence[str] = ()) -> Table:
+    """One row for each characteristic, its name leading to its key, if it has one."""
     head = heads(
         look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision",
         numbers=range(1, 7),
     )  # fmt: skip
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]
-    for number, one in enumerate(content.characteristics):
-        rows.append(_row(look, one, budget_key(number) if number in budgets else ""))
+    rows += [_row(look, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
     table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
     table.setStyle(TableStyle([("LEFTPADDING", (7, 0), (7, -1), 5)]))
     return table
@@ -211,10 +217,6 @@ def _row(look: ReportLook, one: Characteristic, key: str) -> list[Flowable | lis
         *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
         look.text(decision, "small_strong"),
     ]
-
-
-SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
-"""Of each decision: it is never told by colour alone."""
 
 
 class VerdictMark(Flowable):  # type: ignore[misc]

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether, Spacer, TableStyle
+from reportlab.platypus import Flowable, Spacer, TableStyle
 
 from core.inspect.results import GaugeResult
 from core.messages import label, plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import (
     Bookmark,
+    Figures,
     Heading,
     Limits,
+    OnOnePage,
     Picture,
     heads,
     more_line,
@@ -28,7 +30,7 @@ from core.report.sections import evidence
 from core.report.sections.budget import budget_table
 from core.report.sections.head import head
 from core.report.sections.repeats import repeats_head, repeats_table
-from core.report.sections.result import budget_key, result_box, result_table
+from core.report.sections.result import budget_key, characteristics_table, result_box, result_table
 from core.report.sections.studies import studies
 from core.report.wording import grouped, limits_of_cloud, limits_of_inspection, limits_of_thickness, shown_name
 
@@ -37,13 +39,16 @@ Pictures = Mapping[str, ImageReader]
 
 def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     """Everything from the title to the end mark, without what is hidden."""
+    figures: dict[str, Callable[[], Sequence[OnOnePage]]] = {
+        "surface": lambda: _surface(look, content, pictures, limits),
+        "frame": lambda: _frame(look, content, pictures, limits),
+        "profiles": lambda: _profiles(look, content, pictures, limits),
+        "sections": lambda: _sections(look, content, pictures, limits),
+        "points": lambda: _points(look, pictures, limits),
+        "maps": lambda: _maps(look, content, pictures, limits),
+        "deviation": lambda: _deviations(look, content, pictures, limits),
+    }
     parts: list[tuple[str, Callable[[], list[Flowable]]]] = [
-        ("surface", lambda: _surface(look, content, pictures, limits)),
-        ("frame", lambda: _frame(look, content, pictures, limits)),
-        ("profiles", lambda: _profiles(look, content, pictures, limits)),
-        ("points", lambda: _points(look, pictures, limits)),
-        ("maps", lambda: _maps(look, content, pictures, limits)),
-        ("deviation", lambda: _deviations(look, content, pictures, limits)),
         ("budget", lambda: _budgets(look, content, limits)),
         ("repeats", lambda: _repeats(look, content, pictures, limits)),
         ("studies", lambda: studies(look, content, pictures, limits)),
@@ -55,6 +60,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         ("", lambda: evidence.inputs(look, content, limits)),
         ("signatures", lambda: signatures(look, content)),
     ]
+    drawn = [one for name, part in figures.items() if name not in content.hidden for one in part()]
     chosen = [flowable for name, part in parts if name not in content.hidden for flowable in part()]
     return [
         *head(look, content),
@@ -63,6 +69,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         result_box(look, content, TEXT_WIDTH),
         *_results(look, content, limits),
         *_not_covered(look, content),
+        *([Figures(drawn)] if drawn else []),
         *chosen,
         *evidence.end(look, content),
     ]
@@ -94,7 +101,7 @@ def _not_covered(look: ReportLook, content: ReportContent) -> list[Flowable]:
     return [section(look, "limits", "What this result does not cover", list(look.bullets(sentences)))]
 
 
-def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     words = look.words
     if "surface" not in pictures:
         nothing = look.say("No point was measured, so there is no surface to show.")
@@ -119,7 +126,7 @@ def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limit
     return [section(look, "surface", "Measured surface", body)]
 
 
-def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     overlay = content.overlay
     if overlay is None or "frame" not in pictures:
         return []
@@ -134,7 +141,7 @@ def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits:
     return [section(look, "frame", "One frame of the scan", body)]
 
 
-def _profiles(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _profiles(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     profiles = content.profiles
     if profiles is None or "profiles" not in pictures:
         return []
@@ -147,7 +154,22 @@ def _profiles(look: ReportLook, content: ReportContent, pictures: Pictures, limi
     return [section(look, "profiles", "Light profiles", body)]
 
 
-def _points(look: ReportLook, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _sections(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
+    """Each with its profile, and below it the rows that were measured in it."""
+    parts: list[OnOnePage] = []
+    for number, name in enumerate(content.sections):
+        rows = [one for one in content.characteristics if content.features.get(one.name) == name]
+        caption = look.words("{name}: measured points near the plane of the section.", name=name)
+        body: list[Flowable] = [
+            Picture(pictures[f"section-{number}"], limits.picture_scale),
+            look.text(caption, "caption"),
+            *([characteristics_table(look, rows), Spacer(0, 2 * mm)] if rows else []),
+        ]
+        parts.append(OnOnePage(body) if number else section(look, "sections", "Cross-sections", body))
+    return parts
+
+
+def _points(look: ReportLook, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     if "points" not in pictures:
         return []
     caption = look.say(
@@ -157,7 +179,7 @@ def _points(look: ReportLook, pictures: Pictures, limits: Limits) -> list[Flowab
     return [section(look, "points", "Points the results rest on", body)]
 
 
-def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     if "maps" not in pictures:
         return []
     picture = Picture(pictures["maps"], limits.picture_scale)
@@ -196,9 +218,9 @@ def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 
 
-def _deviations(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
+def _deviations(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
     shown = [(number, one) for number, one in enumerate(content.deviations) if f"deviation-{number}" in pictures]
-    parts: list[Flowable] = []
+    parts: list[OnOnePage] = []
     for place, (number, one) in enumerate(shown):
         caption = look.words(
             "{name}: measured − nominal, outwards positive, as the camera sees it. Marks by quarters of the tolerance "
@@ -211,7 +233,7 @@ def _deviations(look: ReportLook, content: ReportContent, pictures: Pictures, li
             look.text(caption, "caption"),
         ]
         title = label("Deviation from the nominal surface")
-        parts.append(KeepTogether(body) if place else section(look, "deviation", title, body))
+        parts.append(OnOnePage(body) if place else section(look, "deviation", title, body))
     return parts
 
 
@@ -228,7 +250,7 @@ def _budgets(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
             Spacer(0, 2 * mm),
         ]
         first = not place and len(known) > 1
-        parts.append(section(look, "budget", "Uncertainty budget", body) if first else KeepTogether(body))
+        parts.append(section(look, "budget", "Uncertainty budget", body) if first else OnOnePage(body))
     return [*parts, *more_line(look, len(known) - limits.budgets, "inspection.json")]
 
 

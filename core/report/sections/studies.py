@@ -8,11 +8,11 @@ from typing import Any
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether, Spacer
+from reportlab.platypus import Flowable, Spacer
 
 from core.messages import from_json, label
 from core.report.content import ReportContent
-from core.report.layout.blocks import Heading, Limits, Picture, heads, plain_table, ruled_table, section
+from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, heads, plain_table, ruled_table, section
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.wording import decimals_of
 
@@ -53,7 +53,7 @@ def studies(
         if f"study-{number}" in pictures:
             body += [Spacer(0, 2 * mm), Picture(pictures[f"study-{number}"], limits.picture_scale)]
         body += [*look.bullets(tuple(look.words.known(from_json(note)) for note in study["notes"])), Spacer(0, 2 * mm)]
-        parts.append(KeepTogether(body) if number else section(look, "studies", "Studies", body))
+        parts.append(OnOnePage(body) if number else section(look, "studies", "Studies", body))
     return parts
 
 

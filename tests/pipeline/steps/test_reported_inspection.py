@@ -56,11 +56,25 @@ def test_characteristics_points_deviations_and_problems_come_from_the_files(tmp_
     assert thickness.kind == "thickness"
     assert (one.name, one.value, one.verdict, one.budget[0].dof) == ("top flatness", 0.031, "conforming", math.inf)
     assert found.points["top"].tolist() == list(range(30))
+    assert found.features == {"top flatness": "top"}
     (deviations,) = found.deviations
     assert (deviations.name, deviations.tolerance_mm) == ("to CAD", 0.25)
     assert np.allclose(deviations.uv, content.cloud.uv[:50], atol=0.01), "where the camera sees them"
     for note in ("Said by the inspection.", "ball: there is no sphere.", "top flatness: Few points."):
         assert note in [str(told) for told in found.all_notes]
+
+
+def test_a_section_brings_its_profile_and_a_distance_is_seen_where_its_first_feature_is(tmp_path, content):
+    features = [{"name": name, "kind": "plane"} for name in ("top", "between", "cut")]
+    plan = {"feature": [{"name": "between", "of": ["nothing", "top", "cut"]}, {"name": "top"}]}
+    inspected(tmp_path, content, features=features, plan=plan)
+    profile = np.column_stack([np.linspace(0, 30, 20), np.ones(20)])
+    write_arrays(
+        tmp_path / "inspection.npz", {"points_0": np.arange(30), "points_1": np.arange(0), "profile_2": profile}
+    )
+    found = with_inspection(content, tmp_path)
+    assert found.seen_at == {"between": "top"}
+    assert list(found.sections) == ["cut"] and np.array_equal(found.sections["cut"], profile)
 
 
 def test_the_inspection_of_another_scan_is_refused(tmp_path, content):
