@@ -21,6 +21,7 @@ def test_the_command_line_is_imported_without_any_extra():
         "superqt",
         "pypdfium2",
         "pye57",
+        "ezdxf",
         "pypylon",
     )
     program = (
@@ -44,3 +45,10 @@ def test_e57_asks_for_its_extra(monkeypatch):
     monkeypatch.setitem(sys.modules, "pye57", None)
     with pytest.raises(InputError, match=r"pip install 'trisect\[e57\]'"):
         WRITERS["e57"](None, Path("cloud.e57"), None)
+
+
+def test_dxf_asks_for_its_extra(monkeypatch):
+    monkeypatch.delitem(sys.modules, "core.files.exchange.dxf", raising=False)
+    monkeypatch.setitem(sys.modules, "ezdxf", None)
+    with pytest.raises(InputError, match=r"pip install 'trisect\[dxf\]'"):
+        WRITERS["dxf"](None, Path("result.dxf"), None)

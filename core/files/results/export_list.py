@@ -60,6 +60,7 @@ _ALL = (
     ExportKind("results", label("Results with their schema (JSON)"), "result.json", "inspect", label("results")),
     ExportKind("dfq", label("Results for statistics (Q-DAS DFQ)"), "result.dfq", "inspect", label("results")),
     ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "inspect", label("results")),
+    ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "inspect", label("geometry")),
     ExportKind("json", label("Thickness (JSON)"), "gauge.json", "inspect", label("thickness")),
     ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),
     ExportKind("opencv-json", label("Camera (OpenCV JSON)"), "camera_opencv.json", "camera", label("camera")),

@@ -39,7 +39,7 @@ MEMBERS = {
 }
 """What inspection.npz holds of each feature: indices in the cloud, residuals in mm, and of some a profile (position and
 height) or a comparison with a nominal surface (place and deviation)."""
-_TODO = Message(
+AGAIN = Message(
     "advice.inspect_scan_first",
     "inspect the scan first{command}",
     command=Command("trisect inspect SET --plan plan.toml --out DIR"),
@@ -164,10 +164,10 @@ def read_inspection(path: Path) -> InspectionFile:
     InputError
         If it is missing, damaged or a value is absurd; names it.
     """
-    tables = read_json(path, todo=_TODO)
+    tables = read_json(path, todo=AGAIN)
     file = checked(_InspectionFile, tables, path)
     members = path.with_suffix(".npz")
-    arrays = read_arrays(members, MEMBERS, todo=_TODO) if members.exists() else {}
+    arrays = read_arrays(members, MEMBERS, todo=AGAIN) if members.exists() else {}
     points = {
         feature.name: np.asarray(arrays[f"points_{number}"], dtype=np.int64)
         for number, feature in enumerate(file.features)
@@ -221,7 +221,17 @@ def _feature(result: FeatureResult) -> dict[str, Any]:
         "points": len(result.indices),
         "rms_mm": float(np.sqrt(np.mean(result.residuals**2))) if len(result.residuals) else None,
         "shape": None if result.shape is None else result.shape.values(),
+        **_section(result),
     }
+
+
+def _section(result: FeatureResult) -> dict[str, Any]:
+    """Where the profile of a section lies, in the camera frame; nothing of others."""
+    profile, asked = result.profile, result.spec.section
+    if profile is None or asked is None:
+        return {}
+    place = {"origin_mm": profile.origin, "along": profile.along, "up": profile.up, "step_mm": asked.step_mm}
+    return {"section": place}
 
 
 def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
@@ -233,7 +243,7 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
             raise InputError(
                 Message("inspection.limits_out_of_order", "the limits of {name} are not in order", name=row.name),
                 where=path,
-                todo=_TODO,
+                todo=AGAIN,
             )
         limits = Limits(row.limits.nominal, lower, upper)
     return Characteristic(

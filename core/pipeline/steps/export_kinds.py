@@ -21,6 +21,7 @@ from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
 from core.files.results.export_list import EXPORTS, ExportKind
+from core.files.results.inspection_file import NAME as INSPECTION
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.run_file import read_run
@@ -112,6 +113,19 @@ def _e57(results: Results, path: Path, _: Progress) -> None:
     write_e57(path, content.cloud, content.timestamp, name=content.part, calibration_id=calibration)
 
 
+def _dxf(results: Results, path: Path, _: Progress) -> None:
+    try:
+        from core.files.exchange.dxf import write_dxf  # its library is an extra
+    except ImportError as missing:
+        raise InputError(
+            Message("export.install_ezdxf", "DXF needs ezdxf: install it with pip install 'trisect[dxf]'"), where=path
+        ) from missing
+    from core.files.results.geometry_file import read_geometry
+
+    points = read_cloud(results.folder / FILES["cloud"]).cloud.points
+    write_dxf(path, read_geometry(results.folder / INSPECTION, points))
+
+
 def _opencv(results: Results, path: Path, _: Progress) -> None:
     write_opencv(path, results.camera, results.camera_time)
 
@@ -134,6 +148,7 @@ WRITERS: Mapping[str, Write] = {
     "results": _of_content(write_result_json),
     "dfq": _of_content(write_dfq),
     "qif": _of_content(write_qif),
+    "dxf": _dxf,
     "json": _copy("gauge"),
     "opencv": _opencv,
     "opencv-json": _opencv,

@@ -40,6 +40,11 @@ def export_words(kind: str) -> tuple[str, str, str]:
         ),
         "dfq": (tr("Results (Q-DAS DFQ)"), tr("All results, for statistics programs"), "mdi6.chart-bell-curve"),
         "qif": (tr("Results (QIF 3.0)"), tr("All results, for quality programs"), "mdi6.file-check-outline"),
+        "dxf": (
+            tr("Geometry (DXF)"),
+            tr("Planes, spheres, cylinders and sections in part coordinates, for CAD"),
+            "mdi6.vector-polyline",
+        ),
         "json": (
             tr("Thickness (JSON)"),
             tr("The thickness with U, flatness, parallelism and verdict, for other programs"),

@@ -1,0 +1,109 @@
+"""The geometry that inspection.json and the points beside it hold, for CAD."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from pydantic import Field
+
+from core.errors import InputError
+from core.files.complaints import checked
+from core.files.reading import read_json
+from core.files.results.inspection_file import AGAIN, read_inspection
+from core.files.tables import Finite, ResultFile, Row3
+from core.inspect.geometry import Ball, Drawn, Geometry, curves, moved, outlines, tube
+from core.messages import Message
+from core.model import Pose
+from core.model.arrays import Array
+
+
+class _Shape(ResultFile):
+    """Planes have a normal and centres, spheres and cylinders a centre and a radius, cylinders a direction, too."""
+
+    normal: Row3 | None = None
+    centres: list[Row3] = Field(default_factory=list)
+    centre: Row3 | None = None
+    direction: Row3 | None = None
+    radius_mm: Finite | None = None
+
+
+class _Section(ResultFile):
+    origin_mm: Row3
+    along: Row3
+    up: Row3
+    step_mm: Finite = Field(gt=0)
+
+
+class _Feature(ResultFile):
+    name: str
+    shape: _Shape | None = None
+    section: _Section | None = None
+
+
+class _Pose(ResultFile):
+    rotation: list[Row3] = Field(min_length=3, max_length=3)
+    translation_mm: Row3
+
+
+class _GeometryFile(ResultFile):
+    features: list[_Feature] = Field(default_factory=list)
+    pose_camera_part: _Pose | None = None
+
+
+def read_geometry(inspection: Path, points: Array) -> Geometry:
+    """What the features of `inspection` are as geometry, in part coordinates where the plan has a frame.
+
+    Parameters
+    ----------
+    inspection
+        inspection.json.
+    points
+        (N, 3) of the cloud it was made from.
+
+    Raises
+    ------
+    InputError
+        If it is missing or damaged, of another cloud, of an older version where it has a section, or holds nothing
+        that could be drawn.
+    """
+    file = read_inspection(inspection)
+    tables = checked(_GeometryFile, read_json(inspection), inspection)
+    if any(len(used) and used.max() >= len(points) for used in file.points.values()):
+        raise InputError(
+            Message("file.other_cloud", "is of another scan than the cloud beside it"), where=inspection, todo=AGAIN
+        )
+    drawn: list[Drawn] = []
+    for one in tables.features:
+        used = points[file.points.get(one.name, np.zeros(0, dtype=np.int64))]
+        if one.shape is not None and len(used):
+            drawn += _shape(one.name, one.shape, used)
+        if one.name in file.sections:
+            if one.section is None:
+                raise InputError(
+                    Message("file.section_without_place", "does not say where the section {name} lies", name=one.name),
+                    where=inspection,
+                    todo=AGAIN,
+                )
+            at = one.section
+            axes = np.array([at.along, at.up])
+            drawn += curves(one.name, np.array(at.origin_mm), axes, file.sections[one.name], at.step_mm)
+    if not drawn:
+        raise InputError(
+            Message("file.nothing_to_draw", "holds no plane, sphere, cylinder or section that could be drawn"),
+            where=inspection,
+        )
+    if (pose := tables.pose_camera_part) is None:
+        return Geometry(tuple(drawn), of_part=False)
+    to_part = Pose(np.array(pose.rotation), np.array(pose.translation_mm)).inverse()
+    return Geometry(tuple(moved(drawn, to_part)), of_part=True)
+
+
+def _shape(name: str, shape: _Shape, used: Array) -> list[Drawn]:
+    if shape.normal is not None:
+        return [*outlines(name, np.array(shape.normal), np.array(shape.centres).reshape(-1, 3), used)]
+    if shape.centre is None or shape.radius_mm is None:
+        return []
+    if shape.direction is None:
+        return [Ball(name, np.array(shape.centre), shape.radius_mm)]
+    return [tube(name, np.array(shape.centre), np.array(shape.direction), shape.radius_mm, used)]

@@ -1,0 +1,111 @@
+"""What was measured as geometry for CAD: outlines of planes, spheres, cylinders and section curves, in mm.
+
+A plane has no end: its outline is the convex hull of the points it rests on, laid into it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from scipy.spatial import ConvexHull, QhullError
+
+from core.inspect.profile import averaged
+from core.model import Pose
+from core.model.arrays import Array
+
+LONGEST_GAP = 10.0
+"""Steps without a point that a section's curve goes across; a longer gap, as a shadow, parts it."""
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Outline:
+    """Corners (n, 3) of a plane face, once round."""
+
+    name: str
+    corners: Array
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Ball:
+    """A sphere: its centre (3,) and radius."""
+
+    name: str
+    centre: Array
+    radius: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Tube:
+    """A cylinder as far as it was measured: both ends (2, 3) of its axis, and its radius."""
+
+    name: str
+    ends: Array
+    radius: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Curve:
+    """One piece of a section: places (n, 3), n ≥ 2, along it."""
+
+    name: str
+    places: Array
+
+
+Drawn: TypeAlias = Outline | Ball | Tube | Curve
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Geometry:
+    """All that can be drawn, in part coordinates if `of_part`, else in the camera's."""
+
+    drawn: tuple[Drawn, ...]
+    of_part: bool
+
+
+def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Outline]:
+    """Of parallel planes square to `normal` (3,) through `centres` (c, 3): each point (n, 3) belongs to the nearest."""
+    away = np.abs((points[:, None] - centres[None]) @ normal)
+    nearest = np.argmin(away, axis=1)
+    across = np.linalg.svd(normal[None])[2][1:]
+    made = []
+    for number, centre in enumerate(centres):
+        flat = (points[nearest == number] - centre) @ across.T
+        try:
+            corners = flat[ConvexHull(flat).vertices]
+        except (QhullError, ValueError):  # too few points, or all on one line
+            continue
+        made.append(Outline(name, centre + corners @ across))
+    return made
+
+
+def tube(name: str, centre: Array, direction: Array, radius: float, points: Array) -> Tube:
+    """A cylinder from the first to the last of its points (n, 3), n ≥ 1, along the axis."""
+    along = (points - centre) @ direction
+    return Tube(name, centre + np.outer([along.min(), along.max()], direction), radius)
+
+
+def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float) -> list[Curve]:
+    """Pieces of a section's mean curve: `profile` (n, 2) is position and height along the two `axes` (2, 3)."""
+    position, height = averaged(profile[:, 0], profile[:, 1], step_mm)
+    ends = np.flatnonzero(np.diff(position) > LONGEST_GAP * step_mm) + 1
+    places = origin + np.column_stack([position, height]) @ axes
+    return [Curve(name, piece) for piece in np.split(places, ends) if len(piece) > 1]
+
+
+def moved(drawn: Sequence[Drawn], pose: Pose) -> list[Drawn]:
+    """The same after a motion."""
+    made: list[Drawn] = []
+    for one in drawn:
+        match one:
+            case Outline():
+                made.append(Outline(one.name, pose.apply(one.corners)))
+            case Ball():
+                made.append(Ball(one.name, pose.apply(one.centre[None])[0], one.radius))
+            case Tube():
+                made.append(Tube(one.name, pose.apply(one.ends), one.radius))
+            case Curve():
+                made.append(Curve(one.name, pose.apply(one.places)))
+    return made
