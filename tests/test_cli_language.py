@@ -4,6 +4,7 @@ import json
 import re
 import shutil
 
+import numpy as np
 import pytest
 from typer.main import get_command
 
@@ -59,6 +60,8 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         "part;operator;value\n" + "".join(f"{p};{o};{AIAG[p, o, r]}\n" for p, o, r in cells(AIAG.shape))
     )
     (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n50.0;0.01\n")
+    values = 50 + 0.01 * np.random.default_rng(1).standard_normal(40) + 0.1 * (np.arange(40) > 35)
+    (tmp_path / "series.csv").write_text("value;u_mm\n" + "".join(f"{one};0.01\n" for one in values))
     limits = ("--nominal", 50, "--tolerance", 0.2)
     commands = [
         ("mesh", out, "--format", "stl", "--fill-holes", 2, "--triangles", 900),
@@ -75,6 +78,8 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         ("study", "repeats", tmp_path / "repeats.csv", *limits),
         ("study", "type1", tmp_path / "repeats.csv", *limits, "--resolution", 0.001),
         ("study", "grr", tmp_path / "grr.csv", "--tolerance", 8),
+        ("study", "series", tmp_path / "series.csv", *limits),
+        ("study", "series", tmp_path / "repeats.csv", *limits),
     ]
     left = {
         " ".join(map(str, words[:2])): left_in_english(*words) - (FOLDERS if words[0] == "import" else set())
