@@ -17,6 +17,7 @@ import numpy as np
 
 from core.calibrate.camera.views import SeenView, SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.files.arrays_file import write_arrays
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
 from core.files.pictures import compression_of, read_picture
@@ -41,6 +42,7 @@ from core.files.results.camera_file import read_camera
 from core.files.results.check_file import read_check
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.gauge_file import read_gauge, read_thickness
+from core.files.results.geometry_file import read_geometry
 from core.files.results.inspection_file import read_inspection
 from core.files.results.mesh_export import write_stl
 from core.files.results.nominal_surface import read_nominal
@@ -104,6 +106,10 @@ def _of_the_rig(path: Path, read: Callable[[], Any]) -> Any:
         os.environ.pop(DATA) if before is None else os.environ.update({DATA: before})
 
 
+def _geometry(path: Path) -> Any:
+    return read_geometry(path, read_cloud(path.with_name("cloud.ply")).cloud.points)
+
+
 PLAN: dict[str, Any] = {"feature": []}
 
 READERS = {
@@ -128,6 +134,8 @@ READERS = {
     "run": Reader("run.json", read_run),
     "check": Reader("check.json", read_check),
     "inspection": Reader("inspection.json", read_inspection),
+    "geometry": Reader("inspection.json", _geometry),
+    "measured points": Reader("inspection.npz", lambda path: _geometry(path.with_suffix(".json"))),
     "shown": Reader("shown.npz", lambda path: read_shown(path.with_name("inspection.json"), PLAN)),
     "profile": Reader("profile.json", read_profiles_file),
     "history": Reader("own/rigs/rig.json", lambda path: _of_the_rig(path, lambda: read_history("rig"))),
@@ -169,13 +177,27 @@ CHECK = {
 }  # fmt: skip
 INSPECTION = {
     "schema_version": 1, "plan": PLAN, "calibration_id": "a", "notes": [_NOTE, "a note"],
-    "features": [{"name": "top", "kind": "plane"}, {"name": "side", "kind": "plane", "problem": _NOTE}],
+    "features": [
+        {"name": "top", "kind": "plane", "shape": {"normal": [0.0, 0.0, -1.0], "centres": [[0.0, 0.0, 600.0]]}},
+        {"name": "side", "kind": "plane", "problem": _NOTE},
+        {"name": "bore", "kind": "cylinder",
+         "shape": {"centre": [0.0, 0.0, 600.0], "direction": [1.0, 0.0, 0.0], "radius_mm": 8.0}},
+        {"name": "cut", "kind": "section", "section": {
+            "origin_mm": [0.0, 0.0, 600.0], "along": [1.0, 0.0, 0.0], "up": [0.0, 0.0, -1.0], "step_mm": 0.5}},
+    ],
+    "pose_camera_part": {
+        "rotation": [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], "translation_mm": [0.0, 0.0, 600.0],
+    },
     "characteristics": [{
         "name": "top flatness", "feature": "top", "kind": "plane", "value": 0.02, "u": 0.004, "k": 2.0,
         "quantity": "length",
         "limits": {"nominal": 0.0, "lower": None, "upper": 0.05}, "complete": True, "rule": _NOTE, "notes": [],
         "budget": [{"source": "camera", "u": 0.001, "point_mm": 1.0, "distribution": "normal", "dof": None}],
     }],
+}  # fmt: skip
+MEASURED = {
+    "points_0": np.arange(40), "points_2": np.arange(40, 60),
+    "profile_3": np.column_stack([np.arange(30.0), np.ones(30)]),
 }  # fmt: skip
 PROFILE = {
     "thickness_mm": 50.0, "U_mm": 0.1, "u_mm": 0.05, "k": 2.0, "shown": 0, "calibration_id": "a", "pictures": [
@@ -218,6 +240,7 @@ def good_files(folder: Path, recording: Path, results: Path) -> None:
     (folder / "scenario.toml").write_text('object = "block"\nscale = 0.25\nframes = 20\nseed = 3\n')
     (folder / "check.json").write_text(json.dumps(CHECK))
     (folder / "inspection.json").write_text(json.dumps(INSPECTION))
+    write_arrays(folder / "inspection.npz", MEASURED)
     write_shown(folder / "inspection.json", SHOWN)
     (folder / "profile.json").write_text(json.dumps(PROFILE))
     _pictures(folder)

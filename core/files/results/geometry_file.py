@@ -25,7 +25,7 @@ class _Shape(ResultFile):
     centres: list[Row3] = Field(default_factory=list)
     centre: Row3 | None = None
     direction: Row3 | None = None
-    radius_mm: Finite | None = None
+    radius_mm: Finite | None = Field(default=None, gt=0)
 
 
 class _Section(ResultFile):
@@ -100,8 +100,8 @@ def read_geometry(inspection: Path, points: Array) -> Geometry:
 
 
 def _shape(name: str, shape: _Shape, used: Array) -> list[Drawn]:
-    if shape.normal is not None:
-        return [*outlines(name, np.array(shape.normal), np.array(shape.centres).reshape(-1, 3), used)]
+    if shape.normal is not None and shape.centres:
+        return [*outlines(name, np.array(shape.normal), np.array(shape.centres), used)]
     if shape.centre is None or shape.radius_mm is None:
         return []
     if shape.direction is None:
