@@ -36,11 +36,14 @@ Figures = dict[str, Any]
 
 UNWARNED_MM = 0.03
 """Largest error of which nothing need be said."""
-STATES = ("held", "unwarned", "told", "not named", "silent")
-"""From best to worst. *held*: the error is within U, and told or at most UNWARNED_MM. *unwarned*: within U, but larger
-than that, and nothing names why. *told*: beyond U, or nothing was measured, but a note or the refusal names why, and
-nothing is called conforming. *not named*: nothing was measured, for another reason than the one given. *silent*: beyond
-U, and proven or not told; then a part just outside its limits would be accepted, or one within them thrown away."""
+NOT_CHECKED = "inspection.rig_not_checked"
+"""Code of the note that nothing excludes a change of the rig, and how much of U that is. It names no effect."""
+STATES = ("held", "unchecked", "unwarned", "told", "not named", "silent")
+"""From best to worst. *held*: the error is within U, and told or at most UNWARNED_MM. *unchecked*: within U, but larger
+than that, and all that is told is that nobody checked the rig. *unwarned*: not even that is told. *told*: beyond U, or
+nothing was measured, but a note or the refusal names why, and nothing is called conforming. *not named*: nothing was
+measured, for another reason than the one given. *silent*: beyond U, and proven or not told; then a part just outside
+its limits would be accepted, or one within them thrown away."""
 
 
 def run(cases: Sequence[HostileCase], kept: Path) -> dict[str, Figures]:
@@ -157,7 +160,9 @@ def state_of(case: HostileCase, figures: Mapping[str, Any]) -> str:
     if abs(figures["error"]) > figures["U"]:
         proves = figures["verdict"] == Verdict.CONFORMING or figures["complete"]
         return "silent" if proves or not why else "told"
-    return "held" if why or abs(figures["error"]) <= UNWARNED_MM else "unwarned"
+    if why or abs(figures["error"]) <= UNWARNED_MM:
+        return "held"
+    return "unchecked" if NOT_CHECKED in figures["told"] else "unwarned"
 
 
 def named(case: HostileCase, figures: Mapping[str, Any]) -> list[str]:
@@ -212,7 +217,8 @@ def summary(cases: Sequence[HostileCase], results: Mapping[str, Figures]) -> lis
     held = sum(abs(one["error"]) <= one["U"] for one in measured)
     states = [state_of(case, one) for case, one in known]
     counts = ", ".join(f"{states.count(state)} {state}" for state in STATES)
-    unwarned = max((abs(one["error"]) for case, one in known if "error" in one and not named(case, one)), default=0.0)
+    silent = [one for case, one in known if "error" in one and not named(case, one) and NOT_CHECKED not in one["told"]]
+    unwarned = max((abs(one["error"]) for one in silent), default=0.0)
     return [
         f"{len(known)} scans: {held} of {len(measured)} measured ones within U ({held / max(len(measured), 1):.1%}); "
         f"{counts}; largest error of which nothing is said {1e3 * unwarned:.0f} µm (at most {1e3 * UNWARNED_MM:.0f} "

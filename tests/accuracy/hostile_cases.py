@@ -192,7 +192,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "Bayer mosaic": ("scan.colour_mosaic", "scan.compressed"),
     "hot pixels": ("camera.misfound_corners",),
     "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
-    "glossy part": ("inspection.light_is_skewed",),
+    "glossy part": ("inspection.light_is_skewed", "scan.shines"),
     "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy"),
     "speckle": ("scan.speckled", "form.scatter"),
     "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll"),

@@ -69,13 +69,23 @@ def test_an_error_within_u_of_which_nothing_is_said_is_a_state_of_its_own():
     assert state_of(case(WARM), {**HELD, "error": 0.04, "told": ["scan.fan_has_moved"]}) == "held"
 
 
+def test_that_nobody_checked_the_rig_is_said_but_names_no_effect():
+    unchecked = {**HELD, "told": ["inspection.rig_not_checked"]}
+    assert state_of(case(WARM), unchecked) == "held"
+    assert state_of(case(WARM), {**unchecked, "error": 0.04}) == "unchecked"
+    doubted = {**unchecked, "error": 0.08, "verdict": "not proven", "complete": False}
+    assert state_of(case(WARM), doubted) == "silent"
+
+
 def test_a_line_tells_the_worst_of_its_scans():
     cases = [case(WARM, seed) for seed in (1, 2)]
     results = {cases[0].name: HELD, cases[1].name: {**HELD, "error": 0.09, "told": ["scan.datum"]}}
     assert row_of(cases, results) == f"| {WARM} | much | none | +20, +90 | 50–50 | conforming | – | **silent 1 of 2** |"
     assert len(table(cases, results)) == 3
     said = summary(cases, results)[0]
-    assert "1 of 2 measured ones within U (50.0%); 1 held, 0 unwarned, 0 told, 0 not named, 1 silent" in said
+    assert (
+        "1 of 2 measured ones within U (50.0%); 1 held, 0 unchecked, 0 unwarned, 0 told, 0 not named, 1 silent" in said
+    )
     assert named(cases[0], {"told": ["scan.datum", "scan.fan_has_moved"]}) == ["scan.fan_has_moved"]
 
 

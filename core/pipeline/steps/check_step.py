@@ -203,11 +203,21 @@ def _stability(found: RecordingSet, calibration: Calibration) -> Stability | Non
 
     On the day of its pictures a re-adjustment is what a check is: they show the rig as it was in the scan.
     """
-    known = calibration.fan.readjusted
-    if known is None or found.check or not found.frames:
-        return found.rig.stability
-    apart = abs(taken_at(found.frames) - known.taken_at).total_seconds() / 86_400.0
-    return STABLE if apart <= SAME_DAY else found.rig.stability
+    readjusted_now = not found.check and _readjusted_on_the_day(found, calibration.fan)
+    return STABLE if readjusted_now else found.rig.stability
+
+
+def _readjusted_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
+    if fan.readjusted is None or not found.frames:
+        return False
+    apart = abs(taken_at(found.frames) - fan.readjusted.taken_at).total_seconds() / 86_400.0
+    return apart <= SAME_DAY
+
+
+def checked_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
+    """Whether pictures show the rig on the day of the scan: those of a check, or those it was re-adjusted by."""
+    fresh = fresh_check(found, fan)
+    return _days_apart(fresh) <= SAME_DAY if fresh.check else _readjusted_on_the_day(found, fan)
 
 
 def _spread(found: RecordingSet, calibration: Calibration) -> RigSpread | None:

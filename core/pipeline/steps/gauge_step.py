@@ -15,10 +15,12 @@ from core.files.results.scan_file import ScanFile, read_scan
 from core.inspect.gauge import adjusted, measure_gauge
 from core.inspect.plan.temperature import correction_to_reference, temperature_of
 from core.inspect.results import GaugeResult
+from core.inspect.uncertainty.causes import CHANGE, CHANGE_ASSUMED, CHANGE_CHARTED
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.model.arrays import Array
+from core.pipeline.steps.check_step import checked_on_the_day
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
@@ -27,6 +29,9 @@ from core.scan.standstill import HOLD_STILL
 
 PART = "part"
 """Under this name the settings of a thickness in run.json say what is stated of the part."""
+
+MATTERS = 1.1
+"""A rig is told to be unchecked if U is so many times what it would be without a change since the calibration."""
 
 CHANGED = Message(
     "inspection.rig_has_changed",
@@ -59,6 +64,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
                 progress=progress,
             )
         gauge = of_part(gauge, part)
+        if not checked_on_the_day(work.found, calibration.fan):
+            gauge = replace(gauge, notes=(*gauge.notes, *notes_on_unchecked(gauge)))
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         log.settings[PART] = part_table(part)
@@ -73,6 +80,25 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
     if temperature is not None:
         gauge = adjusted(gauge, *correction_to_reference(gauge.thickness_mm, temperature))
     return replace(gauge, notes=(*gauge.notes, *part.assumed))
+
+
+def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
+    """A note on a rig that was not checked on the day, if U is much the larger by what may have changed."""
+    change = max(
+        (row.u_mm for row in gauge.budget if row.source in (CHANGE, CHANGE_ASSUMED, CHANGE_CHARTED)), default=0.0
+    )
+    if MATTERS**2 * (gauge.u_mm**2 - change**2) >= gauge.u_mm**2:
+        return ()
+    return (
+        Message(
+            "inspection.rig_not_checked",
+            "Camera and laser were not checked on the day of the scan: what may have changed since their calibration "
+            "is {part_mm:.3f} mm of U = {U_mm:.3f} mm, and as the faces are fitted so that it matters least, noise and "
+            "gloss matter more. One to three pictures of the plane target in the fan take most of that away.",
+            part_mm=gauge.k * change,
+            U_mm=gauge.U_mm,
+        ),
+    )
 
 
 @contextmanager

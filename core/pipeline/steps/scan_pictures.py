@@ -26,6 +26,7 @@ from core.scan.features.extraction import (
     extract_lines,
     read_reference,
 )
+from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.stage_times import StageTimes
@@ -89,7 +90,9 @@ def look_at_scan(
     lines = extract_lines(reference, frames, total, looking, progress, show, times)
     averaged = lines.averaged(progress, times)
     of_width = told_width_notes(options.stripe, lines.stripes)
-    notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference))
+    sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
+    shine = notes_on_shine(lines.fan, sweeps, reference.full_scale)
+    notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
 

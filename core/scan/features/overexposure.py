@@ -2,15 +2,25 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
 
+from core.image.exposure import BRIGHTEST
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 
+SHINES = "scan.shines"
+"""Code of the note on stripes that are saturated here and there."""
 MANY = 1 / 3
 """Share of a scan's stripe points whose saturation is told: what is left is darker surface and the stripes' ends."""
+SOME = 0.01
+"""Share of the fan's or the sweeps' stripe points from which on saturation is told. In ideal scans none of the fan's
+are, and at most 0.2 % of the sweeps', where they cross the fan; a lobe of 6° three times as bright as the rest
+saturates 1.5 % and more of both. Held by tests/scan/features/test_overexposure.py."""
+_BRIGHT = 90.0
+"""Percentile of the heights of saturated stripes, by their flanks, that the exposure is to hold."""
 ADVICE = Message("scan.advice_expose_less", "expose shorter, close the lens's aperture, or turn the lasers down")
 
 
@@ -31,4 +41,28 @@ def overexposed(fan: Sequence[Centreline], sweeps: Sequence[Centreline]) -> Mess
         "saturated, and nothing is measured there",
         fan=100 * of_fan,
         sweeps=100 * of_sweeps,
+    )
+
+
+def notes_on_shine(fan: Sequence[Centreline], sweeps: Sequence[Centreline], full_scale: float) -> tuple[Message, ...]:
+    """A note on stripes that are saturated here and there, and by how much to expose less; none where all of them are.
+
+    How far above `full_scale`, the largest grey level, a saturated stripe reaches is what its flanks say.
+    """
+    of_fan, of_sweeps = saturated_share(fan), saturated_share(sweeps)
+    if max(of_fan, of_sweeps) <= SOME or overexposed(fan, sweeps) is not None:
+        return ()
+    pieces = (*fan, *sweeps)
+    heights = np.concatenate([piece.strength[piece.saturated] for piece in pieces])
+    stops = math.log2(float(np.percentile(heights, _BRIGHT)) / (BRIGHTEST * full_scale))
+    return (
+        Message(
+            "scan.shines",
+            "{fan:.1f} % of the fan's points and {sweeps:.1f} % of the hand-held laser's are saturated: the surface "
+            "shines there (gloss), or the exposure is too long. Nothing is measured there, and points beside it may be "
+            "off: expose {stops:g} f-stops less, or spray the part matt.",
+            fan=100 * of_fan,
+            sweeps=100 * of_sweeps,
+            stops=max(math.ceil(2 * stops), 1) / 2,
+        ),
     )

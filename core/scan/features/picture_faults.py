@@ -1,4 +1,4 @@
-"""What is wrong with the pictures of a scan themselves: compression, a colour mosaic, speckle, changing room light.
+"""What is wrong with the pictures of a scan themselves: compression, a colour mosaic, speckle, gloss, changing light.
 
 Each leaves stripes off, or less sure than what else is told of them; the sweeps then disagree as if something had
 moved. So a scan that is refused is told first what its pictures show.
@@ -22,10 +22,11 @@ from core.messages import Message
 from core.model.arrays import Array
 from core.model.robust import MAD_TO_SD
 from core.scan.features.frames import LIGHT_CHANGED
+from core.scan.features.overexposure import SHINES
 from core.scan.features.reference import ReferenceFeatures
 
 COMPRESSED, MOSAIC, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.speckled"
-FAULTS = frozenset({COMPRESSED, MOSAIC, SPECKLED, LIGHT_CHANGED})
+FAULTS = frozenset({COMPRESSED, MOSAIC, SPECKLED, SHINES, LIGHT_CHANGED})
 """Codes of the notes on faults."""
 
 SPECKLED_SHARE = 0.125

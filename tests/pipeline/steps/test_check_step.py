@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
-from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, displaced_fan
+from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, STABLE, displaced_fan
 from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
@@ -345,6 +345,20 @@ def test_a_steady_history_makes_the_row_of_change_smaller_and_one_of_a_turned_mo
     history_file(work.calibration().id).unlink()
     moved = charted(turned, work, tmp_path / "moved")
     assert moved[0] == "charted change" and moved[1] > 1.1 * assumed[1]
+
+
+def test_a_rig_that_was_not_checked_on_the_day_is_told_where_that_rules_u(unchanged, tmp_path):
+    def told(folder, **kind):
+        work = work_in(unchanged, tmp_path / folder, with_check=kind.pop("with_check"))
+        work = replace(work, found=replace(work.found, rig=replace(work.found.rig, **kind)))
+        scan_step(work, COARSE)
+        gauge = gauge_step(work)
+        return gauge, {note.code: note for note in gauge.notes}.get("inspection.rig_not_checked")
+
+    gauge, note = told("without", with_check=False)
+    assert note is not None and 0.5 * gauge.U_mm < note.values["part_mm"] < gauge.U_mm == note.values["U_mm"]
+    assert told("with", with_check=True)[1] is None
+    assert told("stable", with_check=False, stability=STABLE)[1] is None
 
 
 def test_a_mount_that_turned_after_quiet_days_is_within_u(unchanged, turned, tmp_path):

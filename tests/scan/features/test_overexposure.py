@@ -6,7 +6,7 @@ import pytest
 
 from core.errors import InputError
 from core.scan.features.extraction import extract_features
-from core.scan.features.overexposure import overexposed
+from core.scan.features.overexposure import notes_on_shine, overexposed
 from core.scan.reconstruct import reconstruct
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import scan_of, scenario_rig
@@ -34,3 +34,25 @@ def test_stripes_as_they_should_be_are_not_called_overexposed():
     seen = features_of(RIG)
     assert overexposed(seen.fan, [piece for frame in seen.frames for piece in frame.centrelines]) is None
     assert overexposed((), ()) is None
+
+
+def shine_of(scenario):
+    seen = features_of(scenario)
+    return notes_on_shine(seen.fan, [piece for frame in seen.frames for piece in frame.centrelines], 255.0)
+
+
+@pytest.mark.parametrize(("gloss", "stops"), [(3.0, (0.5, 1.0)), (20.0, (1.0, 2.5))])
+def test_a_glossy_part_is_told_with_how_much_less_to_expose(gloss, stops):
+    (note,) = shine_of(replace(RIG, gloss=gloss))
+    assert note.code == "scan.shines"
+    assert stops[0] <= note.values["stops"] <= stops[1]
+    assert "f-stops less" in str(note)
+
+
+@pytest.mark.parametrize("scenario", [RIG, replace(RIG, seed=7), replace(RIG, speckle=0.35)])
+def test_a_matt_part_is_not_said_to_shine(scenario):
+    assert shine_of(scenario) == ()
+
+
+def test_a_scan_that_is_refused_as_overexposed_is_not_said_to_shine_as_well():
+    assert shine_of(replace(RIG, sensor=SensorEffects(brightness=6.0))) == ()
