@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from core.acquire.grey import to_grey
@@ -33,14 +34,25 @@ def told_of(scenario):
 @pytest.mark.parametrize(
     ("scenario", "codes"),
     [
+        (replace(RIG, speckle=0.1), []),
         (RIG, []),
-        (replace(RIG, speckle=0.35), []),
+        (replace(RIG, seed=2), []),
+        (replace(RIG, speckle=0.35), [SPECKLED]),
+        (replace(RIG, speckle=0.35, seed=2), [SPECKLED]),
+        (replace(RIG, speckle=0.35, seed=4), [SPECKLED]),
         (replace(RIG, speckle=0.6), [SPECKLED]),
         (replace(RIG, scale=0.5, speckle=0.6), [SPECKLED]),
     ],
 )
 def test_strong_speckle_is_told_and_no_other(scenario, codes):
     assert told_of(scenario) == codes
+
+
+def test_lines_without_light_have_no_speckle():
+    seen = read_reference(to_grey(scan_of(RIG)[0].reference(), "red"))
+    dark = tuple(replace(piece, strength=np.zeros(len(piece))) for piece in seen.fan)
+    assert faults_of(replace(seen, fan=dark)) == ()
+    assert faults_of(replace(seen, fan=(seen.fan[0].select(slice(0, 1)),))) == ()
 
 
 def test_stripes_finer_than_the_mosaic_they_are_interpolated_from_are_told():
