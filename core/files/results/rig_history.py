@@ -29,6 +29,7 @@ from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.check_file import CheckVerdict, InterimCheck
 from core.files.tables import RESULT, Finite, LengthAbove0, OrNan, Probability, ResultFile, Time
+from core.inspect.uncertainty.coverage import coverage_factor
 from core.messages import Message
 from core.study.control_chart import FEWEST, ControlChart, control_chart
 
@@ -117,9 +118,10 @@ class RigHistory:
 
         Checks of one day show one state of the rig, so that the last of each day counts, and failed ones too. It takes
         as many days as the limits of the chart take values. One factor for all changes is small where a single one is
-        large: it is no less than what the errors of the charted step are, against those by default. It is less than 1
-        from `QUIET_DAYS` on. Checks do not speak for a time further from the last of them than they are from each
-        other, nor for a rig whose fan was once not found again.
+        large: it is no less than what the errors of the charted step are, against those by default, and more as few
+        days leave their RMS unsure (Student's t). It is less than 1 from `QUIET_DAYS` on. Checks do not speak for a
+        time further from the last of them than they are from each other, nor for a rig whose fan was once not found
+        again.
         """
         before = [one for one in self.of_calibration(calibration_id) if not one.artefact and one.taken_at < when - _DAY]
         if any(math.isnan(one.error_mm) for one in before):
@@ -133,6 +135,7 @@ class RigHistory:
             return None
         likely = most_likely_factor(np.array([one.likelihoods for one in of_days.values()]))
         shown = math.sqrt(sum((one.error_mm / one.stated_mm) ** 2 for one in of_days.values()) / len(of_days))
+        shown *= coverage_factor(len(of_days)) / coverage_factor(math.inf)  # few days tell their RMS badly
         factor = max(likely, shown)
         if factor < 1 and len(of_days) < QUIET_DAYS:
             return None

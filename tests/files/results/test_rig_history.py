@@ -111,7 +111,7 @@ def test_few_checks_may_say_that_a_rig_changes_more_but_only_many_that_it_change
     when = FIRST.taken_at + timedelta(days=QUIET_DAYS, hours=1)
     assert history.spread(FIRST.calibration_id, when).factor < 0.2
     assert replace(history, checks=history.checks[1:]).spread(FIRST.calibration_id, when) is None
-    assert spread(FEWEST, error_mm=0.12).factor == pytest.approx(3.0)
+    assert spread(FEWEST, error_mm=0.12).factor == pytest.approx(3.0 * 2.366 / 2, rel=1e-3), "Student's t of 8 days"
     assert spread(FEWEST - 1, error_mm=0.12) is None
 
 
