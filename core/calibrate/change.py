@@ -225,6 +225,13 @@ class Change:
         )
 
 
+def reckoned(stated: Stability | None, charted: RigSpread | None) -> tuple[Stability, Source]:
+    """The stability that is reckoned with, and the source of what changes by it."""
+    if charted is not None:
+        return charted.stability, "charted change"
+    return (DEFAULT_STABILITY, "assumed change") if stated is None else (stated, "change")
+
+
 def judge(
     camera: Camera,
     fan: Fan,
@@ -235,27 +242,24 @@ def judge(
 ) -> Change:
     """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
 
-    `camera` and `fan` are those calibrated. Without a `stated` stability that by the rig's checks counts, `charted`,
-    and without that one the default is assumed; what change adds says so.
+    `camera` and `fan` are those calibrated. The stability is that by the rig's checks, `charted`, where they say it;
+    else that `stated`, else the default is assumed; what change adds says so.
     """
-    spread = charted if stated is None else None
-    stability = stated or (DEFAULT_STABILITY if spread is None else spread.stability)
-    unstated: Source = "assumed change" if spread is None else "charted change"
-    source_of_change = unstated if stated is None else "change"
+    stability, source_of_change = reckoned(stated, charted)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
     p = float(chdtrc(freedom, squares)) if freedom else 1.0
     times = float(np.sqrt(squares / max(freedom, 1)))
     if not stability.over_default.any():
-        return Change(tuple(one for one in deviations if one.source != "change"), p, times, spread=spread)
+        return Change(tuple(one for one in deviations if one.source != "change"), p, times, spread=charted)
     x, estimate, root = _lasting(deviations, evidence, stability)
     free = [one for one, there in zip(deviations, x, strict=True) if there]
     steps = np.array([_vector(one.camera, one.fan) for one in free]) - _vector(camera, fan)
     sources = [source_of_change if one.source == "change" else one.source for one in free] + [source_of_change]
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
     told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
-    return Change((*told, *bent), p, times, spread=spread)
+    return Change((*told, *bent), p, times, spread=charted)
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:

@@ -42,11 +42,12 @@ def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Arra
     return np.array(likelihoods)
 
 
-def most_likely_factor(likelihoods: Array) -> float:
-    """The factor by the likelihoods (n, F) of n checks: the mean of its logarithm; 1 where they say nothing.
+def most_likely_factor(likelihoods: Array, about: float = 1.0) -> float:
+    """The factor by the likelihoods (n, F) of n checks: the mean of its logarithm; `about` where they say nothing.
 
-    Before any check it is within a factor of two of 1 (one standard deviation): the default is an honest guess.
+    Before any check it is within a factor of two of that (one standard deviation): default and statement are honest
+    guesses.
     """
-    log = np.sum(likelihoods, axis=0) - 0.5 * np.log2(FACTORS) ** 2
+    log = np.sum(likelihoods, axis=0) - 0.5 * np.log2(FACTORS / about) ** 2
     weight = np.exp(log - log.max())
     return float(np.exp(weight @ np.log(FACTORS) / weight.sum()))

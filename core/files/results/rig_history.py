@@ -21,7 +21,7 @@ import numpy as np
 import platformdirs
 from pydantic import Field
 
-from core.calibrate.change import RigSpread
+from core.calibrate.change import RigSpread, Stability
 from core.calibrate.rig_spread import FACTORS, most_likely_factor
 from core.files.atomic import make_folder
 from core.files.complaints import checked_json
@@ -36,6 +36,8 @@ from core.study.control_chart import FEWEST, ControlChart, control_chart
 DATA = "TRISECT_DATA"
 """Environment variable that names another folder than the user's own, as one that a laboratory shares."""
 
+GIVES_WAY = 1.1
+"""A stated stability gives way to checks that show so many times more than the largest of what it states."""
 QUIET_DAYS = 59
 """Days of checks from which on a rig may be said to change less than by default. Before, a knock that happens on one
 day of twenty is not excluded (0.95⁵⁹ < 0.05), and it turns a mount as far as the default has it."""
@@ -49,8 +51,9 @@ class PastCheck:
 
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
-    `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, where no stripe was found, or where
-    rig.toml states how stable the rig is: without it `stated_mm` is by the default.
+    `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, or where no stripe was found.
+    `stated_mm` is what change does to a step by the stability in rig.toml, or without one by the default, `default_mm`
+    what it does by the default.
     """
 
     taken_at: Time
@@ -71,17 +74,27 @@ class PastCheck:
         Annotated[tuple[Finite, ...], Field(min_length=len(FACTORS), max_length=len(FACTORS))] | None,
         Field(description=f"{len(FACTORS)} finite numbers"),
     ] = None
+    default_mm: OrNan = math.nan
     __pydantic_config__ = RESULT
+
+    @property
+    def by_default_mm(self) -> float:
+        """`default_mm`; of checks before it was kept, whose `likelihoods` say that nothing was stated, `stated_mm`."""
+        return self.stated_mm if math.isnan(self.default_mm) else self.default_mm
 
     @classmethod
     def of(
-        cls, check: InterimCheck, celsius: float | None = None, likelihoods: tuple[float, ...] | None = None
+        cls,
+        check: InterimCheck,
+        celsius: float | None = None,
+        likelihoods: tuple[float, ...] | None = None,
+        default_mm: float = math.nan,
     ) -> PastCheck:
         """A check that has just been made."""
         return cls(
             check.taken_at, check.calibration_id, check.pictures_id, check.verdict, check.p, check.step_mm,
             check.offset_px, check.offset_mm, check.error_mm, check.unseen_mm, check.stated_mm, celsius,
-            likelihoods=likelihoods,
+            likelihoods=likelihoods, default_mm=default_mm,
         )  # fmt: skip
 
 
@@ -113,8 +126,11 @@ class RigHistory:
         ]
         return control_chart(np.array(before), math.hypot(check.stated_mm, check.unseen_mm / 2))
 
-    def spread(self, calibration_id: str, when: datetime) -> RigSpread | None:
+    def spread(self, calibration_id: str, when: datetime, stated: Stability | None = None) -> RigSpread | None:
         """How much the rig changes, by the pictures of checks before the day of `when`; None where they do not say.
+
+        Where its stability is `stated`, they say it only if that is more than the largest of what is stated: a
+        statement may know of what no check has met, and no check makes it smaller. One that nothing changes stands.
 
         Checks of one day show one state of the rig, so that the last of each day counts, and failed ones too. It takes
         as many days as the limits of the chart take values. One factor for all changes is small where a single one is
@@ -123,21 +139,26 @@ class RigHistory:
         time further from the last of them than they are from each other, nor for a rig whose fan was once not found
         again.
         """
+        about = 1.0 if stated is None else float(stated.over_default.max())
+        if not about:
+            return None
         before = [one for one in self.of_calibration(calibration_id) if not one.artefact and one.taken_at < when - _DAY]
         if any(math.isnan(one.error_mm) for one in before):
             return None
-        of_days = {one.taken_at.date(): one for one in before if one.likelihoods is not None and one.stated_mm > 0}
+        of_days = {one.taken_at.date(): one for one in before if one.likelihoods is not None and one.by_default_mm > 0}
         if len(of_days) < FEWEST:
             return None
         taken = [one.taken_at for one in of_days.values()]
         apart = max(later - earlier for earlier, later in pairwise(taken))
         if when - taken[-1] > max(apart, 2 * _DAY):
             return None
-        likely = most_likely_factor(np.array([one.likelihoods for one in of_days.values()]))
-        shown = math.sqrt(sum((one.error_mm / one.stated_mm) ** 2 for one in of_days.values()) / len(of_days))
+        likely = most_likely_factor(np.array([one.likelihoods for one in of_days.values()]), about)
+        shown = math.sqrt(sum((one.error_mm / one.by_default_mm) ** 2 for one in of_days.values()) / len(of_days))
         shown *= coverage_factor(len(of_days)) / coverage_factor(math.inf)  # few days tell their RMS badly
         factor = max(likely, shown)
-        if factor < 1 and len(of_days) < QUIET_DAYS:
+        if stated is not None and factor < GIVES_WAY * about:
+            return None
+        if factor < 1 and stated is None and len(of_days) < QUIET_DAYS:
             return None
         return RigSpread(factor, len(of_days), taken[0], taken[-1])
 

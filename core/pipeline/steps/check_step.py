@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import NamedTuple
 
@@ -20,6 +21,7 @@ from core.calibrate.change import (
     changes,
     judge,
     lasting,
+    reckoned,
 )
 from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
@@ -35,6 +37,7 @@ from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCh
 from core.files.results.rig_history import PastCheck, keep_check
 from core.messages import Message
 from core.model import Camera
+from core.model.arrays import Array
 from core.pipeline.steps.planes_step import measure_poses
 from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -99,27 +102,44 @@ def check_step(
             calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
         )  # fmt: skip
-        likelihoods: tuple[float, ...] | None = None
+        past, spread = PastCheck.of(check, celsius), charted_spread(found, calibration, check.taken_at)
         if check.used:
-            if found.rig.stability is None:
-                likelihoods = tuple(map(float, log_likelihoods(deviations, evidence)))
-            stability = found.rig.stability or DEFAULT_STABILITY
             by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
-            estimate, covariance = lasting(deviations, evidence, stability)
-            of_changes = by[[one.source == "change" for one in deviations]]
-            check = replace(
-                check,
-                error_mm=float(-by @ estimate),
-                unseen_mm=2 * float(np.sqrt(by @ covariance @ by)),
-                stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
+            sees = _OfStep(by, deviations, evidence)
+            likelihoods = tuple(map(float, log_likelihoods(deviations, evidence)))
+            by_default = sees.told(check, DEFAULT_STABILITY).stated_mm
+            # what a history says must not rest on what it has said before
+            past = PastCheck.of(
+                sees.told(check, reckoned(found.rig.stability, None)[0]), celsius, likelihoods, by_default
             )
+            check = sees.told(check, reckoned(found.rig.stability, spread)[0])
         log.notes.append(check.sentence)
-        log.notes.extend(_kept(found, PastCheck.of(check, celsius, likelihoods)))
+        log.notes.extend(_kept(found, past))
+        log.notes.extend(() if spread is None else (_charted(spread, found),))
         log.notes.extend(stated_validity(found.rig))
         log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
         write_check(log.path("check"), check)
     return check
+
+
+class _OfStep(NamedTuple):
+    """What a check sees of a step: its errors by the deviations, and what the pictures say of these."""
+
+    by: Array
+    deviations: Sequence[Deviation]
+    evidence: Evidence
+
+    def told(self, check: InterimCheck, stability: Stability) -> InterimCheck:
+        """The check with its errors of a step, for a rig of this stability."""
+        estimate, covariance = lasting(self.deviations, self.evidence, stability)
+        of_changes = self.by[[one.source == "change" for one in self.deviations]]
+        return replace(
+            check,
+            error_mm=float(-self.by @ estimate),
+            unseen_mm=2 * float(np.sqrt(self.by @ covariance @ self.by)),
+            stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
+        )
 
 
 def check_paths(found: RecordingSet) -> list[Path]:
@@ -220,12 +240,17 @@ def checked_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
     return _days_apart(fresh) <= SAME_DAY if fresh.check else _readjusted_on_the_day(found, fan)
 
 
-def _spread(found: RecordingSet, calibration: Calibration) -> RigSpread | None:
-    """How much the rig changes, by the history of its checks; None where nothing is measured or it does not say."""
-    if not found.frames:
+def charted_spread(found: RecordingSet, calibration: Calibration, when: datetime | None = None) -> RigSpread | None:
+    """How much the rig changes, by the history of its checks before `when`; None where it does not say.
+
+    Without `when` it is for the scan's frames, and None where there are none.
+    """
+    if when is None and not found.frames:
         return None
+    stated = found.rig.stability if when is not None else _stability(found, calibration)
     try:
-        return history_of(found.rig, calibration.id).spread(calibration.id, taken_at(found.frames))
+        history = history_of(found.rig, calibration.id)
+        return history.spread(calibration.id, when or taken_at(found.frames), stated)
     except InputError:
         return None  # doubt_of_the_day tells that it cannot be read
 
@@ -261,7 +286,9 @@ def judged(
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
-    change = judge(camera, fan.fan, deviations, evidence, _stability(found, calibration), _spread(found, calibration))
+    change = judge(
+        camera, fan.fan, deviations, evidence, _stability(found, calibration), charted_spread(found, calibration)
+    )
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)
@@ -274,21 +301,10 @@ def judged(
 
 def assumed_stability(found: RecordingSet, change: Change) -> tuple[Message, ...]:
     """A note on what is assumed of a rig of which nothing is stated, or taken from the history of its checks."""
+    if change.spread is not None:
+        return (_charted(change.spread, found),)
     if found.rig.stability is not None:
         return ()
-    if (spread := change.spread) is not None:
-        return (
-            Message(
-                "scan.stability_charted",
-                "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
-                "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}. What has "
-                "knocked it since then is not in that: only a check of the day shows it.",
-                times=spread.factor,
-                days=spread.days,
-                first=spread.first.astimezone(),
-                last=spread.last.astimezone(),
-            ),
-        )
     size = DEFAULT_STABILITY
     return (
         Message(
@@ -299,6 +315,30 @@ def assumed_stability(found: RecordingSet, change: Change) -> tuple[Message, ...
             shift_um=size.shift_mm * 1e3,
             centre_px=size.centre_px,
         ),
+    )
+
+
+def _charted(spread: RigSpread, found: RecordingSet) -> Message:
+    """What the history of the rig's checks says of how much it changes."""
+    values = {
+        "times": spread.factor,
+        "days": spread.days,
+        "first": spread.first.astimezone(),
+        "last": spread.last.astimezone(),
+    }
+    if found.rig.stability is not None:
+        return Message(
+            "scan.stability_more_than_stated",
+            "By checks on {days} days from {first} to {last} the rig changes by {times:.2f} times what is assumed of a "
+            "rig without a history, which is more than rig.toml states ([stability]): that is reckoned with.",
+            **values,
+        )
+    return Message(
+        "scan.stability_charted",
+        "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
+        "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}. What has "
+        "knocked it since then is not in that: only a check of the day shows it.",
+        **values,
     )
 
 

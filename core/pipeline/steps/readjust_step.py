@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from datetime import datetime
 
 import numpy as np
 
+from core.calibrate.change import Stability
 from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
@@ -21,7 +23,7 @@ from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import write_fan
 from core.messages import Message
 from core.model.arrays import Array
-from core.pipeline.steps.check_step import STEP_MM, check_paths, fresh_check, judged, measure_check
+from core.pipeline.steps.check_step import STEP_MM, charted_spread, check_paths, fresh_check, judged, measure_check
 from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
 from core.progress import Progress, silent
 
@@ -63,7 +65,8 @@ def propose_readjustment(
         pictures_id=found.id_of(paths),
         hashes={found.name_of(path): file_hash(path) for path in paths},
     )
-    moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, pictures, found.rig.stability))
+    stability = _prior(found, calibration, pictures.taken_at)
+    moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, pictures, stability))
     there = moved.camera.camera
     left = calibration_deviations(moved.camera, moved.fan)
     again, _ = check_poses(seen, there, moved.fan, left)
@@ -79,6 +82,17 @@ def propose_readjustment(
         -float(here[-1]),
         float(np.linalg.norm(here[:-1])),
     )
+
+
+def _prior(found: RecordingSet, calibration: Calibration, when: datetime) -> Stability | None:
+    """How far the rig may have changed: by its history where that is more than what is stated or assumed.
+
+    A check that fails shows what quiet days before it have not: they make the prior no smaller.
+    """
+    spread = charted_spread(found, calibration, when)
+    if spread is None or (found.rig.stability is None and spread.factor < 1):
+        return found.rig.stability
+    return spread.stability
 
 
 def readjust_step(

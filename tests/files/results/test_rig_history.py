@@ -5,6 +5,7 @@ from datetime import timedelta
 
 import pytest
 
+from core.calibrate.change import DEFAULT_STABILITY, STABLE
 from core.calibrate.rig_spread import FACTORS
 from core.errors import InputError
 from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
@@ -96,11 +97,11 @@ def test_an_artefact_has_a_chart_of_its_own():
     assert read_history("bench").checks == (block,)
 
 
-def spread(days, error_mm=0.0, stated_mm=0.04):
+def spread(days, error_mm=0.0, stated_mm=0.04, stated=None, **kept):
     """How much a rig changes by checks on so many days that say nothing of the factor but by the charted step."""
-    more = {"likelihoods": (0.0,) * len(FACTORS), "stated_mm": stated_mm}
+    more = {"likelihoods": (0.0,) * len(FACTORS), "stated_mm": stated_mm, **kept}
     history = RigHistory("bench", tuple(later(day, error_mm, **more) for day in range(days)))
-    return history.spread(FIRST.calibration_id, FIRST.taken_at + timedelta(days=days, hours=1))
+    return history.spread(FIRST.calibration_id, FIRST.taken_at + timedelta(days=days, hours=1), stated)
 
 
 def test_few_checks_may_say_that_a_rig_changes_more_but_only_many_that_it_changes_less():
@@ -113,6 +114,21 @@ def test_few_checks_may_say_that_a_rig_changes_more_but_only_many_that_it_change
     assert replace(history, checks=history.checks[1:]).spread(FIRST.calibration_id, when) is None
     assert spread(FEWEST, error_mm=0.12).factor == pytest.approx(3.0 * 2.366 / 2, rel=1e-3), "Student's t of 8 days"
     assert spread(FEWEST - 1, error_mm=0.12) is None
+
+
+def test_what_is_stated_of_a_rig_counts_unless_its_checks_show_more():
+    half, stable = DEFAULT_STABILITY.times(0.1, 0.1, 0.1, 0.5), STABLE
+    assert spread(FEWEST, error_mm=0.12, stated=half).factor == spread(FEWEST, error_mm=0.12).factor
+    assert spread(FEWEST, error_mm=0.02, stated=half).factor == pytest.approx(0.5 * 2.366 / 2, rel=1e-3), (
+        "more than 0.5"
+    )
+    assert spread(FEWEST, error_mm=0.01, stated=half) is None
+    assert spread(QUIET_DAYS, error_mm=0.0, stated=half) is None, "no check makes a statement smaller"
+    assert spread(FEWEST, error_mm=0.12, stated=stable) is None
+
+
+def test_a_check_made_with_a_stated_stability_counts_against_the_default_as_well():
+    assert spread(FEWEST, error_mm=0.12, stated_mm=0.01, default_mm=0.04) == spread(FEWEST, error_mm=0.12)
 
 
 @pytest.mark.parametrize("stated_mm", [0.0, float("nan")])

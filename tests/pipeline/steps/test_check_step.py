@@ -27,7 +27,7 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
-from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
+from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
@@ -370,11 +370,34 @@ def test_a_mount_that_turned_after_quiet_days_is_within_u(unchanged, turned, tmp
     assert abs(gauge.thickness_mm - RIG.height_mm) < gauge.U_mm
 
 
-def test_a_stated_stability_stands_whatever_the_history(unchanged, tmp_path):
+def test_a_stated_stability_stands_unless_the_history_shows_more(unchanged, turned, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
-    stated = replace(work.found, rig=replace(work.found.rig, stability=DEFAULT_STABILITY))
-    without = charted(unchanged, replace(work, found=stated), tmp_path / "none", days=0)
-    assert charted(unchanged, replace(work, found=stated), tmp_path / "kept") == without
+    half = DEFAULT_STABILITY.times(0.5, 0.5, 0.5, 0.5)
+    work = replace(work, found=replace(work.found, rig=replace(work.found.rig, stability=half)))
+    without = charted(unchanged, work, tmp_path / "none", days=0)
+    assert without[0] == "change"
+    assert charted(unchanged, work, tmp_path / "quiet", days=QUIET_DAYS) == without
+    history_file(work.calibration().id).unlink()
+    source, size = charted(turned, work, tmp_path / "turned")
+    assert source == "charted change" and size > 1.5 * without[1]
+    notes = {note.code: str(note) for note in scan_step(work, COARSE).scan.notes}
+    assert "more than rig.toml states" in notes["scan.stability_more_than_stated"]
+
+
+def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself(turned, tmp_path):
+    work = work_in(turned, tmp_path)
+    alone = check_step(work)
+    (kept,) = read_history(work.calibration().id).checks
+    proposed = propose_readjustment(work.found, work.calibration(), Options()).record
+    charted(turned, work, tmp_path / "earlier")
+    after = check_step(work)
+    assert after.p == alone.p
+    assert after.stated_mm > 1.1 * alone.stated_mm
+    assert after.unseen_mm > alone.unseen_mm
+    assert read_history(work.calibration().id).checks[-1] == kept, "or a history would feed on itself"
+    assert "scan.stability_charted" in [note.code for note in work.record().notes["check"]]
+    wider = propose_readjustment(work.found, work.calibration(), Options()).record
+    assert np.linalg.norm(wider.sd) > np.linalg.norm(proposed.sd)
 
 
 @pytest.mark.parametrize(("days", "last"), [(7, 1), (8, 4), (8, 0)], ids=["too few", "too long ago", "the day itself"])
