@@ -171,6 +171,7 @@ def _rows(result: PlanResult) -> output.Rows:
         rows.append((tr("block {height:g} mm", height=prediction.height_mm), said))
     shown = result.largest
     rows += [(tr("u from"), _budget(shown)), (tr("σ of a depth"), _sigma(shown))]
+    rows += [(tr("not foretold"), told(result.not_foretold))] if result.not_foretold else []
     counts = {"used": shown.sweeps_used, "all": result.design.sweeps, "points": grouped(shown.points)}
     rows.append((tr("sweeps"), tr("{used} of {all} give {points} points", **counts)))
     for effect in result.effects:

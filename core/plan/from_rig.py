@@ -8,6 +8,7 @@ from typing import Any
 from core.errors import InputError, WrongValue
 from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
 from core.image.targets import Target
+from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.plan.design import PAPER_PIXEL_UM, Design
 
@@ -28,6 +29,12 @@ def read_design(path: Path) -> Design:
     except InputError as error:
         raise InputError(error.what, where=f"{file}: {error.where}", todo=error.todo) from error
     return design
+
+
+def read_part(path: Path) -> Part:
+    """What the rig.toml at `path`, or in that folder, states of the part; InputError as `read_design`."""
+    tables = read_rig_tables(path / "rig.toml" if path.is_dir() else path)
+    return Part() if tables.part is None else tables.part.part()
 
 
 def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:

@@ -17,9 +17,12 @@ import numpy as np
 from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.inspect.gauge import measure_gauge
+from core.inspect.gauge import adjusted, measure_gauge
+from core.inspect.plan.temperature import temperature_contributions, temperature_of
 from core.inspect.results import Contribution, GaugeResult
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.messages import Message
 from core.model.arrays import Array
 from core.plan.calibrating import plan_camera, plan_fan
@@ -96,10 +99,15 @@ class Prediction:
 
 @dataclass(slots=True)
 class Planner:
-    """Predicts, and remembers what plans that differ in little have in common."""
+    """Predicts, and remembers what plans that differ in little have in common.
+
+    Of the `part` what its temperature, expansion and surface make uncertain is known before any picture; None leaves
+    it out.
+    """
 
     progress: Progress = silent
     sigma_cut_mm: float = ReconstructOptions().sigma_cut_mm
+    part: Part | None = None
     _known: dict[tuple[object, ...], object] = field(default_factory=dict)
 
     def predict(self, design: Design, height_mm: float, scans: int = 1) -> Prediction:
@@ -143,6 +151,8 @@ class Planner:
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle, scan.pis.shape[1])
         gauge = measure_gauge(cloud, errors=errors, progress=told.within_step)
+        if self.part is not None:
+            gauge = adjusted(gauge, 0.0, _known_rows(self.part, height_mm))
         if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
             raise InputError(
                 Message(
@@ -182,6 +192,28 @@ class Planner:
             self._known[key] = make()
         made: T = self._known[key]  # type: ignore[assignment]
         return made
+
+
+def _known_rows(part: Part, height_mm: float) -> tuple[Contribution, ...]:
+    """Rows of the budget of a block that are known before it is measured: those of its surface and temperature."""
+    temperature = temperature_of(part)
+    return (
+        *part.surface_rows,
+        *(() if temperature is None else temperature_contributions(height_mm, temperature)),
+    )
+
+
+def light_not_foretold(part: Part) -> Message | None:
+    """What a scan's U has besides if light may come from below the part's surface; None where it does not."""
+    if not part.lets_light_in:
+        return None
+    return Message(
+        "plan.light_not_foretold",
+        "Light may come from below the part's surface: U of a scan has a row for it besides, up to {most_mm:.2f} mm as "
+        "U of a thickness if the stripes' sections tell nothing; only a scan knows. Of a part stated to be metal or "
+        "sprayed it has none.",
+        most_mm=2 * np.sqrt(2) * unseen_mean_mm(NOTHING_SEEN, 1.0, part.lets_light_in),
+    )
 
 
 _SCAN_ONLY = {

@@ -52,6 +52,25 @@ def test_every_height_gets_its_u_and_a_budget(told):
     assert values["changes"] == []
 
 
+def test_what_is_known_of_the_part_beforehand_is_in_the_budget(rig, told, tmp_path):
+    stated = tmp_path / "rig.toml"
+    stated.write_text(
+        TOML.replace("[40, 50]", "[50]") + '[part]\nmaterial = "aluminium"\ncelsius = 22.0\nu_celsius = 0.5\n'
+        "spray_mm = 0.01\nspray_sd_mm = 0.003\n"
+    )
+    after = plan(stated, scans=1, changes=False, sigma_cut_mm=CUT_MM)
+    rows = {row.source.code: row.u_mm for row in after.largest.budget}
+    assert rows["inspection.cause_part_temperature"] == pytest.approx(50 * 23e-6 * 0.5)
+    assert rows["inspection.cause_part_expansion"] == pytest.approx(50 * 0.9e-6 * 2.0)
+    assert rows["inspection.cause_spray"] == pytest.approx(0.003)
+    assert after.not_foretold is None, "no light from below"
+    unstated = json.loads(told[0].out)
+    of_50 = {row["source"]["code"]: row["u_mm"] for row in unstated["thickness"][1]["budget"]}
+    assert of_50["inspection.cause_part_temperature_assumed"] == pytest.approx(50 * 11.5e-6 * 3.0)
+    assert unstated["not_foretold"]["code"] == "plan.light_not_foretold"
+    assert 0.3 < unstated["not_foretold"]["values"]["most_mm"] < 0.6
+
+
 def test_plan_json_and_the_map_are_written(told):
     said, out = told
     written = json.loads((out / "plan.json").read_text(encoding="utf-8"))

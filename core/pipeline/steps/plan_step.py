@@ -16,8 +16,8 @@ from core.messages import Message, as_json
 from core.plan.bounds import Bound, bounds_of
 from core.plan.changes import Effect, advice, compare
 from core.plan.design import Design
-from core.plan.from_rig import read_design
-from core.plan.predict import Planner, Prediction
+from core.plan.from_rig import read_design, read_part
+from core.plan.predict import Planner, Prediction, light_not_foretold
 from core.progress import Progress, silent
 from core.report.plots.plan_map import plan_map_png
 
@@ -28,7 +28,8 @@ PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
 class PlanResult:
     """What a plan will give: one prediction for each height, and what changes do to that of the largest height.
 
-    `advice` is empty when no changes were tried, `bounds` when they were not asked for.
+    `advice` is empty when no changes were tried, `bounds` when they were not asked for; `not_foretold` says what U has
+    besides in a scan.
     """
 
     design: Design
@@ -36,6 +37,7 @@ class PlanResult:
     effects: tuple[Effect, ...]
     advice: Message | None
     bounds: tuple[Bound, ...] = ()
+    not_foretold: Message | None = None
 
     @property
     def largest(self) -> Prediction:
@@ -71,12 +73,14 @@ def plan(
         If rig.toml is wrong, or the rig cannot measure.
     """
     design = read_design(rig)
-    planner = Planner(progress, sigma_cut_mm)
+    part = read_part(rig)
+    planner = Planner(progress, sigma_cut_mm, part)
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()
     limits = bounds_of(design, progress=progress) if bounds else ()
-    return PlanResult(design, predictions, effects, advice(effects) if changes else None, limits)
+    said = advice(effects) if changes else None
+    return PlanResult(design, predictions, effects, said, limits, light_not_foretold(part))
 
 
 def write_plan(result: PlanResult, folder: Path) -> Mapping[str, Path]:
@@ -116,6 +120,7 @@ def plan_values(result: PlanResult) -> dict[str, Any]:
             for effect in result.effects
         ],
         "bounds": [_bound(bound) for bound in result.bounds],
+        "not_foretold": None if result.not_foretold is None else as_json(result.not_foretold),
     }
 
 
