@@ -23,7 +23,7 @@ from core.calibrate.change import (
     lasting,
     reckoned,
 )
-from core.calibrate.deviations import Deviation, calibration_deviations
+from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
@@ -46,6 +46,8 @@ from core.second_process import SecondProcess
 
 SAME_DAY = 1.0
 """Days within which a check says something of a scan."""
+LEAVES_MUCH = 1.2
+"""A check leaves much open that leaves a step so many times as uncertain as the calibrations by themselves."""
 STEP_MM = 50.0
 """Height of the step whose error is told where no nominal thickness is stated."""
 
@@ -103,6 +105,7 @@ def check_step(
             nominal or STEP_MM,
         )  # fmt: skip
         past, spread = PastCheck.of(check, celsius), charted_spread(found, calibration, check.taken_at)
+        sees: _OfStep | None = None
         if check.used:
             by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
             sees = _OfStep(by, deviations, evidence)
@@ -114,6 +117,7 @@ def check_step(
             )
             check = sees.told(check, reckoned(found.rig.stability, spread)[0])
         log.notes.append(check.sentence)
+        log.notes.extend(() if sees is None else sees.notes_on_what_is_open(check))
         log.notes.extend(_kept(found, past))
         log.notes.extend(() if spread is None else (_charted(spread, found),))
         log.notes.extend(stated_validity(found.rig))
@@ -139,6 +143,24 @@ class _OfStep(NamedTuple):
             error_mm=float(-self.by @ estimate),
             unseen_mm=2 * float(np.sqrt(self.by @ covariance @ self.by)),
             stated_mm=float(np.linalg.norm(of_changes * stability.over_default)),
+        )
+
+    def notes_on_what_is_open(self, check: InterimCheck) -> tuple[Message, ...]:
+        """A note if the check excludes so little that U stays much larger than the calibrations alone make it."""
+        lasts = [one.source not in ("change", UNEXPLAINED) for one in self.deviations]
+        calibrations = 2 * float(np.linalg.norm(self.by[lasts]))
+        if not calibrations or check.unseen_mm <= LEAVES_MUCH * calibrations:
+            return ()
+        return (
+            Message(
+                "check.leaves_much",
+                "The check leaves a step of {step_mm:g} mm uncertain by U = {unseen_mm:.3f} mm, the calibrations alone "
+                "by {calibrations_mm:.3f} mm. Take twice as many pictures more, near and far: a target's few corners "
+                "say little of how it is tilted, a black square's four less than a grid of them.",
+                step_mm=check.step_mm,
+                unseen_mm=check.unseen_mm,
+                calibrations_mm=calibrations,
+            ),
         )
 
 

@@ -300,6 +300,16 @@ def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing(unchanged, tmp_pa
     assert gauge.notes[0].code == "validity.never_checked"
 
 
+def test_a_check_that_leaves_much_open_asks_for_more_pictures(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    check = check_step(work)
+    (note,) = (note for note in work.record().notes["check"] if note.code == "check.leaves_much")
+    assert note.values["unseen_mm"] == check.unseen_mm > 1.2 * note.values["calibrations_mm"] > 0
+    sure = replace(work.found, rig=replace(work.found.rig, stability=DEFAULT_STABILITY.times(0.2, 0.2, 0.2, 0.2)))
+    check_step(replace(work, found=sure))
+    assert "check.leaves_much" not in [note.code for note in work.record().notes["check"]]
+
+
 def test_each_check_is_in_the_history_of_the_rig_and_is_shown(unchanged, tmp_path):
     made, out = unchanged / "set", work_in(unchanged, tmp_path).out
     said = trisect("check", made, "--out", out, "--celsius", 21.5)
