@@ -21,7 +21,7 @@ from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.step_page import StepPage
 from workbench.pages.words import length
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
-from workbench.views.forms.source_chooser import SourceChooser
+from workbench.views.forms.source_chooser import SourceChooser, WayOn
 from workbench.views.lists.view_list import ListRow, ViewList
 from workbench.views.plots.bars import Bar, BarsWithThreshold
 
@@ -110,11 +110,15 @@ class CalibrationPage(StepPage):
         self.views_fold = self.add_list(views, self.views)
         self.result_fold = self.add_panel(tr("Result"), self.result)
         self.source.folder_chosen.connect(p.use_folder)
+        self.source.mode_changed.connect(self.refreshing.soon)
         self.source.accept_drops_on(self)
         self.views.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.views.current_changed.connect(p.choose)
         self.bars.bar_clicked.connect(p.choose)
         p.model.opened.connect(self._opened)
+
+    def _way_on(self) -> WayOn:
+        return self.source.way_on(self.presenter.live)
 
     def _opened(self) -> None:
         self._folded = ""

@@ -14,6 +14,7 @@ from workbench.pages.calibration.picture import PictureTab
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views.colours import CORNER_LEFT_OUT
+from workbench.views.forms.source_chooser import WayOn
 
 FACTORS = (1, 30, 100, 300, 1000)
 """How many times longer than true the residuals can be drawn: they are tenths and hundredths of a pixel."""
@@ -24,11 +25,9 @@ class ViewTab(PictureTab):
 
     DETAIL, CORNER_SIZE = CameraDetail, 9
 
-    def __init__(
-        self, presenter: CameraPresenter, choose_folder: Callable[[], None], parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, presenter: CameraPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
         self._drawn: Any = None
-        super().__init__(presenter, choose_folder, parent)
+        super().__init__(presenter, way_on, parent)
         self.factor = QComboBox()
         for factor in FACTORS:
             self.factor.addItem(tr("residuals × {factor}", factor=factor), factor)

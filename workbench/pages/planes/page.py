@@ -28,7 +28,7 @@ class PlanesPage(CalibrationPage):
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.picture = PoseTab(presenter, lambda: self.source.choose())
+        self.picture = PoseTab(presenter, self._way_on)
         self.rig, self.history = RigTab(presenter), PlanesHistoryTab(presenter)
         self.card, self.result = PlanesCard(presenter), PlanesResult(presenter)
         self.live: PlanesLive = PlanesLive(presenter)

@@ -14,6 +14,7 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views.colours import EXCLUDED, fan_colour
+from workbench.views.forms.source_chooser import WayOn
 
 
 class PoseTab(PictureTab):
@@ -21,10 +22,8 @@ class PoseTab(PictureTab):
 
     DETAIL, CORNER_SIZE = PlanesDetail, 10
 
-    def __init__(
-        self, presenter: PlanesPresenter, choose_folder: Callable[[], None], parent: QWidget | None = None
-    ) -> None:
-        super().__init__(presenter, choose_folder, parent)
+    def __init__(self, presenter: PlanesPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
+        super().__init__(presenter, way_on, parent)
         self._stages: Any = None
         """PoseStages of the pose that was looked at last."""
         presenter.look.measured.connect(self._show_pose)

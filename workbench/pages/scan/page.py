@@ -53,7 +53,7 @@ class ScanPage(StepPage):
         super().__init__(presenter, parent)
         self.strip, self.views = LiveStrip(presenter.live), SideBySide()
         self.check_strip = LiveStrip(presenter.check_live)
-        self.picture = ScanPicture(presenter, lambda: self.source.choose())
+        self.picture = ScanPicture(presenter, lambda: self.source.way_on(presenter.live))
         self.cloud = ScanCloud(presenter)
         self.views.add_view(tr("Picture"), self.picture)
         self.views.add_view(tr("Points"), self.cloud)
@@ -124,6 +124,7 @@ class ScanPage(StepPage):
     def _connect(self) -> None:
         p = self.presenter
         self.source.folder_chosen.connect(p.use_folder)
+        self.source.mode_changed.connect(self.refreshing.soon)
         self.source.accept_drops_on(self.picture.image)
         self.frames.toggled_together.connect(lambda names, used: p.set_used(list(names), used))
         self.frames.current_changed.connect(lambda name: p.scrub.choose(name))

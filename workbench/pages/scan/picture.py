@@ -14,6 +14,7 @@ from core.pipeline.live.events import LiveView, PlanesDetail, ScanDetail
 from workbench.language import tr
 from workbench.pages.scan import overlays
 from workbench.pages.scan.presenter import ScanPresenter
+from workbench.views.forms.source_chooser import WayOn
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column
 
@@ -32,13 +33,12 @@ class View(StrEnum):
 class ScanPicture(QWidget):
     """Draws whatever is to be seen now: live, of a recording that is measured, or of one frame."""
 
-    def __init__(
-        self, presenter: ScanPresenter, choose_folder: Callable[[], None], parent: QWidget | None = None
-    ) -> None:
+    def __init__(self, presenter: ScanPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter, self._choose_folder = presenter, choose_folder
+        self._presenter, self._way_on = presenter, way_on
         self._shown: Any = None
         self._fan: tuple[Any, bool] | None = None
+        self._said: tuple[str, WayOn | None] = "", None
         self.image, self.wanted = ImageView(), View.CROSSINGS
         self.image.setAccessibleName(tr("Picture of the scan"))
         in_column(self.image, on=self)
@@ -46,7 +46,6 @@ class ScanPicture(QWidget):
         overlays.show_coverage(self.image, nothing, nothing)  # the first layers are the lowest
         for live in (presenter.live, presenter.check_live):
             live.notice.connect(self.image.announce)
-        self._empty()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -138,14 +137,15 @@ class ScanPicture(QWidget):
     def _empty(self) -> None:
         self._clear(
             tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
-            tr("Choose folder …"),
-            self._choose_folder,
+            self._way_on(),
         )
 
-    def _clear(self, message: str, button: str = "", do: Callable[[], None] | None = None) -> None:
+    def _clear(self, message: str, way_on: WayOn | None = None) -> None:
         self._shown = self._fan = None
-        if self.image.has_picture or self.image.empty_state.message != message:
-            self.image.clear(message, button, do)
+        said = message, way_on
+        if self.image.has_picture or self._said != said:
+            self._said = said
+            self.image.clear(message, *(way_on or ()))
 
 
 def _same(before: Sequence[Sequence[Any]], now: Sequence[Sequence[Any]]) -> bool:

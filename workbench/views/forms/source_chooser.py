@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
@@ -19,6 +20,14 @@ from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.common import breakable
 from workbench.views.layouts import in_column, in_row
+
+
+class WayOn(NamedTuple):
+    """The button that leads on where there are no pictures yet, as `EmptyState.say` takes it."""
+
+    text: str
+    do: Callable[[], None]
+    why_not: str
 
 
 class SourceChooser(QWidget):
@@ -84,6 +93,12 @@ class SourceChooser(QWidget):
         folder = ask.choose_folder(self, self._what, self._folder)
         if folder is not None:
             self.folder_chosen.emit(folder)
+
+    def way_on(self, live: Any) -> WayOn:
+        """Start the live source, whose LivePresenter is `live`, where that is what is shown; else choose a folder."""
+        if self.mode == "live":
+            return WayOn(tr("Start live"), live.start, live.buttons.start)
+        return WayOn(tr("Choose folder …"), self.choose, "")
 
     def accept_drops_on(self, widget: QWidget) -> None:
         """Take folders that are dropped on `widget`."""

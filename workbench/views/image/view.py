@@ -117,8 +117,10 @@ class ImageView(QWidget):
             self._strip.setEnabled(True)
             self._arrange()
 
-    def clear(self, message: str = "", button: str = "", on_button: Callable[[], None] | None = None) -> None:
-        """Show no picture and no layer but a sentence in the middle, with a button if one is named."""
+    def clear(
+        self, message: str = "", button: str = "", on_button: Callable[[], None] | None = None, why_not: str = ""
+    ) -> None:
+        """Show no picture and no layer but a sentence in the middle, with a button if one is named (`EmptyState`)."""
         self._drawing.stop()
         self._layers.clear()
         self._picture.set_picture(None, 1.0, None)
@@ -127,7 +129,7 @@ class ImageView(QWidget):
         self._strip.readout.clear()
         self._strip.zoom.clear()
         self._strip.setEnabled(False)
-        self._empty.say(message, button, on_button)
+        self._empty.say(message, button, on_button, why_not)
         self._empty.show()
         self._arrange()
 

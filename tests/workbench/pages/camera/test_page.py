@@ -55,7 +55,16 @@ def start_live(page, lane, qtbot):
     lane.current.reported.emit(LiveStarted("Camera 1", (640, 480)))
 
 
+def test_an_empty_page_offers_to_start_where_a_live_source_is_chosen(page, lane, qtbot):
+    start = page.picture.image.empty_state.button
+    qtbot.waitUntil(lambda: start.text() == "Start live" and start.isEnabled())
+    qtbot.mouseClick(start, LEFT)
+    assert lane.current is not None and page.presenter.stage is Stage.LIVE
+
+
 def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, views_folder):
+    page.source.set_mode("folder")
+    qtbot.waitUntil(lambda: page.picture.image.empty_state.button.text() == "Choose folder …")
     assert "Take pictures of the target" in page.picture.image.empty_state.message
     assert page.card.title.text() == "No pictures yet"
     assert page.live_panel.start.property("primary")

@@ -92,6 +92,8 @@ def test_an_empty_page_says_what_to_do_next_and_offers_it(
     page: PlanesPage, pictures: Path, qtbot: Any, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     empty = page.picture.image.empty_state
+    page.source.set_mode("folder")
+    qtbot.waitUntil(lambda: empty.button.text() == "Choose folder …")
     assert empty.message.startswith("Take pictures of the plate under the laser")
     assert page.card.title.text() == "No pictures yet"
     assert page.live.panel.start.property("primary")

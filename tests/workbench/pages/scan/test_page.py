@@ -139,8 +139,25 @@ def test_the_choice_of_the_frame_is_that_of_all_pages(on_table, qtbot):
 # ---- what is seen when
 
 
+def test_an_empty_page_offers_to_start_where_a_live_source_is_chosen(page, lane, qtbot):
+    start = page.picture.image.empty_state.button
+    qtbot.waitUntil(lambda: not page.presenter.bench.quick.busy)
+    assert page.source.mode == "live" and start.text() == "Start live"
+    qtbot.mouseClick(start, LEFT)
+    assert lane.current is not None and page.presenter.stage is Stage.LIVE
+
+
+def test_an_empty_page_says_why_it_cannot_start(page, qtbot):
+    start = page.picture.image.empty_state.button
+    page.presenter.live.cannot_start = lambda: "There is no camera."
+    page.presenter.live.changed.emit()
+    qtbot.waitUntil(lambda: not start.isEnabled() and start.toolTip() == "There is no camera.")
+
+
 def test_an_empty_page_says_what_to_do_next_and_offers_it(page, qtbot, monkeypatch, scan_folder):
     image = page.picture.image
+    page.source.set_mode("folder")
+    qtbot.waitUntil(lambda: image.empty_state.button.text() == "Choose folder …")
     assert "Record a scan with a live source" in image.empty_state.message
     assert page.card.title.text() == "No recording yet"
     assert page.below.isHidden() and page.result_fold.isHidden() and page.frames_fold.isHidden()
