@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QLocale, QRect, QSize
-from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QValidator
+from PySide6.QtCore import QLocale, QRect, QSize, Qt
+from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QPen, QValidator
 from PySide6.QtWidgets import QDoubleSpinBox, QFileDialog, QLabel, QWidget
 
 from core.messages import MINUS
@@ -63,7 +63,7 @@ def draw_focus(widget: QWidget) -> None:
     """Frame a widget that has the focus; to be called while it is painted. It leaves a margin of a pixel for it."""
     if widget.hasFocus():
         painter = QPainter(widget)
-        painter.setPen(QColor(shades().accent))
+        painter.setPen(QPen(QColor(shades().muted), 1.0, Qt.PenStyle.DashLine))  # the accent is for what is chosen
         painter.drawRect(widget.rect().adjusted(0, 0, -1, -1))
         painter.end()
 

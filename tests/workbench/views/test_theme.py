@@ -9,9 +9,18 @@ import pytest
 import shiboken6
 from PySide6.QtCore import QRect, QSize
 from PySide6.QtGui import QColor, QPainter, QPixmap
-from PySide6.QtWidgets import QApplication, QFrame, QHBoxLayout, QToolButton, QWidget
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QCheckBox,
+    QFrame,
+    QHBoxLayout,
+    QPushButton,
+    QToolButton,
+    QWidget,
+)
 
-from workbench.theme import DARK, LIGHT, Shades, icon
+from workbench.theme import CHECKED, DARK, LIGHT, Shades, icon
 from workbench.views.common import IconLabel
 
 
@@ -48,6 +57,36 @@ def test_a_theme_dresses_what_is_seen_at_once_and_what_is_hidden_soon(
     assert colours(seen) == (shades.panel, shades.line)
     qtbot.waitUntil(lambda: colours(hidden) == (shades.panel, shades.line))
     assert qapp.styleSheet() == sheet
+
+
+@pytest.mark.parametrize(("name", "shades"), [("dark", DARK), ("light", LIGHT)])
+@pytest.mark.parametrize("kind", [QPushButton, QCheckBox])
+def test_what_has_the_focus_does_not_look_chosen(
+    qtbot: Any, theme: Callable[[str], None], kind: type[QAbstractButton], name: str, shades: Shades
+) -> None:
+    theme(name)
+    window = QWidget()
+    qtbot.addWidget(window)
+    row = QHBoxLayout(window)
+    plain, focused, chosen = (kind() for _ in range(3))
+    for button in (plain, focused, chosen):
+        button.setCheckable(True)
+        row.addWidget(button)
+    chosen.setChecked(True)
+    window.show()
+    window.activateWindow()
+    focused.setFocus()
+    qtbot.waitUntil(focused.hasFocus)
+    accents = [accent_share(button, shades) for button in (plain, focused, chosen)]
+    assert accents[:2] == [0.0, 0.0] and accents[2] > 0.0  # the accent is for what is chosen
+    assert focused.grab().toImage() != plain.grab().toImage()
+
+
+def accent_share(widget: QWidget, shades: Shades) -> float:
+    """Share of its pixels in the colours of what is chosen."""
+    image = widget.grab().toImage()
+    names = [image.pixelColor(x, y).name() for x in range(image.width()) for y in range(image.height())]
+    return sum(name in (shades.accent, CHECKED) for name in names) / len(names)
 
 
 def test_a_widget_that_is_gone_before_its_turn_is_passed_over(qtbot: Any, theme: Callable[[str], None]) -> None:
