@@ -38,7 +38,7 @@ from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
 from workbench.views import ask
 from workbench.views.instruction_bar import InstructionBar
-from workbench.views.layouts import STRETCH, enable, in_column, in_row, keep_focus
+from workbench.views.layouts import Elided, UpAndDown, enable, in_column, in_row, keep_focus, resize_on_screen
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
@@ -47,8 +47,10 @@ from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
 
-WIDE = 1120
-"""From this width on, in pixels, there is room for the titles of the steps beside each page."""
+SMALLEST = QSize(950, 470)
+"""It is of use down to this size: full HD at twice the size leaves 960 × 540, less the system's bars."""
+WIDE, HIGH = 1120, 620
+"""From these on, in pixels, there is room for the titles of the steps beside each page and for a line of help above."""
 
 
 class MainWindow(QMainWindow):
@@ -62,8 +64,8 @@ class MainWindow(QMainWindow):
         self.bench, self.model = bench, bench.model
         self._refreshing = Refresh(self._refresh, self)
         self.setWindowTitle("Trisect")
-        self.setMinimumSize(1000, 680)
-        self.resize(1280, 800)
+        self.setMinimumSize(SMALLEST)
+        resize_on_screen(self, 1280, 800)
         self.setAcceptDrops(True)
         self.projects = ProjectActions(bench, self)
         self.presenters: dict[str, StepPresenter] = {step.name: step.presenter(bench) for step in STEPS}
@@ -73,10 +75,10 @@ class MainWindow(QMainWindow):
         self.instructions = InstructionBar()
         self._led_in: Path | None = None
         self.welcome = WelcomePage(self.projects)
-        self._title, self._help = QLabel(), QLabel()
+        self._title, self._help = QLabel(), Elided()
         self._title.setObjectName("title")
         self._help.setObjectName("muted")
-        self.missing = QLabel()
+        self.missing = Elided()
         self.missing.setObjectName("muted")
         self.back = QPushButton(tr("Back"))
         self.next = QPushButton(tr("Next"))
@@ -84,8 +86,8 @@ class MainWindow(QMainWindow):
         self._stack, self._pages = QStackedWidget(), QStackedWidget()
         for page in self.pages.values():
             self._pages.addWidget(page)
-        self._steps = self._wizard()
-        self._stack.addWidget(self.welcome)
+        self._start, self._steps = UpAndDown(self.welcome), self._wizard()
+        self._stack.addWidget(self._start)
         self._stack.addWidget(self._steps)
         self.setCentralWidget(self._stack)
         self._current = ""
@@ -120,6 +122,7 @@ class MainWindow(QMainWindow):
         step = next(step for step in STEPS if step.name == name)
         self._title.setText(tr(step.title))
         self._help.setText(tr(step.help))
+        self._title.setToolTip(tr(step.help))
         self.presenters[name].entered()
         self._refresh()
 
@@ -199,6 +202,7 @@ class MainWindow(QMainWindow):
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self.rail.set_narrow(self.width() < WIDE)
+        self._help.setVisible(self.height() >= HIGH)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
         if _dropped(event):
@@ -210,8 +214,9 @@ class MainWindow(QMainWindow):
             self.projects.open_dropped(path)
 
     def _wizard(self) -> QWidget:
-        head = in_column(self._title, self._help, margins=(14, 8, 14, 2), spacing=1)
-        foot = in_row(self.back, STRETCH, self.missing, self.next, margins=(14, 6, 14, 8))
+        head = in_column(self._title, self._help, margins=(14, 6, 14, 0), spacing=1)
+        self.missing.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        foot = in_row(self.back, (self.missing, 1), self.next, margins=(14, 4, 14, 4))
         column = in_column(head, self.instructions, self.banner, (self._pages, 1), foot, spacing=2)
         whole = QWidget()
         in_row(self.rail, (column, 1), on=whole, spacing=0)
@@ -227,6 +232,7 @@ class MainWindow(QMainWindow):
         self._messages_button = QPushButton(tr("Messages"))
         self._messages_button.setIcon(icon("mdi6.message-text-outline"))
         self._messages_button.setFlat(True)
+        self._messages_button.setObjectName("low")
         self._messages_button.setIconSize(QSize(14, 14))
         self._messages_button.clicked.connect(self._toggle_messages)
         self.statusBar().addPermanentWidget(self.task_bar)
@@ -320,7 +326,7 @@ class MainWindow(QMainWindow):
             self.go_to("project")
         else:
             self._current = ""
-            _turn(self._stack, self.welcome)
+            _turn(self._stack, self._start)
             self.welcome.refresh()
         self._show_name()
         self._refresh()

@@ -1,19 +1,57 @@
-"""The window fits a small screen: no page is wider or higher than what is left beside rail, title and buttons."""
+"""The window fits a small screen: nothing is cut in any language, and nothing moves when results arrive."""
 
 from __future__ import annotations
 
-import pytest
-from PySide6.QtWidgets import QApplication, QToolButton, QWidget
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
 
+import pytest
+from PySide6.QtCore import QSize
+from PySide6.QtWidgets import QApplication, QLabel, QMenu, QToolButton, QWidget
+
+from core.files.project.data import new_project
 from core.translations import PSEUDO, language
+from tests.workbench.clipped import clipped
 from workbench.app import build_window
 from workbench.bench import Bench
-from workbench.language import choose
+from workbench.language import choose, tr
+from workbench.main_window import SMALLEST, MainWindow
+from workbench.menus import SHORTCUTS
+from workbench.pages.presenter import StepPresenter
+from workbench.pages.project.audit import AuditWindow
+from workbench.pages.project.import_dialog import ImportDialog
+from workbench.pages.step_page import StepPage
 from workbench.steps import STEPS
-from workbench.theme import apply_theme
+from workbench.theme import apply_theme, is_polishing
+from workbench.views.layouts import resize_on_screen
+from workbench.views.lists.shortcut_list import ShortcutList
 from workbench.views.lists.step_rail import StepRail
 
-SMALLEST = 1000, 680
+SIZES = (SMALLEST, QSize(1000, 700))
+"""What is left of full HD at twice the size (960 × 540) beside the system's bars, and a small screen."""
+SCREEN = QSize(960, 540)
+LANGUAGES = ("en", "de", "zh_CN", PSEUDO)
+
+
+@contextmanager
+def window_in(name: str, bench: Bench, app: QApplication, qtbot: Any, *, styled: bool = True) -> Iterator[MainWindow]:
+    """A window in a language; `styled`: as where that is changed, else it is measured before the style is on."""
+    sheet = app.styleSheet()
+    choose(language(name), app)
+    try:
+        if styled:
+            apply_theme(app, "light")
+        window = build_window(app, bench, "light")
+        qtbot.addWidget(window)
+        window.show()
+        yield window
+        qtbot.waitUntil(lambda: not is_polishing(app), timeout=30_000)
+        window.dismiss()
+    finally:
+        choose(language("en"), app)
+        app.setStyleSheet(sheet)
 
 
 def laid_out(widget: QWidget) -> None:
@@ -24,32 +62,114 @@ def laid_out(widget: QWidget) -> None:
 
 
 @pytest.mark.parametrize("styled", [False, True])
-@pytest.mark.parametrize("name", ["en", "de", "zh_CN", PSEUDO])
+@pytest.mark.parametrize("name", LANGUAGES)
 def test_every_page_has_room_in_the_smallest_window(
-    bench: Bench, qapp: QApplication, qtbot, name: str, styled: bool
+    bench: Bench, qapp: QApplication, qtbot: Any, name: str, styled: bool
 ) -> None:
-    sheet = qapp.styleSheet()
-    choose(language(name), qapp)
-    try:
-        if styled:  # as where the language is changed; else widgets are measured before the style is on
-            apply_theme(qapp, "light")
-        window = build_window(qapp, bench, "light")
-        qtbot.addWidget(window)
-        window.resize(*SMALLEST)
-        window.show()
+    with window_in(name, bench, qapp, qtbot, styled=styled) as window:
+        window.resize(SMALLEST)
         laid_out(window.rail)
         assert window.rail.minimumSizeHint().width() < 100
         room = window.width() - window.rail.minimumSizeHint().width()
         wide = {step.name: window.pages[step.name].minimumSizeHint().width() for step in STEPS}
         assert {step: width for step, width in wide.items() if width > room} == {}
-        assert window.minimumSizeHint().height() <= SMALLEST[1]
-        window.dismiss()
-    finally:
-        choose(language("en"), qapp)
-        qapp.setStyleSheet(sheet)
+        assert window.minimumSizeHint().height() <= SMALLEST.height()
 
 
-def test_a_narrow_rail_shows_icons_and_its_tips_tell_the_titles(qtbot) -> None:
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_no_word_is_cut_and_next_is_in_sight_on_any_page_before_and_after_measuring(
+    bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, tmp_path: Path, name: str
+) -> None:
+    found: dict[str, dict[str, str]] = {}
+
+    def look(what: str) -> None:
+        for size in SIZES if name != PSEUDO else SIZES[1:]:  # no language is 40 % longer than English everywhere
+            window.resize(size)
+            for _ in range(3):  # a panel that gets wider makes its page divide its room anew
+                qapp.processEvents()
+            if cut := clipped(window):
+                found[f"{what} at {size.toTuple()}"] = cut
+
+    with window_in(name, bench, qapp, qtbot) as window:
+        look("welcome")
+        bench.model.create(tmp_path / "empty", new_project("Empty"))
+        for project in ("empty", "measured"):
+            if project == "measured":
+                bench.model.open(measured_project)
+            for step in STEPS:
+                window.go_to(step.name)
+                qtbot.waitUntil(lambda: not bench.quick.busy, timeout=60_000)
+                tabs: Any = getattr(window.pages[step.name], "tabs", None)
+                for tab in range(tabs.count()) if tabs is not None else (0,):
+                    if tabs is not None:
+                        tabs.setCurrentIndex(tab)
+                    look(f"{project}, {step.name} {tab}")
+                if step is not STEPS[-1]:
+                    inside = window.rect().contains(window.next.geometry())
+                    assert window.next.isVisible() and inside, step.name
+    assert found == {}
+
+
+@pytest.mark.parametrize("name", LANGUAGES)
+def test_menus_and_dialogs_have_room_on_the_smallest_screen_and_cut_no_word(
+    bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, name: str
+) -> None:
+    with window_in(name, bench, qapp, qtbot) as window:
+        bench.model.open(measured_project)
+        for menu in window.findChildren(QMenu):
+            assert menu.sizeHint().height() <= SCREEN.height() and menu.sizeHint().width() <= SCREEN.width()
+        for dialog in (
+            ShortcutList([(key, tr(meaning)) for _, key, meaning in SHORTCUTS], window),
+            ImportDialog(bench, measured_project / "imported", window),
+            AuditWindow(bench, measured_project, window),
+        ):
+            needed = dialog.minimumSizeHint()
+            assert needed.width() <= SCREEN.width() and needed.height() <= SCREEN.height(), type(dialog)
+            dialog.resize(dialog.sizeHint().boundedTo(SCREEN))
+            dialog.show()
+            qapp.processEvents()
+            assert clipped(dialog) == {}, type(dialog)
+            dialog.close()
+
+
+def test_a_dialog_is_never_larger_than_its_screen(qapp: QApplication, qtbot: Any) -> None:
+    dialog = QWidget()
+    qtbot.addWidget(dialog)
+    resize_on_screen(dialog, 5000, 400)
+    assert dialog.size() == QSize(dialog.screen().availableSize().width(), 400)
+
+
+def test_a_long_word_of_a_job_makes_the_window_no_wider(window: MainWindow, qapp: QApplication) -> None:
+    window.resize(SMALLEST)
+    window.task_bar.begin("Measuring the recording")
+    window.task_bar.progress("Measuring the recording", "the sweeps meet the fan and each other " * 4, 0.5, "")
+    qapp.processEvents()
+    assert window.minimumSizeHint().width() <= SMALLEST.width()
+
+
+def test_a_folded_panel_shows_nothing_that_keys_could_reach_and_an_open_one_all_of_it(
+    hand_page: StepPage, qtbot: Any
+) -> None:
+    words = QLabel("wrapped words " * 40)
+    words.setWordWrap(True)
+    panel = hand_page.add_panel("Result", words, collapsed=True)
+    hand_page.show()
+    assert not words.isVisible()
+    panel.toggleButton().click()
+    qtbot.waitUntil(lambda: words.isVisible() and words.height() >= words.heightForWidth(words.width()))
+    words.setText(words.text() * 2)  # as results arrive
+    qtbot.waitUntil(lambda: words.height() >= words.heightForWidth(words.width()))
+
+
+@pytest.fixture
+def hand_page(bench: Bench, qtbot: Any) -> StepPage:
+    page = StepPage(StepPresenter(bench))
+    qtbot.addWidget(page)
+    page.resize(900, 500)
+    return page
+
+
+def test_a_narrow_rail_shows_icons_and_its_tips_tell_the_titles(qtbot: Any) -> None:
     rail = StepRail([("scan", "Scan", "mdi6.line-scan"), ("report", "Report", "mdi6.file")])
     qtbot.addWidget(rail)
     rail.set_states({"scan": ("done", "12 frames."), "report": ("todo", "")})

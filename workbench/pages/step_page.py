@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt
@@ -20,6 +21,8 @@ SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 """Pixels of the panel at the side: at first, and at least."""
 LIST_HEIGHT, LIST_SHARE = 240, 0.36
 """A list of pictures at the side is at least so many pixels high, and takes this share of a higher page."""
+ANY_HEIGHT = 16_777_215
+"""Qt's own largest height of a widget: no limit."""
 
 
 class StepPage(QWidget):
@@ -38,6 +41,8 @@ class StepPage(QWidget):
         self.presenter: Any = presenter
         self._stale = True
         self._lists: list[QWidget] = []
+        self.kept_panels: dict[str, QCollapsible] = {}
+        """Panels that the user alone folds and unfolds, by the name under which that is remembered."""
         self.centre = QVBoxLayout()
         self.centre.setContentsMargins(8, 8, 8, 8)
         self.pinned = in_column(margins=(10, 8, 10, 0), spacing=8)
@@ -54,21 +59,29 @@ class StepPage(QWidget):
     def refresh(self) -> None:
         """Show what the presenter says now."""
 
-    def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False) -> QCollapsible:
-        """A titled panel at the side that can be folded away."""
+    def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False, kept: str = "") -> QCollapsible:
+        """A titled panel at the side that can be folded away; under the name `kept` it is remembered whether it is."""
         panel = QCollapsible(title)
         panel.setDuration(0)
-        for layout, margins in ((panel.layout(), (0, 0, 0, 0)), (panel.content().layout(), (4, 2, 2, 4))):
-            if layout is not None:
-                layout.setContentsMargins(*margins)
+        outside, inside = panel.layout(), panel.content().layout()
+        assert outside is not None and inside is not None
+        outside.setContentsMargins(0, 0, 0, 0)
+        inside.setContentsMargins(4, 2, 2, 4)
         panel.setExpandedIcon(icon("mdi6.chevron-down", colour="muted"))
         panel.setCollapsedIcon(icon("mdi6.chevron-right", colour="muted"))
         panel.addWidget(widget)
+        # What holds it to the height of words that are not wrapped: its filter, its policy, its alignment.
+        widget.removeEventFilter(panel)
+        panel.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
+        outside.setAlignment(Qt.AlignmentFlag(0))
+        panel.toggled.connect(partial(_show_content, panel.content()))
         if collapsed:
             panel.collapse(animate=False)
         else:
             panel.expand(animate=False)
         self.side.insertWidget(self.side.count() - 1, panel)
+        if kept:
+            self.kept_panels[kept] = panel
         return panel
 
     def add_to_side(self, widget: QWidget) -> None:
@@ -83,7 +96,7 @@ class StepPage(QWidget):
         """A panel with a list that grows with the page."""
         self._lists.append(widget)
         self._fit_lists()
-        return self.add_panel(title, widget)
+        return self.add_panel(title, widget, kept="list")
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -121,3 +134,9 @@ class StepPage(QWidget):
         self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE)
         scroll.setAccessibleName(tr("Settings and quality"))
         return holding(in_column(self.pinned, (scroll, 1), spacing=0))
+
+
+def _show_content(content: QWidget, shown: bool) -> None:
+    """What is folded away is not seen, nor reached by keys; what is not has the height it needs."""
+    content.setMaximumHeight(ANY_HEIGHT if shown else 0)
+    content.setVisible(shown)

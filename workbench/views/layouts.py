@@ -14,9 +14,11 @@ from PySide6.QtWidgets import (
     QLabel,
     QLayout,
     QScrollArea,
+    QTabWidget,
     QVBoxLayout,
     QWidget,
 )
+from superqt import QElidingLabel
 
 NO_MARGINS = (0, 0, 0, 0)
 """Pixels left, above, right and below."""
@@ -104,6 +106,32 @@ class Folding(QWidget):
 
     def _widths(self) -> list[int]:
         return [part.minimumSizeHint().width() for part in self._parts]
+
+
+def resize_on_screen(window: QWidget, width: int, height: int) -> None:
+    """Make a window so large, in pixels, or as large as its screen has room for."""
+    window.resize(QSize(width, height).boundedTo(window.screen().availableSize()))
+
+
+class Elided(QElidingLabel):
+    """Words that are cut with an ellipsis where there is no room: they widen no window. Their tip tells them whole."""
+
+    def setText(self, text: str) -> None:
+        super().setText(text)
+        self.setToolTip(text)
+
+
+class Tabs(QTabWidget):
+    """Tabs that all stay in sight: where there is no room for their titles these are cut, and their tips tell more."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.setUsesScrollButtons(False)
+        self.setElideMode(Qt.TextElideMode.ElideRight)
+
+    def add(self, tab: QWidget, title: str, tip: str = "") -> None:
+        """Put a tab after the others."""
+        self.setTabToolTip(self.addTab(tab, title), tip or title)
 
 
 def heading(text: str) -> QLabel:

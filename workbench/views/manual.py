@@ -11,7 +11,7 @@ from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCursor, QText
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
 from workbench.language import tr
-from workbench.views.layouts import enable, keep_focus
+from workbench.views.layouts import enable, keep_focus, resize_on_screen
 
 SIZE = (860, 900)
 """Width and height of the manual's window at first, in pixels."""
@@ -76,7 +76,7 @@ class ManualWindow(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent, Qt.WindowType.Window)
         self.setWindowTitle(tr("Manual"))
-        self.resize(*SIZE)
+        resize_on_screen(self, *SIZE)
         self.pages = ManualPages(self)
         self.back, self.forward, self.start = (
             QPushButton(text, self) for text in (tr("Back"), tr("Forward"), tr("Contents"))

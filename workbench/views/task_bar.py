@@ -6,7 +6,7 @@ from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
 from workbench.language import tr
-from workbench.views.layouts import enable
+from workbench.views.layouts import Elided, enable
 
 
 class TaskBar(QWidget):
@@ -17,7 +17,7 @@ class TaskBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._label, self._left = QLabel(), QLabel()
+        self._label, self._left = Elided(), QLabel()
         self._left.setObjectName("muted")
         self._bar = QProgressBar()
         self._bar.setFixedWidth(220)

@@ -10,7 +10,8 @@ from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Any, ClassVar
 
-from PySide6.QtWidgets import QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtGui import QResizeEvent
+from PySide6.QtWidgets import QVBoxLayout, QWidget
 
 from workbench.language import text_of, tr
 from workbench.pages.calibration.card import CalibrationCard
@@ -22,11 +23,13 @@ from workbench.pages.step_page import StepPage
 from workbench.pages.words import length
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
 from workbench.views.forms.source_chooser import SourceChooser, WayOn
+from workbench.views.layouts import Tabs
 from workbench.views.lists.view_list import ListRow, ViewList
 from workbench.views.plots.bars import Bar, BarsWithThreshold
+from workbench.views.plots.base import LEAST_HEIGHT
 
-BARS_HEIGHT = 150
-"""Pixels of the bars; the picture takes the rest."""
+BARS_HEIGHT, BARS_SHARE = 150, 0.28
+"""Pixels of the bars, and their share of a page that is low; the picture takes the rest."""
 
 
 class CalibrationPage(StepPage):
@@ -51,8 +54,7 @@ class CalibrationPage(StepPage):
 
     def __init__(self, presenter: Any, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.strip, self.tabs, self.bars = LiveStrip(presenter.live), QTabWidget(), BarsWithThreshold()
-        self.bars.setFixedHeight(BARS_HEIGHT)
+        self.strip, self.tabs, self.bars = LiveStrip(presenter.live), Tabs(), BarsWithThreshold()
         self.centre.addWidget(self.strip)
         self.centre.addWidget(self.tabs, 1)
         self.centre.addWidget(self.bars)
@@ -60,6 +62,10 @@ class CalibrationPage(StepPage):
         self._rows: Any = None
         self._bars: Any = None
         self._folded = ""
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.bars.setFixedHeight(min(BARS_HEIGHT, max(LEAST_HEIGHT, round(BARS_SHARE * self.height()))))
 
     # ---- what differs
 
@@ -99,7 +105,7 @@ class CalibrationPage(StepPage):
         """
         p = self.presenter
         for tab, title, tip in tabs:
-            self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
+            self.tabs.add(tab, title, tip)
         self.tabs.currentChanged.connect(lambda _: self._refresh_tab())
         self.add_to_side(self.card)
         self.source = SourceChooser(self.live, what=folder)

@@ -46,7 +46,7 @@ class CameraPage(CalibrationPage):
             tr("Views"),
             tr("View"),
         )
-        self.add_panel(tr("Camera model"), self.model, collapsed=True)
+        self.add_panel(tr("Camera model"), self.model, collapsed=True, kept="model")
         self.bars.threshold_changed.connect(presenter.set_threshold)
 
     def refresh(self) -> None:

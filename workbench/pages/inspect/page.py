@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import QTimer
-from PySide6.QtWidgets import QTabWidget, QWidget
+from PySide6.QtWidgets import QWidget
 
 from workbench.language import tr
 from workbench.pages.inspect import words
@@ -22,6 +22,7 @@ from workbench.pages.inspect.stage import Stage
 from workbench.pages.inspect.studies.tab import StudiesTab
 from workbench.pages.inspect.surface import SurfaceTab
 from workbench.pages.step_page import StepPage
+from workbench.views.layouts import Tabs
 from workbench.views.stage_card import CardButton, StageCard
 
 REPEATS, PLOT = 2, 3
@@ -35,7 +36,7 @@ class InspectPage(StepPage):
 
     def __init__(self, presenter: InspectPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.tabs = QTabWidget()
+        self.tabs = Tabs()
         self.surface, self.picture = SurfaceTab(presenter), PictureTab(presenter)
         self.series = RepeatsTab(presenter.repeats)
         self.plot, self.studies = PlotTab(presenter.features, presenter.feature), StudiesTab(presenter.studies)
@@ -46,7 +47,7 @@ class InspectPage(StepPage):
             (self.plot, tr("Plot"), tr("The profile or the deviations of the chosen feature")),
             (self.studies, tr("Studies"), tr("How good the way of measuring is: gauge R&R, acceptance")),
         ):
-            self.tabs.setTabToolTip(self.tabs.addTab(tab, title), tip)
+            self.tabs.add(tab, title, tip)
         self.centre.addWidget(self.tabs, 1)
         self.card = StageCard(
             [
@@ -61,15 +62,17 @@ class InspectPage(StepPage):
         self.add_to_side(self.features.form)  # above what would push it down as it comes
         self.add_to_side(self.features.state)
         self.result = ResultPanel(presenter)
-        self.result_fold = self.add_panel(tr("Result"), self.result)
+        self.result_fold = self.add_panel(tr("Result"), self.result, kept="result")
         self.faces = FacesPanel(presenter)
-        self.add_panel(tr("What is measured"), self.faces)
+        self.add_panel(tr("What is measured"), self.faces, kept="faces")
         self.part = PartPanel(presenter)
-        self.part_fold = self.add_panel(tr("The part"), self.part, collapsed=True)
+        self.part_fold = self.add_panel(tr("The part"), self.part, collapsed=True, kept="part")
         self.conditions = ConditionsPanel(presenter.conditions)
-        self.conditions_fold = self.add_panel(tr("Conditions and frame"), self.conditions, collapsed=True)
+        self.conditions_fold = self.add_panel(
+            tr("Conditions and frame"), self.conditions, collapsed=True, kept="conditions"
+        )
         self.picks = PicksPanel(presenter)
-        self.add_panel(tr("Points and distances"), self.picks)
+        self.add_panel(tr("Points and distances"), self.picks, kept="points")
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
         self.features.draw.connect(self._draw)

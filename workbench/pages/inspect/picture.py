@@ -36,6 +36,7 @@ class PictureTab(QWidget):
         self._feature: tuple[object, ...] = ()
         self._regions = 0
         self.image, self.pictures, self.line = ImageView(), QComboBox(), muted()
+        self.pictures.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # more come when there is a scan
         self.pictures.setAccessibleName(tr("Picture"))
         self.pictures.setToolTip(tr("The surface as the camera sees it, or a picture of the recording"))
         self.pictures.setMinimumContentsLength(22)

@@ -14,7 +14,7 @@ from core.messages import visible
 from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
-from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen
 
 
 def ask_reason(parent: QWidget | None, label: str) -> str:
@@ -33,7 +33,7 @@ class AuditWindow(QDialog):
         self._bench, self._folder = bench, folder
         self._trail = Trail()
         self.setWindowTitle(tr("Audit trail"))
-        self.resize(820, 560)
+        resize_on_screen(self, 820, 560)
         self.state, self.entries = muted(), QPlainTextEdit()
         self.state.setWordWrap(True)
         self.entries.setReadOnly(True)

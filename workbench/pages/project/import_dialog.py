@@ -29,7 +29,7 @@ from workbench.language import text_of, tr
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
-from workbench.views.layouts import in_row
+from workbench.views.layouts import in_row, resize_on_screen
 from workbench.views.lists.data_table import DataTable
 from workbench.work import jobs
 
@@ -56,7 +56,7 @@ class ImportDialog(QDialog):
         self._plan: ImportPlan | None = None
         self.setWindowTitle(tr("Import pictures"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
-        self.resize(1100, 720)
+        resize_on_screen(self, 1100, 720)
         self.camera, self.planes, self.planes_off, self.scan = (QLineEdit() for _ in range(4))
         self.target, self.order = QLineEdit(str(set_folder)), QComboBox()
         self.order.addItem(tr("By name (2 before 10)"), Order.NAME)

@@ -40,11 +40,11 @@ class ReportPage(StepPage):
         self.boxes: dict[str, QCheckBox] = {}
         self.paper, self.language = QComboBox(), QComboBox()
         self.template, self.no_template, self.template_name = QPushButton(), QPushButton(), QLabel()
-        self.add_panel(tr("In the report"), self._choices())
+        self.add_panel(tr("In the report"), self._choices(), kept="choices")
         self.exports: dict[str, QPushButton | QAction] = {}
         self.more = QPushButton(tr("More formats"))
         self.folder = QPushButton(tr("Results folder"))
-        self.add_panel(tr("Hand over"), self._hand_over())
+        self.add_panel(tr("Hand over"), self._hand_over(), kept="hand over")
         self._shown: object = None
 
     def refresh(self) -> None:

@@ -82,9 +82,9 @@ class ScanPage(StepPage):
         self.frames.set_headers(tr("Frame"), tr("Median σ [mm]"))
         self.frames_fold = self.add_list(tr("Frames"), self.frames)
         self.settings = SettingsPanel(presenter)
-        self.settings_fold = self.add_panel(tr("Settings"), self.settings, collapsed=True)
+        self.settings_fold = self.add_panel(tr("Settings"), self.settings, collapsed=True, kept="settings")
         self.profiles = ProfilesPanel(presenter.bench)
-        self.profiles_fold = self.add_panel(tr("Fixed lines alone"), self.profiles, collapsed=True)
+        self.profiles_fold = self.add_panel(tr("Fixed lines alone"), self.profiles, collapsed=True, kept="profiles")
         self._rows: Any = None
         self._folded = ""
         self._connect()

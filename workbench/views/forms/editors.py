@@ -11,6 +11,8 @@ from PySide6.QtWidgets import QCheckBox, QComboBox, QLineEdit, QPlainTextEdit
 
 from workbench.views.common import SpinBox
 
+WIDEST_CHOICE = 22
+"""Letters of a choice that a field has room for at least; longer ones only where there is more."""
 _STEPPING_MS = 400
 """How long in ms after the last step of its arrows or the wheel a number is told: one edit, not one a step."""
 
@@ -226,7 +228,7 @@ class ChoiceEditor(QComboBox):
         self.addItems([text for _, text in choices])
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
-        self.setMinimumContentsLength(8)
+        self.setMinimumContentsLength(min(max(len(text) for _, text in choices), WIDEST_CHOICE) if choices else 0)
         self.activated.connect(lambda _: self._tell())
         self._told: object = self.content()
 

@@ -34,6 +34,8 @@ from workbench.views.layouts import in_column
 GROUND = {True: "#12151A", False: "#DDE1E6"}
 """Round the picture, in the dark and in the light theme."""
 
+LEGEND_SHARE = 0.6
+"""The legend takes no more than this share of the picture's height."""
 _PAN_PX = 60
 """One press of an arrow key moves the picture by so much."""
 
@@ -458,7 +460,7 @@ class ImageView(QWidget):
         size = self._canvas.size()
         if not self._empty.isHidden():
             self._empty.setGeometry(0, 0, size.width(), size.height())
-        self._legend.move(8, 8)
+        self._place_legend()
         self._announcement.place()
         self._hint.adjustSize()
         self._hint.move((size.width() - self._hint.width()) // 2, size.height() - self._hint.height() - 10)
@@ -466,7 +468,13 @@ class ImageView(QWidget):
     def _show_legend(self) -> None:
         entries = self._layers.legend()
         self._legend.set_entries(entries)
-        self._legend.setVisible(bool(entries) and self._layers_menu.legend_shown)
+        self._place_legend()
+
+    def _place_legend(self) -> None:
+        """Where it would cover most of the picture, the layers menu alone has its signs."""
+        fits = self._legend.sizeHint().height() <= LEGEND_SHARE * self._canvas.height()
+        self._legend.setVisible(fits and bool(self._legend.titles) and self._layers_menu.legend_shown)
+        self._legend.move(8, 8)
 
     def _show_hint(self, drawing: bool) -> None:
         if drawing:

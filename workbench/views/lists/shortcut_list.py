@@ -9,6 +9,9 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QW
 from workbench.language import tr
 from workbench.views.layouts import in_column
 
+MEANING_WIDTH = 250
+"""Pixels of what a key does; longer words are wrapped, so that both columns fit a small screen."""
+
 
 class ShortcutList(QDialog):
     """All keys and what they do."""
@@ -24,7 +27,10 @@ class ShortcutList(QDialog):
             name = QLabel(key)
             name.setObjectName("heading")
             grid.addWidget(name, row, column)
-            grid.addWidget(QLabel(meaning), row, column + 1)
+            what = QLabel(meaning)
+            what.setWordWrap(True)
+            what.setMinimumWidth(MEANING_WIDTH)
+            grid.addWidget(what, row, column + 1)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
         in_column(grid, buttons, on=self, margins=(18, 16, 18, 12))

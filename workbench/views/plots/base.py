@@ -15,6 +15,8 @@ from workbench.views.common import copy_picture, save_picture
 from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import in_column
 
+LEAST_HEIGHT = 96
+"""Pixels that a plot is high at least."""
 _TICK_PIXELS = 11
 """Size in pixels of the letters at the axes."""
 
@@ -36,7 +38,7 @@ class Canvas(pg.PlotWidget):  # type: ignore[misc]
 class Plot(QWidget):
     """A plot. A subclass keeps what it was given, and draws it in `_draw` with the colours of the theme."""
 
-    def __init__(self, parent: QWidget | None = None, *, least_height: int = 150) -> None:
+    def __init__(self, parent: QWidget | None = None, *, least_height: int = LEAST_HEIGHT) -> None:
         super().__init__(parent)
         self._canvas = Canvas(background=None, axisItems={side: Axis(side) for side in ("left", "bottom")})
         self._canvas.setAntialiasing(True)

@@ -39,7 +39,7 @@ class RunChart(Plot):
     def __init__(self, parent: QWidget | None = None) -> None:
         self._runs: _Runs | None = None
         self._words_shown: list[tuple[pg.TextItem, float]] = []
-        super().__init__(parent, least_height=180)
+        super().__init__(parent)
         self._box.sigResized.connect(self._place_words)
 
     def set_runs(

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QTabWidget, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
 
 from core.files.project.data import Repeat
 from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.theme import icon
-from workbench.views.layouts import enable, in_column, in_row, muted, say
+from workbench.views.layouts import Tabs, enable, in_column, in_row, muted, say
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
@@ -50,16 +50,16 @@ class RepeatsTab(QWidget):
         in_column(self.words, (self.table, 1), buttons, on=above)
         below = QWidget()
         row = in_row(on=below, margins=(0, 6, 0, 0), spacing=14)
-        self.charts = QTabWidget()
-        self.charts.addTab(self.chart, tr("In their order"))
-        self.charts.addTab(self.histogram, tr("Histogram"))
+        self.charts = Tabs()
+        self.charts.add(self.chart, tr("In their order"))
+        self.charts.add(self.histogram, tr("Histogram"))
         row.addWidget(self.charts, 1)
         numbers = QVBoxLayout()
         for widget in (self.rows, self.type1, self.type1_words):
             numbers.addWidget(widget)
         numbers.addStretch(1)
         row.addLayout(numbers)
-        self.rows.setMinimumWidth(230)
+        self.rows.setMinimumWidth(200)
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
         split.addWidget(below)
