@@ -43,6 +43,7 @@ from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import TaskBar
+from workbench.window_layout import keep_layout, restore_layout
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
@@ -100,8 +101,7 @@ class MainWindow(QMainWindow):
         self.menus = Menus(self, bench.settings, self.model.undo_stack, self._commands(), self.projects.open_project)
         self._connect()
         self.back.setIcon(icon("mdi6.chevron-left"))
-        if layout := bench.settings.layout("window"):
-            self.restoreGeometry(layout)
+        restore_layout(self, self.pages, bench.settings)
         self._project_opened()
 
     @property
@@ -173,7 +173,7 @@ class MainWindow(QMainWindow):
         self.deleteLater()
 
     def _close_pages(self) -> None:
-        self.bench.settings.keep_layout("window", self.saveGeometry())
+        keep_layout(self, self.pages, self.bench.settings)
         self.bench.settings.flush()
         for page in self.pages.values():
             page.close()

@@ -1,0 +1,61 @@
+"""How the window is laid out, remembered for each screen: one of another size or scale has a layout of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from PySide6.QtCore import QRect
+from PySide6.QtGui import QGuiApplication, QScreen
+from PySide6.QtWidgets import QWidget
+
+from workbench.pages.step_page import StepPage
+from workbench.settings import AppSettings
+
+LAST_SCREEN = "layout/screen"
+"""Setting: the screen that the window was on last."""
+
+
+def name_of(screen: QScreen) -> str:
+    """A screen by what a layout depends on: its size in the window's own pixels, and its scale."""
+    size = screen.size()
+    return f"{size.width()}x{size.height()} at {screen.devicePixelRatio():g}"
+
+
+def keep_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
+    """Remember where the window is, how its pages are divided and what is folded away, for the screen it is on."""
+    screen = name_of(window.screen())
+    settings.keep_text(LAST_SCREEN, screen)
+    settings.keep_layout(f"{screen}/window", window.saveGeometry())
+    for name, page in pages.items():
+        settings.keep_layout(f"{screen}/{name}", page.splitter.saveState())
+        for key, panel in page.kept_panels.items():
+            settings.keep_text(f"layout/{screen}/{name}/{key}", "open" if panel.isExpanded() else "folded")
+
+
+def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
+    """Lay the window out as it was on the screen it was on last; on the usual one where that screen is gone."""
+    screens = {name_of(screen): screen for screen in QGuiApplication.screens()}
+    name = settings.text(LAST_SCREEN, "")
+    if name not in screens:
+        name = name_of(window.screen())
+    if geometry := settings.layout(f"{name}/window"):
+        window.restoreGeometry(geometry)
+    if not window.isMaximized() and not window.isFullScreen():
+        window.setGeometry(inside(window.geometry(), screens[name].availableGeometry()))
+    for step, page in pages.items():
+        if divided := settings.layout(f"{name}/{step}"):
+            page.splitter.restoreState(divided)
+        for key, panel in page.kept_panels.items():
+            match settings.text(f"layout/{name}/{step}/{key}", ""):
+                case "open":
+                    panel.expand(animate=False)
+                case "folded":
+                    panel.collapse(animate=False)
+
+
+def inside(place: QRect, room: QRect) -> QRect:
+    """The place nearest to this one that is within the room: moved, and smaller where it has to be."""
+    width, height = min(place.width(), room.width()), min(place.height(), room.height())
+    left = min(max(place.left(), room.left()), room.left() + room.width() - width)
+    top = min(max(place.top(), room.top()), room.top() + room.height() - height)
+    return QRect(left, top, width, height)
