@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QDoubleSpinBox, QFileDialog, QLabel, QWidget
 from core.messages import MINUS
 from workbench.language import number, tr
 from workbench.theme import icon, shades
+from workbench.views.colours import Level
 
 
 def dress(widget: QWidget, sheet: str) -> None:
@@ -25,6 +26,11 @@ def dress_edged(widget: QWidget, colour: str) -> None:
         f"{type(widget).__name__} {{ background: {s.panel}; border: 1px solid {s.line};"
         f" border-left: 4px solid {getattr(s, colour)}; border-radius: 4px; }}",
     )
+
+
+def grade_words() -> dict[Level, str]:
+    """What each level is called wherever something is graded."""
+    return {"": "", "good": tr("good"), "warn": tr("fair"), "bad": tr("poor")}
 
 
 class IconLabel(QLabel):

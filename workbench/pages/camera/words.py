@@ -8,9 +8,10 @@ from typing import Any
 from core.calibrate.camera.changes import CameraChanges, parameter_values
 from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
+from core.calibrate.grades import TILT, VIEWS
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from workbench.language import number, text_of, tr
-from workbench.pages.calibration.words import history_row, used_row
+from workbench.pages.calibration.words import graded_row, history_row, used_row
 from workbench.pages.words import degrees, mm, percent, px
 from workbench.views.lists.value_rows import ValueRow
 
@@ -27,18 +28,20 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
             "",
         ),
         (tr("Mean"), px(calibration.mean_px), tr("Mean distance of the corners from where they should be"), ""),
-        used_row(tr("Views"), calibration.views, tr("Views used, and all there are")),
+        used_row(tr("Views"), calibration.views, tr("Views used, and all there are"), VIEWS),
         (
             tr("Coverage"),
             percent(calibration.coverage),
             tr("Share of the picture where there are corners"),
             "",
         ),
-        (
+        graded_row(
             tr("Tilts"),
             degrees(calibration.tilt_range, 0),
-            tr("Largest angle between the target's planes in two views; 30° and more is good"),
-            "",
+            tr("Largest angle between the target's planes in two views"),
+            calibration.tilt_range,
+            TILT,
+            (degrees(TILT.good, 0), degrees(TILT.poor, 0)),
         ),
     ]
     if not math.isnan(calibration.cross_validation_mm):

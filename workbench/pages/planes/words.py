@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
 from workbench.language import number, text_of, tr
 from workbench.pages.calibration.words import history_row, used_row
@@ -28,7 +29,7 @@ def quality_rows(calibration: FanCalibration | None) -> list[ValueRow]:
         )
         for line, rms in enumerate(calibration.rms_mm, start=1)
     ]
-    rows.append(used_row(tr("Poses"), calibration.poses, tr("Poses used, and all there are")))
+    rows.append(used_row(tr("Poses"), calibration.poses, tr("Poses used, and all there are"), POSES))
     if not math.isnan(calibration.stripe_sd_mm):
         tip = tr("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
         off = calibration.stripe_sd_mm

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
-from workbench.views.common import IconLabel, dress, dress_edged
+from workbench.views.common import IconLabel, dress, dress_edged, grade_words
 from workbench.views.layouts import in_column, in_row, say
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
@@ -78,12 +78,7 @@ class ValueRows(QWidget):
         self._labels.append((name, value, sign))
 
     def _show(self) -> None:
-        words = {
-            "": "",
-            "good": tr("good"),
-            "warn": tr("look at this"),
-            "bad": tr("not good enough"),
-        }
+        words = grade_words()
         for (label, text, tip, level), (name, value, sign) in zip(self._rows, self._labels, strict=False):
             for shown, wanted in ((name, label), (value, text)):
                 if shown.text() != wanted:

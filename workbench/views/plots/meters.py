@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QWidget
 from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
-from workbench.views.common import IconLabel, dress
+from workbench.views.common import IconLabel, dress, grade_words
 from workbench.views.layouts import in_row
 from workbench.views.plots.base import tinted
 
@@ -75,8 +75,7 @@ class Meter(QWidget):
     @property
     def said(self) -> str:
         """The value and its zone in words."""
-        words = {"": "", "good": tr("good"), "warn": tr("fair"), "bad": tr("poor")}
-        return " · ".join(part for part in (self._text or "–", words[self.level]) if part)
+        return " · ".join(part for part in (self._text or "–", grade_words()[self.level]) if part)
 
     def share(self, value: float) -> float:
         """Where a value is on the scale, 0 … 1; values beyond the ends are at the ends."""

@@ -12,6 +12,7 @@ from core.messages import plain
 from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.calibration.stage import Stage
+from workbench.pages.camera import words
 from workbench.pages.camera.page import CameraPage
 from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views import ask
@@ -262,3 +263,11 @@ def test_while_it_is_solved_it_cannot_be_calibrated(solved, monkeypatch):
     solved.card.refresh()
     assert not solved.card.buttons["run"].isEnabled()
     assert "being solved" in solved.card.buttons["run"].toolTip()
+
+
+def test_each_grade_of_a_calibration_is_told_with_its_limits(solved):
+    rows = {row[0]: row[1:] for row in words.quality_rows(solved.presenter.work.calibration, None)}
+    text, tip, level = rows["Views"]
+    used = int(text.split(" of ")[0])
+    assert level == ("good" if used >= 10 else "warn") and tip.endswith("Good from 10 on, poor below 5")
+    assert rows["Tilts"][1].endswith("Good from 30° on, poor below 15°")

@@ -1,0 +1,48 @@
+"""Grades of a calibration: good, fair or poor, by limits that are shown beside them.
+
+A limit of what is good is the one that its advice is given by (`core.calibrate.camera.missing`). Less than `POOR_SHARE`
+of it is poor: a convention, to tell what lacks a little from what lacks the most of it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.calibrate.camera.missing import CAMERA_VIEWS, GOOD_TILT, PLANE_POSES
+
+POOR_SHARE = 0.5
+
+
+class Grade(StrEnum):
+    """How good it is."""
+
+    GOOD = "good"
+    FAIR = "fair"
+    POOR = "poor"
+
+
+@dataclass(frozen=True, slots=True)
+class Limit:
+    """From `good` on it is good; less than `POOR_SHARE` of that is poor."""
+
+    good: float
+
+    @property
+    def poor(self) -> float:
+        """Less than this is poor."""
+        return POOR_SHARE * self.good
+
+    def grade(self, value: float) -> Grade:
+        """The grade of a value, in the unit of the limit."""
+        if value >= self.good:
+            return Grade.GOOD
+        return Grade.FAIR if value >= self.poor else Grade.POOR
+
+
+VIEWS = Limit(CAMERA_VIEWS.enough)
+"""Views that a camera is calibrated from."""
+POSES = Limit(PLANE_POSES.enough)
+"""Poses that light planes are calibrated from."""
+TILT = Limit(GOOD_TILT)
+"""rad: largest angle between two views."""
