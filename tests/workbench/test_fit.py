@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from PySide6.QtCore import QSize
+from PySide6.QtCore import QPoint, QRect, QSize
 from PySide6.QtWidgets import QApplication, QLabel, QMenu, QToolButton, QWidget
 
 from core.files.project.data import new_project
@@ -145,6 +145,27 @@ def test_a_long_word_of_a_job_makes_the_window_no_wider(window: MainWindow, qapp
     window.task_bar.progress("Measuring the recording", "the sweeps meet the fan and each other " * 4, 0.5, "")
     qapp.processEvents()
     assert window.minimumSizeHint().width() <= SMALLEST.width()
+
+
+def test_nothing_moves_when_a_job_begins_goes_on_and_ends(
+    window: MainWindow, qapp: QApplication, measured_project: Path
+) -> None:
+    window.resize(SMALLEST)
+    window.model.open(measured_project)
+
+    def places() -> list[QRect]:
+        for _ in range(3):
+            qapp.processEvents()
+        parts = (window.rail, window.pages[window.current], window.pages[window.current].scrolled, window.next)
+        return [QRect(part.mapTo(window, QPoint(0, 0)), part.size()) for part in parts]
+
+    before = places()
+    window.task_bar.begin("Measuring the recording")
+    assert places() == before
+    window.task_bar.progress("Measuring the recording", "sweeps", 0.5, "about 2 minutes left")
+    assert places() == before
+    window.task_bar.end()
+    assert places() == before
 
 
 def test_a_folded_panel_shows_nothing_that_keys_could_reach_and_an_open_one_all_of_it(

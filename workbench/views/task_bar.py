@@ -24,6 +24,7 @@ class TaskBar(QWidget):
         self._bar.setTextVisible(False)
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
         self.cancel = QPushButton(tr("Cancel"))
+        self.cancel.setObjectName("low")
         self.cancel.clicked.connect(self.cancel_pressed)
         row = QHBoxLayout(self)
         row.setContentsMargins(6, 1, 6, 1)
