@@ -90,7 +90,7 @@ class PlanesLive(QWidget):
         self.pairs.setChecked(self._presenter.live.pairs)
         enable(
             self.pairs,
-            tr("Stop the live source first.") if running else "",
+            tr("Stop the live source first.") if self._presenter.live.running else "",
             tr(
                 "Target and stripes are then found each in a picture of its own. The source switches the laser off for "
                 "a moment, or you are asked to; leave it out where the laser cannot be switched"

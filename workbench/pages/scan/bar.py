@@ -19,7 +19,7 @@ from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
 from workbench.theme import icon
-from workbench.views.layouts import Elided, Folding, enable, in_column, in_row, muted
+from workbench.views.layouts import Elided, Folding, enable, in_column, in_row
 
 
 class FrameBar(QWidget):
