@@ -166,6 +166,16 @@ def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
     button.setToolTip(why_not or tip)
 
 
+def rename(button: QAbstractButton, text: str) -> None:
+    """Say what it does now. Where that is another thing, it leaves the focus beside itself: Space was for the first.
+
+    Else the focus would lie on Stop as long as something runs that was started by that button.
+    """
+    if button.text() not in ("", text) and button.window().focusWidget() is button:
+        _focus_below(button)
+    button.setText(text)
+
+
 def keep_focus(window: QWidget) -> bool:
     """Give the focus of what is greyed or hidden to what that stands on; whether that was to be done.
 

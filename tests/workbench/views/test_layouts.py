@@ -7,7 +7,7 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QApplication, QDialog, QPushButton, QWidget
 
-from workbench.views.layouts import enable, in_row
+from workbench.views.layouts import enable, in_row, rename
 
 
 def two_buttons(qtbot: Any) -> tuple[QWidget, QPushButton, QPushButton]:
@@ -48,3 +48,16 @@ def test_a_button_greyed_behind_a_question_does_not_hand_on_the_focus_it_will_ha
     panel.activateWindow()
     qtbot.waitUntil(lambda: QApplication.focusWidget() is not None)
     assert panel.hasFocus()
+
+
+def test_a_button_that_means_another_thing_now_is_not_pressed_by_the_next_space(qtbot: Any) -> None:
+    panel, button, _ = two_buttons(qtbot)
+    pressed: list[str] = []
+    button.clicked.connect(lambda: pressed.append(button.text()))
+    button.clicked.connect(lambda: rename(button, "Stop"))
+    for _ in range(2):
+        qtbot.keyClick(panel.focusWidget() or panel, Qt.Key.Key_Space)
+    assert pressed == ["Do it"]
+    button.setFocus()
+    rename(button, "Stop")
+    assert button.hasFocus(), "it means the same"

@@ -22,7 +22,7 @@ from workbench.views import ask
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
-from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
+from workbench.views.layouts import enable, heading, in_column, in_row, muted, rename, say
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRow, ValueRows
 from workbench.views.plots.control import ControlPlot
 
@@ -80,7 +80,7 @@ class CheckCard(QFrame):
         self._show_chart(check.history, past)
         self.rows.setVisible(shown is not None)
         checking = stage is CheckStage.CHECKING
-        self.take.setText(tr("Stop") if taking else tr("Take pictures"))
+        rename(self.take, tr("Stop") if taking else tr("Take pictures"))
         self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
         can = self._buttons()
         enable(
@@ -96,7 +96,7 @@ class CheckCard(QFrame):
             tr("Choose the folder with pictures of the plane target in the fan, taken today (now: {folder})",
                folder=check.folder or tr("none")),
         )  # fmt: skip
-        self.run.setText(tr("Cancel") if checking else tr("Check again") if shown else tr("Check"))
+        rename(self.run, tr("Cancel") if checking else tr("Check again") if shown else tr("Check"))
         self.run.setIcon(icon("mdi6.stop" if checking else "mdi6.play"))
         tip = tr("Stop checking; the result before is kept") if checking else tr(
             "Compare the stripes in the pictures with where the calibrations have them"

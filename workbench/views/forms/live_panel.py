@@ -23,7 +23,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.live_form import SourceForm
-from workbench.views.layouts import enable, in_column, in_row
+from workbench.views.layouts import enable, in_column, in_row, rename
 
 GO_ON, PAUSE = QKeySequence(Qt.Key.Key_PageDown), QKeySequence(Qt.Key.Key_PageUp)
 """The two keys of presenters and of most foot switches; they mean something only while a source is live."""
@@ -62,7 +62,7 @@ class LivePanel(QWidget):
         live = self.live
         running = live.running
         self.form.refresh()
-        self.start.setText(tr("Stop") if running else tr("Start live"))
+        rename(self.start, tr("Stop") if running else tr("Start live"))
         self.start.setIcon(
             icon("mdi6.stop" if running else "mdi6.play", colour="on_accent" if self.start.property("primary") else "")
         )

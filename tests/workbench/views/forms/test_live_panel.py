@@ -70,7 +70,7 @@ def open_source(lane):
 def test_start_becomes_stop(panel, live, lane, qtbot):
     assert panel.start.text() == "Start live"
     qtbot.mouseClick(panel.start, LEFT)
-    assert live.running and panel.start.text() == "Stop"
+    assert live.running and not live.stopping and panel.start.text() == "Stop"
     qtbot.mouseClick(panel.start, LEFT)
     assert live.stopping and not panel.start.isEnabled()
 
@@ -320,6 +320,15 @@ def test_another_pages_recording_is_asked_about(panel, live, lane, qtbot, monkey
     qtbot.mouseClick(panel.start, LEFT)
     assert asked == [False], "Return leaves the other recording alone"
     assert live.running is stopped
+
+
+def test_a_second_space_does_not_stop_what_the_first_has_started(panel, live, qtbot):
+    panel.activateWindow()
+    panel.start.setFocus()
+    qtbot.waitUntil(panel.start.hasFocus)
+    for _ in range(2):
+        qtbot.keyClick(panel.window().focusWidget(), Qt.Key.Key_Space)
+    assert live.running and not live.stopping and panel.start.text() == "Stop"
 
 
 def test_counts_follow_the_pictures(panel, lane, qtbot):
