@@ -54,7 +54,7 @@ def _cut(widget: QWidget) -> Iterator[tuple[str, str]]:
 
 
 def _label(label: QLabel) -> Iterator[tuple[str, str]]:
-    if not label.text() or (isinstance(label, QElidingLabel) and label.toolTip()):
+    if not label.text() or (isinstance(label, QElidingLabel) and label.toolTip() and not label.wordWrap()):
         return
     inside = label.contentsRect()
     if label.wordWrap():

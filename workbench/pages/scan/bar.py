@@ -107,7 +107,9 @@ class FrameBar(QWidget):
         column = in_column(Folding(*halves, spacing=0), along, on=self, margins=(0, 4, 0, 0), spacing=4)
         self.said.setObjectName("muted")
         self.said.setWordWrap(True)
-        self.said.setFixedHeight(2 * self.said.fontMetrics().lineSpacing())
+        words = self.used.text()  # in the window's own letters: those of some languages are higher than the font's line
+        two_lines = self.said.fontMetrics().boundingRect(self.rect(), Qt.TextFlag.TextWordWrap, f"{words}\n{words}")
+        self.said.setFixedHeight(two_lines.height())
         self.said.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(self.said)
 

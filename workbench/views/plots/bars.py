@@ -16,7 +16,7 @@ from workbench.theme import shades
 from workbench.views.common import draw_focus
 from workbench.views.plots.base import Plot, tinted, written
 
-_HEADROOM = 1.18
+_HEADROOM = 1.3
 """Height of the plot over its highest bar: room for the line that is dragged and its words."""
 _NUDGE = 0.01
 """Share of the plot's height by which an arrow key moves the line."""
