@@ -11,7 +11,7 @@ LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "inspect", "report"), ("c
 STATES = [WholeFacts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
 
 
-@pytest.mark.parametrize("facts", STATES, ids=str)
+@pytest.mark.parametrize("facts", STATES)
 def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: WholeFacts) -> None:
     why = why_not_measure_all(facts)
     idle = not facts.running and not facts.live
