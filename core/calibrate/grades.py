@@ -12,6 +12,7 @@ from enum import StrEnum
 from core.calibrate.camera.missing import CAMERA_VIEWS, GOOD_TILT, PLANE_POSES
 
 POOR_SHARE = 0.5
+"""Share of the limit of what is good below which it is poor: a convention, as said above."""
 
 
 class Grade(StrEnum):

@@ -71,6 +71,8 @@ def write_bytes(path: Path, *data: bytes | memoryview, sync: bool = True) -> Non
 
 def write_beside(path: Path, put: Callable[[Path], None]) -> None:
     """Have `put` write a new file beside `path`, and rename it to `path` when it is whole; raises as `write_bytes`."""
+    if not path.name:
+        raise cannot_write(path, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
     beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
     try:
         put(beside)

@@ -7,6 +7,7 @@ from PySide6.QtCore import QObject
 from core.inspect.shown.view_frame import ViewFrame, shown_frame
 from workbench.language import tr
 from workbench.settings import AppSettings
+from workbench.views.layouts import enable
 from workbench.views.scene.view import SceneView
 
 
@@ -33,11 +34,7 @@ class FrameTool(QObject):
 
     def _refresh(self) -> None:
         known, wanted = self._part is not None, self._settings.part_frame
-        self.action.setEnabled(known)
+        unknown = tr("The part's frame is not known: measure the thickness, or part coordinates, on the Inspect page.")
+        enable(self.action, "" if known else unknown, self._tip)
         self.action.setChecked(known and wanted)
-        self.action.setToolTip(
-            self._tip
-            if known
-            else tr("The part's frame is not known: measure the thickness, or part coordinates, on the Inspect page.")
-        )
         self._scene.set_frame(shown_frame(self._part, wanted=wanted))

@@ -13,7 +13,7 @@ from workbench.pages.inspect.cut import InspectCut
 from workbench.theme import icon
 from workbench.views.colours import PROPOSED
 from workbench.views.common import SpinBox
-from workbench.views.layouts import in_column, in_row
+from workbench.views.layouts import enable, in_column, in_row
 from workbench.views.plots.lines import LineChart
 
 CHART_PX = 150
@@ -74,5 +74,4 @@ class CutPanel(QWidget):
     def show_keep(self) -> None:
         """Whether it can be kept, and why not."""
         why_not = self._cut.cannot_keep
-        self.keep.setEnabled(not why_not)
-        self.keep.setToolTip(why_not or tr("Measure this cut as a feature of the plan; undoable"))
+        enable(self.keep, why_not, tr("Measure this cut as a feature of the plan; undoable"))

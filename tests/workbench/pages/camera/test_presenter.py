@@ -320,10 +320,10 @@ def test_closing_the_project_forgets_everything(accepted):
 
 def test_another_camera_model_is_solved_at_once_and_undone(solved, qtbot):
     before = solved.work.calibration.camera.matrix
-    solved.set_model("skew", False)
+    solved.set_model("skew", True)
     settled(qtbot, solved)
-    assert before[0, 1] != 0 == solved.work.calibration.camera.matrix[0, 1]
-    assert not solved.model_values()["skew"]
+    assert before[0, 1] == 0 != solved.work.calibration.camera.matrix[0, 1]
+    assert solved.model_values()["skew"]
     solved.model.undo_stack.undo()
     assert np.array_equal(solved.work.calibration.camera.matrix, before)
 

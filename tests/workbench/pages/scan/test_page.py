@@ -119,7 +119,7 @@ def test_a_page_entered_again_reads_nothing_twice(on_table, scan_bench, qtbot):
 def test_points_that_grow_are_in_the_cameras_frame_until_the_part_is_known(on_table, measuring, qtbot):
     quick = cast(HandLane, on_table.presenter.bench.quick)
     quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
-    qtbot.mouseClick(on_table.stage.buttons["run"], LEFT)
+    qtbot.mouseClick(on_table.card.buttons["run"], LEFT)
     measuring.current.reported.emit(cases.detail(0, renewed=True))
     qtbot.waitUntil(lambda: on_table.cloud.scene.state().points == 30)
     assert on_table.cloud.scene.frame.kind is FrameKind.CAMERA
