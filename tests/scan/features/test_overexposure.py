@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 from core.errors import InputError
@@ -52,6 +53,13 @@ def test_a_glossy_part_is_told_with_how_much_less_to_expose(gloss, stops):
 @pytest.mark.parametrize("scenario", [RIG, replace(RIG, seed=7), replace(RIG, speckle=0.35)])
 def test_a_matt_part_is_not_said_to_shine(scenario):
     assert shine_of(scenario) == ()
+
+
+def test_sweeps_that_saturate_where_they_cross_the_fan_are_not_said_to_shine():
+    seen = features_of(RIG)
+    sweeps = [piece for frame in seen.frames for piece in frame.centrelines]
+    sweeps = [replace(piece, saturated=np.arange(len(piece.saturated)) % 50 == 0) for piece in sweeps]
+    assert notes_on_shine(seen.fan, sweeps, 255.0) == ()
 
 
 def test_a_scan_that_is_refused_as_overexposed_is_not_said_to_shine_as_well():
