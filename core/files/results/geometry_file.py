@@ -69,7 +69,7 @@ def read_geometry(inspection: Path, points: Array) -> Geometry:
     """
     file = read_inspection(inspection)
     tables = checked(_GeometryFile, read_json(inspection), inspection)
-    if any(len(used) and used.max() >= len(points) for used in file.points.values()):
+    if any(len(used) and not 0 <= used.min() <= used.max() < len(points) for used in file.points.values()):
         raise InputError(
             Message("file.other_cloud", "is of another scan than the cloud beside it"), where=inspection, todo=AGAIN
         )

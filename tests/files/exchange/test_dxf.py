@@ -123,6 +123,11 @@ def test_what_cannot_be_drawn_is_told(tmp_path, scanned):
     points, inspection = scanned
     with pytest.raises(InputError, match="of another scan"):
         read_geometry(inspected(tmp_path, inspection), points[:10])
+    path = inspected(tmp_path, inspection).with_suffix(".npz")
+    arrays = dict(np.load(path))
+    np.savez(path, **(arrays | {"points_0": np.array([-(2**62)])}))
+    with pytest.raises(InputError, match="of another scan"):
+        read_geometry(path.with_suffix(".json"), points)
     with pytest.raises(InputError, match="no plane, sphere, cylinder or section"):
         read_geometry(inspected(tmp_path, inspection, features=[]), points)
     tables = json.loads(inspected(tmp_path, inspection).read_text())
