@@ -8,7 +8,6 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Any, NamedTuple
 
-from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
@@ -22,6 +21,7 @@ from core.report.layout.style import (
     HAIRLINE,
     INK,
     MUTED,
+    PAGE_SIZES,
     SANS,
     TEXT_WIDTH,
     ReportLook,
@@ -48,7 +48,6 @@ SMALLER = (0.94, 0.88, 0.82, 0.76)
 LONG_REMARKS = 1000
 """Characters of remarks beyond which they need room of their own."""
 
-PAGE_SIZES: Mapping[Paper, tuple[float, float]] = {"A4": A4, "Letter": LETTER}
 FOOT = 16 * mm  # of the page, for its number and the report's name
 LONGEST_FOOTER = 160
 """Characters of a company's line: what fits below the page's own."""

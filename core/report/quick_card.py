@@ -6,17 +6,25 @@ import io
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import Flowable, Frame, Paragraph, Table, TableStyle
 
 from core.messages import label
-from core.report.layout.style import ACCENT, HAIRLINE, MUTED, SANS, ReportLook, color, markup, prepare_reportlab
+from core.report.layout.style import (
+    ACCENT,
+    HAIRLINE,
+    MUTED,
+    PAGE_SIZES,
+    SANS,
+    ReportLook,
+    color,
+    markup,
+    prepare_reportlab,
+)
 from core.report.template import Paper
 from core.report.wording import Words
 
-PAGES = {"A4": A4, "Letter": LETTER}
 EDGE, BETWEEN = 14 * mm, 8 * mm
 """White around the page, and between its two columns."""
 HEAD, FOOT = 17 * mm, 22 * mm
@@ -130,7 +138,7 @@ def quick_card(language: str = "en", paper: Paper = "A4") -> bytes:
     """
     prepare_reportlab()
     look = ReportLook(Words.of(language), ACCENT)
-    width, height = PAGES[paper]
+    width, height = PAGE_SIZES[paper]
     room = (width - 2 * EDGE - BETWEEN) / 2, height - 2 * EDGE - HEAD - FOOT
     for size in SIZES:  # the longest language is read at the smallest one
         columns = _columns(look, size, room[0])

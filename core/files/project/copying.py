@@ -8,7 +8,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.atomic import cannot_write
-from core.files.project.folder import AUTOSAVE
+from core.files.project.folder import AUTOSAVE, require_free
 from core.files.project.lock import LOCK
 from core.files.reading import resolved
 from core.messages import Message
@@ -29,12 +29,7 @@ def copy_project(folder: Path, to: Path, progress: Progress = silent) -> Path:
     InputError
         If `to` is there already or lies within the project, a file cannot be read, or nothing can be written there.
     """
-    if to.exists():
-        raise InputError(
-            Message("project.folder_taken", "is there already"),
-            where=to,
-            todo=Message("advice.choose_another_name", "choose another name"),
-        )
+    require_free(to)
     if resolved(to).is_relative_to(resolved(folder)):
         raise InputError(
             Message("project.copy_within_itself", "lies within the project that is to be copied"),

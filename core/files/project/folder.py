@@ -145,6 +145,16 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
     put_opener(folder)
 
 
+def require_free(to: Path) -> None:
+    """InputError if there is something already where the folder of a project is to be made."""
+    if to.exists():
+        raise InputError(
+            Message("project.folder_taken", "is there already"),
+            where=to,
+            todo=Message("advice.choose_another_name", "choose another name"),
+        )
+
+
 def put_opener(folder: Path) -> None:
     """Put NAME.trisect into a project's folder, if none is there; a folder that cannot be written to does without."""
     with suppress(InputError, OSError):

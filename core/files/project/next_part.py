@@ -12,7 +12,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder
 from core.files.project.calibration_store import FOLDER as CALIBRATIONS
 from core.files.project.data import Project, ProjectFile, Sources
-from core.files.project.folder import create_project, read_project, source_folder
+from core.files.project.folder import create_project, read_project, require_free, source_folder
 from core.files.project.keys import relocated
 from core.files.project.people import Person, read_rules, write_rules
 from core.files.project.report_template import logo_beside
@@ -49,12 +49,7 @@ def next_part(
     InputError
         If `to` is there already, serial number or operator are empty, a file cannot be read, or nothing can be written.
     """
-    if to.exists():
-        raise InputError(
-            Message("project.folder_taken", "is there already"),
-            where=to,
-            todo=Message("advice.choose_another_name", "choose another name"),
-        )
+    require_free(to)
     if not serial.strip() or not operator.strip():
         raise InputError(
             Message("project.next_part_unnamed", "serial number and operator must be given: the report needs both"),

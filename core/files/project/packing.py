@@ -31,7 +31,7 @@ from core.files.limits import TEXT_BYTES, check_bytes, check_file
 from core.files.project.audit import AUDIT, append
 from core.files.project.changes import differences
 from core.files.project.data import ProjectFile
-from core.files.project.folder import AUTOSAVE, PROJECT, read_project, source_folder
+from core.files.project.folder import AUTOSAVE, PROJECT, read_project, require_free, source_folder
 from core.files.project.json_form import project_text
 from core.files.project.keys import relocated
 from core.files.project.lock import LOCK
@@ -151,12 +151,7 @@ def unpack_project(path: Path, to: Path, progress: Progress = silent) -> Path:
         If `to` is there already, the file is no packed project or damaged, names files outside its folder, a hash is
         not what the list says, or nothing can be written there.
     """
-    if to.exists():
-        raise InputError(
-            Message("project.folder_taken", "is there already"),
-            where=to,
-            todo=Message("advice.choose_another_name", "choose another name"),
-        )
+    require_free(to)
     check_file(path)
     beside = to.with_name(f".{to.name}.{secrets.token_hex(4)}.part")
     try:

@@ -14,6 +14,7 @@ import matplotlib
 from reportlab import rl_config
 from reportlab.lib.colors import HexColor
 from reportlab.lib.enums import TA_CENTER, TA_RIGHT
+from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase import pdfmetrics
@@ -21,6 +22,7 @@ from reportlab.platypus import Paragraph
 
 from core.messages import Message
 from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian, truetype
+from core.report.template import Paper
 from core.report.wording import Words
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
@@ -28,6 +30,9 @@ ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7",
 
 MOST_CHARACTERS = 900
 """Longest text of one cell or paragraph; a page could not hold a cell without any limit."""
+
+PAGE_SIZES: Mapping[Paper, tuple[float, float]] = {"A4": A4, "Letter": LETTER}
+"""Width and height in points."""
 
 TEXT_WIDTH = 170 * mm
 """On every paper, centred: so tables and pictures are the same on all of them."""

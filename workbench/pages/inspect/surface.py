@@ -104,7 +104,7 @@ class SurfaceTab(QWidget):
         for mode, action in self.clicks.items():
             action.triggered.connect(lambda on, mode=mode: presenter.start_clicking(mode if on else ""))
         self.cutting = self.scene.add_tool(tr("Lay a plane through the surface and see the profile"), "X", "mdi6.knife")
-        self._tips_of_cutting = self.cutting.toolTip()
+        self._cutting_tip = self.cutting.toolTip()
         self.cutting.triggered.connect(presenter.cut.show)
         self.scene.handle_pulled.connect(presenter.cut.pull)
         presenter.cut.changed.connect(Refresh(self._show_cut, self).soon)
@@ -120,7 +120,7 @@ class SurfaceTab(QWidget):
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
-        enable(self.cutting, p.scan.buttons.use, self._tips_of_cutting)
+        enable(self.cutting, p.scan.buttons.use, self._cutting_tip)
         self.frame.show(p.part_frame)
         if view is None:
             self._clear()
