@@ -86,6 +86,7 @@ def _renewed(folder: Path, file: ProjectFile, serial: str, operator: str, name: 
     after = replace(
         before,
         info=info,
+        rig=replace(before.rig, part=replace(before.rig.part, celsius=None, u_celsius=None)),
         sources=replace(before.sources, scan=""),
         options=replace(before.options, excluded=kept),
         repeats=(),

@@ -20,6 +20,7 @@ from core.files.recording.options import Options
 from core.inspect.characteristic import Limits
 from core.inspect.plan.feature_spec import Deviation, FaceAt, FeatureSpec, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.part import Part
 from tests.simulated import trisect
 
 HEIGHT = FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),))
@@ -77,6 +78,14 @@ def test_calibrations_plan_and_report_hold_and_nothing_of_the_last_part_does(pro
         "project.json", "audit.jsonl", "Block 2.trisect", "calibrations/camera-c1.json", "nominal/block.stl",
     }  # fmt: skip
     assert read_trail(to).problems == () and read_project(project) == before
+
+
+def test_the_temperature_of_the_last_part_is_not_taken_for_that_of_the_next(project: Path, tmp_path: Path) -> None:
+    file = read_project(project)
+    part = Part(material="steel", celsius=23.0, u_celsius=0.1)
+    create_project(project, replace(file, project=replace(file.project, rig=replace(file.project.rig, part=part))))
+    after = read_project(next_part(project, tmp_path / "Block 2", "2", "Ada")).project.rig.part
+    assert after == Part(material="steel")
 
 
 def test_the_people_go_along_with_their_roles_so_that_limits_stay_closed(project: Path, tmp_path: Path) -> None:
