@@ -31,12 +31,14 @@ from core.files.complaints import checked
 from core.files.plan.tables import PlanTables
 from core.files.plan.translation import plan_of, plan_tables
 from core.files.reading import read_toml
-from core.files.recording.rig import WRITE_ONE
 from core.files.toml_text import toml_text
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
 
 _MISSING = Message("inspection.plan_missing", "the file is missing; it says what is to be inspected")
+_WRITE_ONE = Message(
+    "advice.write_plan", "write one as the manual shows, page Inspect, or make it on the workbench's Inspect page"
+)
 
 
 def read_plan(path: Path) -> InspectionPlan:
@@ -48,7 +50,7 @@ def read_plan(path: Path) -> InspectionPlan:
         If it is missing, is no TOML, has an unknown key, a value is absurd, or features do not fit together. The
         sentence names the file and the field or feature.
     """
-    tables = read_toml(path, missing=_MISSING, todo=WRITE_ONE)
+    tables = read_toml(path, missing=_MISSING, todo=_WRITE_ONE)
     plan = plan_of(checked(PlanTables, tables, path), path)
     try:
         plan.ordered()

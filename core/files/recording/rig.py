@@ -23,7 +23,7 @@ from core.inspect.uncertainty.part import MATERIALS, Part
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 
-WRITE_ONE = Message("advice.write_as_in_readme", "write one as the README shows")
+_WRITE_ONE = Message("advice.write_as_in_manual", "write one as the manual shows, page Recording sets and files")
 _MISSING = Message("rig.missing", "the file is missing; it says what the targets and the laser are")
 
 # The description of a field ends the sentence "… is <value>, not <description>".
@@ -487,7 +487,7 @@ def read_rig_tables(path: Path) -> RigTables:
 
 
 def _toml(path: Path) -> dict[str, Any]:
-    return read_toml(path, missing=_MISSING, todo=WRITE_ONE)
+    return read_toml(path, missing=_MISSING, todo=_WRITE_ONE)
 
 
 def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
