@@ -22,6 +22,8 @@ def test_the_command_line_is_imported_without_any_extra():
         "pypdfium2",
         "pye57",
         "ezdxf",
+        "trimesh",
+        "cascadio",
         "pypylon",
     )
     program = (

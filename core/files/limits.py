@@ -21,6 +21,8 @@ TEXT_BYTES = 30_000_000
 """Of JSON and CSV: a camera.json of 100 views of 2,000 corners has 4 MB."""
 STL_BYTES = 300_000_000
 """Of a surface: 6 million triangles in binary, of which several times as much is made."""
+STEP_BYTES = 300_000_000
+"""Of a CAD part: an engine with all its screws has 200 MB."""
 TOML_BYTES = 1_000_000
 """Of what people write."""
 CAMERA_BYTES = 1_000_000

@@ -147,7 +147,7 @@ READERS = {
     "true depth": Reader("set.truth/depth.npz", lambda path: load_truth(path.parent)),
     "cloud": Reader("small.ply", read_cloud),
     "mesh": Reader("mesh.ply", read_mesh),
-    "nominal": Reader("part.stl", read_nominal),
+    "nominal": Reader("part.stl", lambda path: read_nominal(path, 0.1)),
     "log": Reader("log/recording.csv", lambda path: read_log(path.parent)),
     "table": Reader("table.csv", read_table),
     "repeats": Reader("repeats.csv", lambda path: read_repeats([path])),

@@ -11,6 +11,7 @@ from core.inspect.plan.alignment import best_fit
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.deviation_map import classes_of, mark
+from core.inspect.uncertainty.causes import FACETS
 from core.scan.surface.triangles import ProximityQuery, Triangles
 from core.simulate.scene.objects import step_block
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN, PIN_AXIS, ShapeScan
@@ -103,6 +104,22 @@ def test_a_ball_too_large_by_a_twentieth_shows_it_with_an_honest_uncertainty():
         assert counts.sum() == len(deviations.deviation)
         assert edges[np.argmax(counts)] == pytest.approx(0.05, abs=0.03)
     assert 0.4 < np.sqrt(np.mean(np.square(relative))) < 1.6
+
+
+def test_how_far_triangles_are_off_the_nominal_surface_is_a_row_of_the_budget():
+    scan = ShapeScan()
+    cloud = scan.measure(np.random.default_rng(0))
+    corners = np.asarray(trimesh.creation.icosphere(subdivisions=4, radius=BALL_RADIUS).triangles) + BALL
+    spec = FeatureSpec("ball", "deviation", deviation=Deviation("ball.step", "as measured", 0.1, 1.0))
+    exact, coarse = (
+        evaluate(InspectionPlan((spec,)), cloud, errors=scan.errors, nominals={"ball.step": Triangles(corners, chord)})
+        for chord in (0.0, 0.2)
+    )
+    for before, after, times in zip(exact.characteristics, coarse.characteristics, (2, 1), strict=True):
+        row = {row.source: row.u_mm for row in after.budget}
+        assert row[FACETS] == pytest.approx(times * 0.2 / np.sqrt(3))
+        assert after.u == pytest.approx(np.hypot(before.u, row[FACETS]))
+        assert FACETS not in {row.source for row in before.budget}
 
 
 def test_a_nominal_surface_in_part_coordinates_is_laid_on_by_the_parts_frame():

@@ -152,7 +152,7 @@ class SectionTable(Table):
 class DeviationTable(Table):
     """A comparison with a nominal surface."""
 
-    nominal: str = Field(min_length=1, description="the name of an STL file in mm, beside this file")
+    nominal: str = Field(min_length=1, description="the name of a STEP file, or of an STL file in mm, beside this file")
     align: Literal["best fit", "frame", "as measured"] = Field(
         "best fit", description='"best fit", "frame" or "as measured"'
     )

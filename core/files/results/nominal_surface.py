@@ -1,4 +1,4 @@
-"""Nominal surfaces: STL files in mm, to compare a measured part with."""
+"""Nominal surfaces, to compare a measured part with: STEP files of CAD, and STL files in mm."""
 
 from __future__ import annotations
 
@@ -7,34 +7,46 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError, words_of
-from core.files.stl import read_corners
+from core.files import cad_part, stl
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
+from core.progress import Progress, silent
 from core.scan.surface.triangles import Triangles
 
-_TODO = Message("advice.export_stl_again", "export the part again as STL, in mm")
+CHORD_SHARE = 0.1
+"""Of the tolerance: how far the triangles made of a CAD part's curved faces may be off them."""
+
+_TODO = Message("advice.export_nominal_again", "export the part again, as STEP or as STL in mm")
 
 
-def read_nominal(path: Path) -> Triangles:
-    """The triangles of an STL file, binary or text, those without area left out.
+def read_nominal(path: Path, tolerance_mm: float, progress: Progress = silent) -> Triangles:
+    """The triangles of a STEP file, or of an STL file, binary or text; those without area are left out.
+
+    Parameters
+    ----------
+    tolerance_mm
+        What deviations from the surface are judged by.
+    progress
+        May raise Cancelled.
 
     Raises
     ------
     InputError
-        If it is missing, no STL, or holds no usable triangle.
+        If it is missing, cannot be read, or holds no usable triangle; if STEP needs an extra that is not installed.
     """
     if not path.is_file():
         raise InputError(
             Message("inspection.nominal_surface_missing", "the nominal surface is missing"),
             where=path,
-            todo=Message("advice.name_stl_beside_plan", "name an STL file beside the plan"),
+            todo=Message("advice.name_nominal_beside_plan", "name a STEP or STL file beside the plan"),
         )
+    chord_mm = CHORD_SHARE * tolerance_mm if path.suffix.lower() in cad_part.SUFFIXES else 0.0
     try:
-        corners = read_corners(path)
+        corners = cad_part.read_corners(path, chord_mm, progress) if chord_mm else stl.read_corners(path)
     except (OSError, ValueError) as problem:
         raise InputError(
             Message(
-                "inspection.nominal_unreadable", "it cannot be read as an STL mesh ({reason})", reason=words_of(problem)
+                "inspection.nominal_unreadable", "no surface can be read from it ({reason})", reason=words_of(problem)
             ),
             where=path,
             todo=_TODO,
@@ -50,18 +62,24 @@ def read_nominal(path: Path) -> Triangles:
             where=path,
             todo=_TODO,
         )
-    return Triangles(corners[area > 0])
+    return Triangles(corners[area > 0], chord_mm)
 
 
-def read_nominals(plan: InspectionPlan, folder: Path) -> dict[str, Triangles]:
+def read_nominals(plan: InspectionPlan, folder: Path, progress: Progress = silent) -> dict[str, Triangles]:
     """Every nominal surface a plan names, by that name; names are of files in `folder` or whole paths.
+
+    A surface that several features name is as fine as the smallest of their tolerances wants it.
 
     Raises
     ------
     InputError
-        If one of them cannot be read as a surface in mm; names the file.
+        If one of them cannot be read as a surface; names the file.
     """
-    return {name: read_nominal(folder / name) for name in nominal_names(plan)}
+    finest: dict[str, float] = {}
+    for feature in plan.features:
+        if (asked := feature.deviation) is not None:
+            finest[asked.nominal] = min(asked.tolerance_mm, finest.get(asked.nominal, np.inf))
+    return {name: read_nominal(folder / name, finest[name], progress) for name in sorted(finest)}
 
 
 def nominal_names(plan: InspectionPlan) -> list[str]:

@@ -17,7 +17,7 @@ from core.inspect.plan.feature_spec import Deviation, FeatureSpec
 from core.inspect.results import Contribution
 from core.inspect.shown.deviation_map import DeviationMap
 from core.inspect.uncertainty.budget import budget
-from core.inspect.uncertainty.causes import SAMPLING
+from core.inspect.uncertainty.causes import FACETS, SAMPLING
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import patches
 from core.messages import Message
@@ -43,7 +43,7 @@ def measure_deviation(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     if spec.deviation is None or spec.deviation.nominal not in scene.nominals:
         raise InputError(
             Message("feature.nominal_not_read", "its nominal surface was not read"),
-            todo=Message("feature.advice_name_stl", "name an STL file in mm"),
+            todo=Message("feature.advice_name_nominal", "name a STEP file, or an STL file in mm"),
         )
     asked, nominal = spec.deviation, scene.nominals[spec.deviation.nominal]
     indices = points_in(spec.regions[0], spec.filters, scene)
@@ -144,6 +144,11 @@ def _characteristics(
     for name in ("profile", "mean") if fitted else ("profile",):  # what is common to the stripes the alignment takes
         own = [row for row in rows[name] if row.source in calibrations]
         rows[name] = (Contribution(SAMPLING, sampled[name]), *own)
+    if spec.deviation is not None and (chord_mm := scene.nominals[spec.deviation.nominal].chord_mm):
+        u_mm = chord_mm / np.sqrt(3)  # anything within it, to either side
+        rows = {
+            name: (*rows[name], Contribution(FACETS, times * u_mm)) for name, times in (("profile", 2), ("mean", 1))
+        }
     profile = Message(
         "feature.rule_profile", "twice the deviation from the nominal surface that 95 % of the points do not exceed"
     )

@@ -138,7 +138,7 @@ class Deviation:
     Parameters
     ----------
     nominal
-        Name of the STL file, in mm.
+        Name of the file, STEP or STL in mm.
     align
         "best fit" to the surface; "frame": the file's coordinates are part coordinates (3-2-1); "as measured": they
         are those of the camera.

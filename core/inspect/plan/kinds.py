@@ -49,7 +49,7 @@ _ALIGNED = (
     ("as measured", label("as measured")),
 )
 _DEVIATION = (
-    TextField("nominal", label("Nominal surface"), label("STL file in mm, in the project's folder or elsewhere.")),
+    TextField("nominal", label("Nominal surface"), label("STEP, or STL in mm, in the project's folder or elsewhere.")),
     ChoiceField("align", label("Aligned by"), label("How the nominal surface is laid on the scan."), _ALIGNED),
     NumberField(
         "tolerance_mm", label("Colours up to ±"), label("Marks + ++ +++ are its quarters, ! lies beyond."),
@@ -174,7 +174,7 @@ KINDS: tuple[FeatureKind, ...] = (
         "deviation",
         "core.inspect.features.deviation:measure_deviation",
         label("Deviation from a nominal surface"),
-        label("How far the surface lies off a nominal one from an STL file in mm"),
+        label("How far the surface lies off a nominal one from a STEP or STL file"),
         "mdi6.compare",
         results=(ResultKind(label("profile"), one_sided=True), ResultKind(label("mean"))),
         automatic="all points",

@@ -90,7 +90,7 @@ def inspect(
         If the plan is wrong, or a nominal surface cannot be read.
     """
     plan.ordered()
-    surfaces = read_nominals(plan, nominals)
+    surfaces = read_nominals(plan, nominals, progress)
     return evaluate(plan, scan.cloud, scan.mesh, scan.errors, progress, previous, nominals=surfaces)
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +21,13 @@ AT_ONCE = 200_000
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Triangles:
-    """Corners (T, 3, 3) in mm; seen from outside each runs anticlockwise."""
+    """Corners (T, 3, 3) in mm; seen from outside each runs anticlockwise.
+
+    They stand for a surface that lies up to `chord_mm` off them; 0 where that is not known, as of an STL file.
+    """
 
     corners: Array
+    chord_mm: float = 0.0
 
     def __post_init__(self) -> None:
         set_field(self, "corners", frozen_array(self.corners, (None, 3, 3), "corners"))
@@ -41,7 +45,7 @@ class Triangles:
 
     def moved(self, rotation: Array, translation: Array) -> Triangles:
         """The surface after X → R X + t."""
-        return Triangles(self.corners @ rotation.T + translation)
+        return replace(self, corners=self.corners @ rotation.T + translation)
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QSize, Signal
@@ -34,6 +35,12 @@ TOOLS = {
 
 BY_HAND = (fields.DRAWN, fields.CLICKED, fields.PLACED)
 """Sources of points that are not set by choosing them."""
+
+
+def choose_nominal(parent: QWidget, folder: Path | None) -> Path | None:
+    """Let the file of a nominal surface be chosen, or None."""
+    kinds = tr("Nominal surfaces") + " (*.step *.stp *.stl *.STEP *.STP *.STL)"
+    return ask.choose_file_to_open(parent, tr("Nominal surface"), folder, kinds)
 
 
 class FeatureForm(QWidget):
@@ -196,9 +203,7 @@ class FeatureForm(QWidget):
         self.draw.emit(self._edit.region_name(place), kind)
 
     def _choose_nominal(self) -> None:
-        path = ask.choose_file_to_open(
-            self, tr("Nominal surface"), self._features.model.folder, tr("STL (*.stl *.STL)")
-        )
+        path = choose_nominal(self, self._features.model.folder)
         if path is not None:
             self._edit.set_nominal(path)
 

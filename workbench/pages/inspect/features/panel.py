@@ -26,7 +26,7 @@ from workbench.language import text_of, tr
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
-from workbench.pages.inspect.features.form import FeatureForm
+from workbench.pages.inspect.features.form import FeatureForm, choose_nominal
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
@@ -253,8 +253,7 @@ class FeaturesPanel(QWidget):
         if not kind.nominal_file:
             self._edit.add(kind.name)
             return
-        start = self._features.model.folder
-        path = ask.choose_file_to_open(self, tr("Nominal surface"), start, tr("STL (*.stl *.STL)"))
+        path = choose_nominal(self, self._features.model.folder)
         if path is not None:
             self._edit.add(kind.name, path)
 
