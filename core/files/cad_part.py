@@ -29,6 +29,7 @@ _TURN_RAD = 0.35
 _MM = 1000.0
 """glTF is in metres whatever the unit of the STEP file was."""
 _ASK_EVERY_S = 0.1
+"""How often in s it is asked whether the job is cancelled."""
 _TESSELLATE = "import sys, cascadio; sys.exit(cascadio.step_to_glb(*sys.argv[1:3], *map(float, sys.argv[3:])))"
 
 
