@@ -11,32 +11,39 @@ from core.messages import Message
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Distance of two points, of a point from a plane or an axis, of a plane's middle from another plane."""
-    return _result(spec, scene, "distance", distance(*_elements(spec, scene)))
+    return derived_result(spec, scene, "distance", distance(*elements_of(spec, scene)))
 
 
 def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Angle of two planes, two axes, or an axis and a plane."""
-    a, b = _elements(spec, scene)
-    if "point" in (a.kind, b.kind):
-        raise InputError(
-            Message("feature.point_has_no_direction", "a point has no direction, so there is no angle to it"),
-            todo=Message("feature.advice_name_planes", "name planes or cylinders"),
-        )
-    return _result(spec, scene, "angle", angle(a, b))
+    return derived_result(spec, scene, "angle", angle(*directions_of(spec, scene)))
 
 
-def _result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
+def derived_result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -> FeatureResult:
+    """The one row of a feature that is made of others, with what is told of these."""
     notes = tuple(note for name in dict.fromkeys(spec.of) for note in scene.found[name].notes)
     row = scene.characteristic(spec, kind, found.value, found.budget, rule=found.rule, notes=notes)
     return FeatureResult(spec, characteristics=(row,))
 
 
-def _elements(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
+def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
+    """The two elements a feature is made of; InputError if one of them was not measured."""
     a, b = (scene.found[name].element for name in spec.of)
     if a is None or b is None:
         missing = spec.of[0] if a is None else spec.of[1]
         raise InputError(
             Message("feature.was_not_measured", "{name} was not measured", name=missing),
             todo=Message("feature.advice_mend_first", "mend {name} first", name=missing),
+        )
+    return a, b
+
+
+def directions_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
+    """The two elements of a feature that follows their directions; InputError if one is a point or was not measured."""
+    a, b = elements_of(spec, scene)
+    if "point" in (a.kind, b.kind):
+        raise InputError(
+            Message("feature.point_has_no_direction", "a point has no direction, so there is no angle to it"),
+            todo=Message("feature.advice_name_planes", "name planes or cylinders"),
         )
     return a, b

@@ -22,7 +22,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Generic, TypeVar
+from typing import Generic, NamedTuple, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -215,21 +215,37 @@ def spread(
     cell_mm: float = 0.0,
 ) -> Spread:
     """The spread of residuals (N,) of a cloud's points about a `fit` of stretches: design (J, p) and gains (p, J)."""
-    cell = _cells(cloud.points, cell_mm) if cell_mm > 0 else np.arange(len(residuals), dtype=np.int64)
-    share = 1.0 / np.bincount(cell)[cell]
-    values = np.asarray(np.bincount(cell, share * residuals), dtype=np.float64)
-    low, high = np.quantile(values, [TAIL, 1 - TAIL])
-    ranks = np.argsort(np.argsort(values)) / max(len(values) - 1, 1)
-    gain = np.zeros(len(sources.own))
-    for sign, end in ((1.0, 1 - TAIL), (-1.0, TAIL)):
-        weight = np.where((np.abs(ranks - end) <= NEAR / 2)[cell], share, 0.0)
-        np.add.at(gain, sources.stretch, sign * weight / max(float(weight.sum()), 1e-12))
+    found = range_of(cloud, residuals, cell_mm)
+    gain = np.asarray(np.bincount(sources.stretch, found.weight, minlength=len(sources.own)), dtype=np.float64)
     design, gains = fit
     gain = gain - gain @ design @ gains  # the fitted surface follows what is common as far as it can
     acting = [one for one in effects(gain[None, :], sources, calibrations=calibrations) if one.source in calibrations]
+    return Spread(found.value, (found.sampling, *budget_of([(np.ones(1), acting)])), found.samples)
+
+
+class Range(NamedTuple):
+    """The range that holds 95 % of N values, of `samples` points or cells, and how it follows each value: (N,)."""
+
+    value: float
+    weight: Array
+    sampling: Contribution
+    samples: int
+
+
+def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
+    """The range of a cloud's points in one direction, from their heights (N,) in mm, or their means over cells."""
+    cell = _cells(cloud.points, cell_mm) if cell_mm > 0 else np.arange(len(heights), dtype=np.int64)
+    share = 1.0 / np.bincount(cell)[cell]
+    values = np.asarray(np.bincount(cell, share * heights), dtype=np.float64)
+    low, high = np.quantile(values, [TAIL, 1 - TAIL])
+    ranks = np.argsort(np.argsort(values)) / max(len(values) - 1, 1)
+    weight = np.zeros(len(heights))
+    for sign, end in ((1.0, 1 - TAIL), (-1.0, TAIL)):
+        near = np.where((np.abs(ranks - end) <= NEAR / 2)[cell], share, 0.0)
+        weight += sign * near / max(float(near.sum()), 1e-12)
     group = np.arange(len(values)) if cell_mm > 0 else np.unique(cloud.sweep, return_inverse=True)[1]
     sampling = Contribution(SAMPLING, u_of_quantiles(values, (TAIL, 1 - TAIL), (-1.0, 1.0), group))
-    return Spread(float(high - low), (sampling, *budget_of([(np.ones(1), acting)])), len(values))
+    return Range(float(high - low), weight, sampling, len(values))
 
 
 def u_of_quantiles(values: Array, shares: Sequence[float], signs: Sequence[float], group: NDArray[np.int64]) -> float:

@@ -114,8 +114,8 @@ class FeatureKind:
         What its region is where none is drawn.
     most_regions
         How many regions it can have.
-    region_titles
-        What these are called; empty: by their number.
+    part_titles
+        What these regions, or the features it is made of, are called; empty: by their number.
     settings
         The field of `FeatureSpec` with its own settings, which it needs; "": it has none.
     fields
@@ -137,7 +137,7 @@ class FeatureKind:
     of_directions: bool = False
     automatic: Automatic = "searched"
     most_regions: int = 1
-    region_titles: tuple[str, ...] = ()
+    part_titles: tuple[str, ...] = ()
     settings: Literal["", "section", "deviation"] = ""
     fields: tuple[FormField, ...] = ()
     nominal_file: bool = False

@@ -66,6 +66,8 @@ _FORM = ResultKind(label("form"), one_sided=True)
 _HEIGHT = ResultKind(label("height"), expands=True)
 _DISTANCE = ResultKind(label("distance"), expands=True)
 
+_TO_A_DATUM = (label("Feature"), label("Datum"))
+
 KINDS: tuple[FeatureKind, ...] = (
     FeatureKind(
         "plane",
@@ -113,7 +115,7 @@ KINDS: tuple[FeatureKind, ...] = (
         results=(ResultKind(label("thickness"), expands=True),),
         automatic="numbered",
         most_regions=2,
-        region_titles=(label("Upper face"), label("Lower face")),
+        part_titles=(label("Upper face"), label("Lower face")),
     ),
     FeatureKind(
         "steps",
@@ -156,6 +158,28 @@ KINDS: tuple[FeatureKind, ...] = (
         "mdi6.angle-acute",
         results=(ResultKind(label("angle"), "angle"),),
         made_of=2,
+        of_directions=True,
+    ),
+    FeatureKind(
+        "parallelism",
+        "core.inspect.features.orientation:measure_parallelism",
+        label("Parallelism to a datum"),
+        label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
+        "mdi6.equal",
+        results=(ResultKind(label("parallelism"), one_sided=True),),
+        made_of=2,
+        part_titles=_TO_A_DATUM,
+        of_directions=True,
+    ),
+    FeatureKind(
+        "perpendicularity",
+        "core.inspect.features.orientation:measure_perpendicularity",
+        label("Perpendicularity to a datum"),
+        label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
+        "mdi6.angle-right",
+        results=(ResultKind(label("perpendicularity"), one_sided=True),),
+        made_of=2,
+        part_titles=_TO_A_DATUM,
         of_directions=True,
     ),
     FeatureKind(

@@ -324,7 +324,8 @@ def test_a_kind_can_be_added_once_there_is_what_it_is_made_of(presenter, page, f
     for kind in made:
         presenter.feature.add(kind)
     page.refreshing.at_once()
-    useful = {"distance": len(made), "angle": sum(kind in ("plane", "cylinder") for kind in made)}
+    directed = sum(kind in ("plane", "cylinder") for kind in made)
+    useful = {"distance": len(made)} | dict.fromkeys(("angle", "parallelism", "perpendicularity"), directed)
     for name, action in page.features.kinds.items():
         assert action.isEnabled() == (useful.get(name, 2) == 2) and action.toolTip()
         if not action.isEnabled():

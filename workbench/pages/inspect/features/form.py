@@ -39,7 +39,7 @@ BY_HAND = (fields.DRAWN, fields.CLICKED, fields.PLACED)
 
 def choose_nominal(parent: QWidget, folder: Path | None) -> Path | None:
     """Let the file of a nominal surface be chosen, or None."""
-    kinds = tr("Nominal surfaces") + " (*.step *.stp *.stl *.STEP *.STP *.STL)"
+    kinds = tr("Nominal surfaces (*.step *.stp *.stl *.STEP *.STP *.STL)")
     return ask.choose_file_to_open(parent, tr("Nominal surface"), folder, kinds)
 
 
@@ -102,8 +102,9 @@ class FeatureForm(QWidget):
         form = self.where
         form.add_text("name", tr("Name"), tr("As it is called in the list and in the report."))
         others = [(name, name) for name in fields.elements(plan, kind_of(spec))]
-        for place in range(kind_of(spec).made_of):
-            title = tr("First feature") if place == 0 else tr("Second feature")
+        usual = (tr("First feature"), tr("Second feature"))
+        titles = [tr(title) for title in kind_of(spec).part_titles] or usual
+        for place, title in zip(range(kind_of(spec).made_of), titles, strict=False):
             form.add_choice(f"of {place}", title, others, tr("A plane, sphere, cylinder or point of the list."))
         most = kind_of(spec).most_regions
         if most > 1:
@@ -143,7 +144,7 @@ class FeatureForm(QWidget):
             )
 
     def _region_title(self, spec: FeatureSpec, place: int) -> str:
-        titles = kind_of(spec).region_titles
+        titles = kind_of(spec).part_titles
         if len(titles) == len(spec.regions):
             return tr(titles[place])
         return tr("Level {number}", number=place + 1) if len(spec.regions) > 1 else tr("Region")
