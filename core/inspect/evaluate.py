@@ -118,7 +118,9 @@ def evaluate(
         If the plan itself is wrong. A feature that cannot be measured has a `problem`; the others are measured.
     """
     ordered = plan.ordered()
-    scene = Scene(cloud, mesh, errors or PointErrors(), plan.k, nominals or {}, progress=progress)
+    scene = Scene(cloud, mesh, errors or PointErrors(), plan.k, nominals or {}, frame=plan.frame, progress=progress)
+    part = scene.errors.part
+    scene.temperature = plan.temperature or (None if part is None else temperature_of(part))
     known = {} if previous is None else {result.key: result for result in previous.results if result.key}
     scan_key = _digest(cloud, mesh, errors)
     nominal_keys = {name: _sum_of([surface.corners]) for name, surface in (nominals or {}).items()}
@@ -161,10 +163,8 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     except InputError as error:
         return FeatureResult(spec, problem=InputError(error.what, where=where, todo=error.todo).message)
     rows = result.characteristics
-    part = scene.errors.part
-    temperature = plan.temperature or (None if part is None else temperature_of(part))
-    if temperature is not None:
-        rows = tuple(at_reference(row, temperature) for row in rows)
+    if scene.temperature is not None:
+        rows = tuple(at_reference(row, scene.temperature) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
         rows = tuple(_by_master(row, plan.master, scene.errors) for row in rows)
     return replace(result, characteristics=rows)

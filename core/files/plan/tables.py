@@ -160,6 +160,12 @@ class DeviationTable(Table):
     reach_mm: _Above = Field(2.0, description=_A_LENGTH)
 
 
+class PositionTable(Table):
+    """Where an axis or a centre should be."""
+
+    at_mm: _Triple = Field(description="a place [x, y, z] in mm, in part coordinates")
+
+
 class FeatureTable(Table):
     """[[feature]]."""
 
@@ -176,6 +182,7 @@ class FeatureTable(Table):
     over: Literal["lowest", "previous"] = Field("lowest", description='"lowest" or "previous"')
     section: SectionTable | None = Field(None, description="a table")
     deviation: DeviationTable | None = Field(None, description="a table")
+    position: PositionTable | None = Field(None, description="a table")
 
     @field_validator("kind")
     @classmethod

@@ -32,6 +32,7 @@ from core.inspect.plan.feature_spec import (
     InSphere,
     PointsOf,
     Polygon,
+    Position,
     Region,
     Section,
 )
@@ -91,6 +92,7 @@ def _feature(table: FeatureTable) -> FeatureSpec:
         over=table.over,
         section=None if table.section is None else _section(table.section),
         deviation=None if table.deviation is None else Deviation(**table.deviation.model_dump()),
+        position=None if table.position is None else Position(_three(table.position.at_mm)),
     )
     kinds = results_of(spec)
     return replace(
@@ -180,6 +182,8 @@ def _feature_table(spec: FeatureSpec) -> dict[str, Any]:
     if spec.deviation is not None:
         one = spec.deviation
         table["deviation"] = {key: getattr(one, key) for key in ("nominal", "align", "tolerance_mm", "reach_mm")}
+    if spec.position is not None:
+        table["position"] = {"at_mm": list(spec.position.at_mm)}
     if spec.limits:
         kinds = results_of(spec)
         table["limits"] = {name: _limits_table(limits, kinds.get(name)) for name, limits in spec.limits}

@@ -182,9 +182,10 @@ def _limits(project: Project) -> tuple[object, ...]:
             one.limits,
             one.nominal_heights,
             None if one.deviation is None else (one.deviation.nominal, one.deviation.tolerance_mm),
+            one.position,
         )
         for one in project.inspection.features
-        if one.limits or one.nominal_heights or one.deviation is not None
+        if one.limits or one.nominal_heights or one.deviation is not None or one.position is not None
     }
     return (None if gauge is None else (gauge.nominal_mm, gauge.tolerance_mm)), features
 

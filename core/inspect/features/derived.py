@@ -11,7 +11,8 @@ from core.messages import Message
 
 def measure_distance(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Distance of two points, of a point from a plane or an axis, of a plane's middle from another plane."""
-    return derived_result(spec, scene, "distance", distance(*elements_of(spec, scene)))
+    a, b = elements_of(spec, scene)
+    return derived_result(spec, scene, "distance", distance(a, b))
 
 
 def measure_angle(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -26,16 +27,18 @@ def derived_result(spec: FeatureSpec, scene: Scene, kind: str, found: Derived) -
     return FeatureResult(spec, characteristics=(row,))
 
 
-def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:
-    """The two elements a feature is made of; InputError if one of them was not measured."""
-    a, b = (scene.found[name].element for name in spec.of)
-    if a is None or b is None:
-        missing = spec.of[0] if a is None else spec.of[1]
-        raise InputError(
-            Message("feature.was_not_measured", "{name} was not measured", name=missing),
-            todo=Message("feature.advice_mend_first", "mend {name} first", name=missing),
-        )
-    return a, b
+def elements_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, ...]:
+    """The elements a feature is made of; InputError if one of them was not measured."""
+    elements = []
+    for name in spec.of:
+        element = scene.found[name].element
+        if element is None:
+            raise InputError(
+                Message("feature.was_not_measured", "{name} was not measured", name=name),
+                todo=Message("feature.advice_mend_first", "mend {name} first", name=name),
+            )
+        elements.append(element)
+    return tuple(elements)
 
 
 def directions_of(spec: FeatureSpec, scene: Scene) -> tuple[Element, Element]:

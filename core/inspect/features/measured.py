@@ -12,7 +12,9 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.fit.elements import Element
 from core.inspect.fit.plane_search import FoundPlane, find_planes
 from core.inspect.fit.shapes import Shape
+from core.inspect.plan.conditions import Temperature
 from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import PartFrame
 from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import Profile
 from core.inspect.results import Contribution, GaugeResult
@@ -94,6 +96,10 @@ class Scene:
         Nominal surfaces by their names.
     pose_camera_part
         Part coordinates into the camera frame.
+    frame
+        The features these rest on; None: they are the camera's.
+    temperature
+        Of the part, stated or assumed; None: it is at 20 °C for sure.
     found
         Features measured already, by name.
     progress
@@ -108,6 +114,8 @@ class Scene:
     k: float
     nominals: Mapping[str, Triangles]
     pose_camera_part: Pose | None = None
+    frame: PartFrame | None = None
+    temperature: Temperature | None = None
     found: dict[str, FeatureResult] = field(default_factory=dict)
     progress: Progress = silent
     found_planes: dict[float, tuple[FoundPlane, ...]] = field(default_factory=dict)

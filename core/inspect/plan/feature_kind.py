@@ -108,8 +108,8 @@ class FeatureKind:
         What other features can be measured from it as; None: as nothing.
     made_of
         Of how many other features it is made instead of points.
-    of_directions
-        Whether those must be planes or axes: a point has no direction.
+    made_from
+        What those must be.
     automatic
         What its region is where none is drawn.
     most_regions
@@ -134,11 +134,11 @@ class FeatureKind:
     results: tuple[ResultKind, ...] = ()
     element: ElementKind | None = None
     made_of: int = 0
-    of_directions: bool = False
+    made_from: tuple[ElementKind, ...] = ("plane", "axis", "point")
     automatic: Automatic = "searched"
     most_regions: int = 1
     part_titles: tuple[str, ...] = ()
-    settings: Literal["", "section", "deviation"] = ""
+    settings: Literal["", "section", "deviation", "position"] = ""
     fields: tuple[FormField, ...] = ()
     nominal_file: bool = False
     plotted: bool = False

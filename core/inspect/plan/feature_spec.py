@@ -155,6 +155,13 @@ class Deviation:
 
 
 @dataclass(frozen=True, slots=True)
+class Position:
+    """Where a cylinder's axis or a sphere's centre should be: a place in part coordinates."""
+
+    at_mm: Place = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True, slots=True)
 class FeatureSpec:
     """One feature.
 
@@ -177,7 +184,7 @@ class FeatureSpec:
         Of the steps in mm, from the lowest up.
     over
         Steps: each over the "lowest" level, or over the "previous" one.
-    section, deviation
+    section, deviation, position
         Of these kinds.
     """
 
@@ -191,6 +198,7 @@ class FeatureSpec:
     over: Literal["lowest", "previous"] = "lowest"
     section: Section | None = None
     deviation: Deviation | None = None
+    position: Position | None = None
 
     @property
     def needs(self) -> tuple[str, ...]:
@@ -202,7 +210,7 @@ class FeatureSpec:
         """Whether it can only be measured once the part's frame is known."""
         placed = self.section is not None and self.section.line_px is None
         framed = self.deviation is not None and self.deviation.align == "frame"
-        return placed or framed or any(map(_is_placed, self.regions))
+        return placed or framed or self.position is not None or any(map(_is_placed, self.regions))
 
     def limits_of(self, result: str) -> Limits | None:
         """The limits of one of its results, as "diameter" or "height 2"; None: nothing."""

@@ -180,6 +180,11 @@ def _check(spec: FeatureSpec, plan: InspectionPlan) -> None:
             Message("feature.deviation_settings", "only a deviation has a nominal surface, and it needs one"),
             where=where,
         )
+    if (kind.settings == "position") != (spec.position is not None):
+        raise InputError(
+            Message("feature.position_settings", "only a position has a true place, and it needs one"),
+            where=where,
+        )
     for result, _ in spec.limits:
         results = results_of(spec)
         if result not in results:

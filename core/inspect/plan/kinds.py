@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, NumberField, ResultKind, TextField
+from core.inspect.plan.feature_kind import ChoiceField, ElementKind, FeatureKind, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
@@ -67,6 +67,7 @@ _HEIGHT = ResultKind(label("height"), expands=True)
 _DISTANCE = ResultKind(label("distance"), expands=True)
 
 _TO_A_DATUM = (label("Feature"), label("Datum"))
+_WITH_DIRECTION: tuple[ElementKind, ...] = ("plane", "axis")
 
 KINDS: tuple[FeatureKind, ...] = (
     FeatureKind(
@@ -158,7 +159,7 @@ KINDS: tuple[FeatureKind, ...] = (
         "mdi6.angle-acute",
         results=(ResultKind(label("angle"), "angle"),),
         made_of=2,
-        of_directions=True,
+        made_from=_WITH_DIRECTION,
     ),
     FeatureKind(
         "parallelism",
@@ -169,7 +170,7 @@ KINDS: tuple[FeatureKind, ...] = (
         results=(ResultKind(label("parallelism"), one_sided=True),),
         made_of=2,
         part_titles=_TO_A_DATUM,
-        of_directions=True,
+        made_from=_WITH_DIRECTION,
     ),
     FeatureKind(
         "perpendicularity",
@@ -180,7 +181,27 @@ KINDS: tuple[FeatureKind, ...] = (
         results=(ResultKind(label("perpendicularity"), one_sided=True),),
         made_of=2,
         part_titles=_TO_A_DATUM,
-        of_directions=True,
+        made_from=_WITH_DIRECTION,
+    ),
+    FeatureKind(
+        "position",
+        "core.inspect.features.position:measure_position",
+        label("Position to the datums"),
+        label("Of a cylinder or a sphere that is in the list, to the datums of the part's coordinates (ISO 1101)"),
+        "mdi6.target",
+        results=(ResultKind(label("position"), one_sided=True),),
+        made_of=1,
+        part_titles=(label("Feature"),),
+        made_from=("axis", "point"),
+        settings="position",
+        fields=(
+            TextField(
+                "at_mm",
+                label("True place in mm"),
+                label("Where its axis or centre should be: x; y; z in part coordinates."),
+                "10; 20; 0",
+            ),
+        ),
     ),
     FeatureKind(
         "section",

@@ -19,6 +19,7 @@ from core.inspect.plan.feature_spec import (
     InSphere,
     PointsOf,
     Polygon,
+    Position,
     Section,
 )
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
@@ -48,6 +49,8 @@ EVERYTHING = InspectionPlan(
         ),
         FeatureSpec("cut 2", "section", section=Section(None, (1.0, 2.0, 3.0), (0.0, 1.0, 0.0), 0.5, 0.2)),
         FeatureSpec("form", "deviation", deviation=Deviation("part.stl", "frame", 0.2, 3.0)),
+        FeatureSpec("hole", "cylinder"),
+        FeatureSpec("lies", "position", of=("hole",), position=Position((10.0, 20.0, 0.5))),
         FeatureSpec("reach", "distance", (), of=("ball", "side")),
     ),
     frame=PartFrame("top", "side", "ball"),

@@ -12,16 +12,17 @@ from workbench.pages.inspect.features import values as fields
 
 SIZE = (640, 480)
 PLANES = InspectionPlan((FeatureSpec("top", "plane"), FeatureSpec("table", "plane")))
+ALL = InspectionPlan((*PLANES.features, FeatureSpec("pin", "cylinder"), FeatureSpec("hole", "cylinder")))
 
 
-def made(kind, plan=PLANES):
+def made(kind, plan=ALL):
     return fields.new_feature(kind, "new", plan, SIZE, "part.stl")
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
 def test_a_new_feature_fits_into_a_plan(kind):
-    assert not fields.why_not(kind, PLANES)
-    InspectionPlan((*PLANES.features, made(kind))).ordered()
+    assert not fields.why_not(kind, ALL)
+    InspectionPlan((*ALL.features, made(kind))).ordered()
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
@@ -34,6 +35,14 @@ def test_every_field_can_be_set_to_what_it_is(kind):
 
 def test_without_two_elements_there_is_no_distance():
     assert "made of two other features" in fields.why_not("distance", InspectionPlan(PLANES.features[:1]))
+
+
+def test_a_true_place_has_three_coordinates():
+    placed = fields.with_value(made("position"), "at_mm", "10; 20,5; 0")
+    assert placed.of == ("hole",) and placed.position.at_mm == (10.0, 20.5, 0.0)
+    with pytest.raises(ValueError, match="Write x, y and z in mm"):
+        fields.with_value(placed, "at_mm", "10; 20")
+    assert "made of another feature" in fields.why_not("position", PLANES)
 
 
 def test_the_angle_is_shown_in_degrees_and_kept_in_radians():

@@ -325,11 +325,16 @@ def test_a_kind_can_be_added_once_there_is_what_it_is_made_of(presenter, page, f
         presenter.feature.add(kind)
     page.refreshing.at_once()
     directed = sum(kind in ("plane", "cylinder") for kind in made)
-    useful = {"distance": len(made)} | dict.fromkeys(("angle", "parallelism", "perpendicularity"), directed)
+    placed = any(kind in ("sphere", "cylinder", "point") for kind in made)
+    useful = {"distance": len(made), "position": 2 * placed} | dict.fromkeys(
+        ("angle", "parallelism", "perpendicularity"), directed
+    )
     for name, action in page.features.kinds.items():
         assert action.isEnabled() == (useful.get(name, 2) == 2) and action.toolTip()
         if not action.isEnabled():
-            assert action.toolTip().startswith("It is made of two other features: add planes")
+            assert action.toolTip().startswith(
+                ("It is made of two other features: add planes", "It is made of another feature")
+            )
 
 
 def test_an_angle_is_made_of_the_last_two_that_have_a_direction(presenter, page, features):

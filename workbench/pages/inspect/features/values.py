@@ -17,6 +17,7 @@ from core.inspect.plan.feature_spec import (
     FeatureSpec,
     PointsOf,
     Polygon,
+    Position,
     Region,
     Section,
 )
@@ -36,20 +37,21 @@ def new_feature(kind: str, name: str, plan: InspectionPlan, size: tuple[int, int
     """A feature with what is usual: a cut across the middle of the picture (`size`), the last two elements."""
     made, found = FeatureSpec(name, kind), kind_named(kind)
     if found.made_of:
-        return replace(made, of=elements(plan, found)[-found.made_of :])
+        made = replace(made, of=elements(plan, found)[-found.made_of :])
     match found.settings:
         case "section":
             middle = float(size[1] // 2)
             return replace(made, section=Section(((0.0, middle), (float(size[0] - 1), middle))))
         case "deviation":
             return replace(made, deviation=Deviation(nominal))
+        case "position":
+            return replace(made, position=Position())
     return made
 
 
 def elements(plan: InspectionPlan, kind: FeatureKind) -> tuple[str, ...]:
     """Names of the features that one of a kind can be made of."""
-    useless = (None, "point") if kind.of_directions else (None,)
-    return tuple(one.name for one in plan.features if kind_of(one).element not in useless)
+    return tuple(one.name for one in plan.features if kind_of(one).element in kind.made_from)
 
 
 def why_not(kind: str, plan: InspectionPlan) -> str:
@@ -57,7 +59,9 @@ def why_not(kind: str, plan: InspectionPlan) -> str:
     found = kind_named(kind)
     if len(elements(plan, found)) >= found.made_of:
         return ""
-    if found.of_directions:
+    if found.made_of == 1:
+        return tr("It is made of another feature: add a cylinder or a sphere first.")
+    if "point" not in found.made_from:
         return tr("It is made of two other features: add planes or cylinders first.")
     return tr("It is made of two other features: add planes, spheres, cylinders or points first.")
 
@@ -184,9 +188,9 @@ def _numbers(text: str) -> tuple[float, ...]:
     try:
         numbers = tuple(float(part.replace(",", ".")) for part in text.split(";") if part.strip())
     except ValueError as error:
-        raise ValueError(tr("Write the heights in mm with semicolons between them, as 10; 20; 30.")) from error
+        raise ValueError(tr("Write numbers in mm with semicolons between them, as 10; 20; 30.")) from error
     if not all(math.isfinite(number) for number in numbers):
-        raise ValueError(tr("Write the heights in mm with semicolons between them, as 10; 20; 30."))
+        raise ValueError(tr("Write numbers in mm with semicolons between them, as 10; 20; 30."))
     return numbers
 
 
@@ -205,6 +209,8 @@ def _with_own(spec: FeatureSpec, holder: str, key: str, value: Any) -> FeatureSp
     held = getattr(spec, holder) if holder else spec
     if isinstance(getattr(held, key), tuple):
         value = _numbers(str(value))
+        if holder == "position" and len(value) != 3:
+            raise ValueError(tr("Write x, y and z in mm with semicolons between them, as 10; 20; 0."))
     changed: Any = replace(held, **{key: value})
     return replace(spec, **{holder: changed}) if holder else changed
 
