@@ -15,6 +15,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.image.stripes.centreline import Centreline
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.plan.conditions import AT_REFERENCE
+from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
@@ -185,6 +186,10 @@ class ReportContent:
         By name, which points of the cloud a face or a feature rests on: indices.
     features
         By a characteristic's name, which feature it comes from.
+    control_frames
+        By a characteristic's name, what is asked of it after ISO 1101.
+    datums
+        By a feature's name, its letter as a datum.
     seen_at
         By a feature's name, which one's points show where it is, if not its own: of a distance the first of its two.
     sections
@@ -244,6 +249,8 @@ class ReportContent:
     inspected: tuple[Characteristic, ...] = ()
     points: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     features: Mapping[str, str] = field(default_factory=dict)
+    control_frames: Mapping[str, ControlFrame] = field(default_factory=dict)
+    datums: Mapping[str, str] = field(default_factory=dict)
     seen_at: Mapping[str, str] = field(default_factory=dict)
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()

@@ -4,6 +4,7 @@ import io
 import math
 import re
 from dataclasses import replace
+from typing import get_args
 
 import numpy as np
 import pypdfium2
@@ -11,6 +12,8 @@ import pytest
 from pypdf import PdfReader
 
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.plan.control_frame import ControlFrame
+from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution
 from core.messages import plain
 from core.report import pdf
@@ -116,6 +119,13 @@ def test_the_worst_of_each_feature_is_called_out_on_the_surface_with_value_U_and
     rows = tuple(Characteristic(f"f{n} flatness", "flatness", 0.1, 0.01) for n in range(30))
     crowded = replace(content, inspected=rows, points=many, features={f"f{n} flatness": f"f{n}" for n in range(30)})
     assert len(callouts(look, crowded)) == MOST_CALLOUTS
+
+
+@pytest.mark.parametrize("symbol", get_args(ToleranceSymbol))
+def test_what_is_asked_of_form_and_lie_stands_as_a_feature_control_frame_with_its_datums(quick, symbol):
+    frame = ControlFrame(symbol, 0.05, "⌀", ("A", "B"))
+    asked = replace(quick, control_frames={"top flatness": frame}, datums={"top": "C"})
+    assert "top flatness ⌀0.05 A B Datum C 0 mm" in words(build_report(asked)).replace("\u00a0", " ")
 
 
 def test_a_cross_section_has_its_profile_and_the_rows_measured_in_it(data):

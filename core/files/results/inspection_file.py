@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any, Literal
 
@@ -23,6 +23,8 @@ from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, R
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
+from core.inspect.plan.control_frame import ControlFrame, control_frames, datum_letters
+from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution
 from core.messages import Command, Message
 from core.model.arrays import Array
@@ -64,6 +66,10 @@ class InspectionFile:
         By a characteristic's name, the feature it comes from.
     sections
         By a feature's name, its profile: (M, 2) position along it and height, in mm.
+    control_frames
+        By a characteristic's name, what is asked of it after ISO 1101.
+    datums
+        By a feature's name, its letter as a datum.
     calibration_id
         Of the scan.
     """
@@ -75,6 +81,8 @@ class InspectionFile:
     points: dict[str, NDArray[np.int64]]
     features: dict[str, str]
     sections: dict[str, Array]
+    control_frames: dict[str, ControlFrame]
+    datums: dict[str, str]
     calibration_id: str
 
 
@@ -82,6 +90,13 @@ class _Limits(ResultFile):
     nominal: Finite
     lower: Finite | None = None
     upper: Finite | None = None
+
+
+class _ControlFrame(ResultFile):
+    symbol: ToleranceSymbol
+    zone_mm: Finite
+    round: str = ""
+    datums: list[str] = Field(default_factory=list)
 
 
 class _Contribution(BudgetRow):
@@ -100,6 +115,7 @@ class _Characteristic(ResultFile):
     k: Finite = Field(gt=0, description="a number above 0")
     quantity: Literal["length", "angle"] = "length"
     limits: _Limits | None = None
+    control_frame: _ControlFrame | None = None
     complete: bool = True
     rule: OptionalMessage = None
     notes: list[KeptMessage] = Field(default_factory=list)
@@ -116,19 +132,23 @@ class _InspectionFile(ResultFile):
     schema_version: Literal[1] = Field(description="1: this file is of another version of Trisect")
     characteristics: list[_Characteristic] = Field(description="a list of characteristics")
     features: list[_Feature] = Field(default_factory=list)
+    datums: dict[str, str] = Field(default_factory=dict)
     notes: list[KeptMessage] = Field(default_factory=list)
     calibration_id: str = ""
 
 
 def inspection_values(inspection: Inspection) -> dict[str, Any]:
     """All of an inspection but its points, by the names used in the file and on the command line."""
-    pose = inspection.pose_camera_part
+    pose, frames = inspection.pose_camera_part, control_frames(inspection.plan)
     return {
         "schema_version": SCHEMA,
         "verdict": inspection.verdict,
         "characteristics": [
-            _row(row, result.spec.name) for result in inspection.results for row in result.characteristics
+            _row(row, result.spec.name, frames.get(row.name))
+            for result in inspection.results
+            for row in result.characteristics
         ],
+        "datums": datum_letters(inspection.plan),
         "features": [_feature(result) for result in inspection.results],
         "pose_camera_part": None if pose is None else {"rotation": pose.rotation, "translation_mm": pose.translation},
         "notes": [kept(note) for note in inspection.notes],
@@ -186,11 +206,17 @@ def read_inspection(path: Path) -> InspectionFile:
         points=points,
         features={row.name: row.feature for row in file.characteristics},
         sections=sections,
+        control_frames={
+            row.name: ControlFrame(one.symbol, one.zone_mm, one.round, tuple(one.datums))
+            for row in file.characteristics
+            if (one := row.control_frame) is not None
+        },
+        datums=file.datums,
         calibration_id=file.calibration_id,
     )
 
 
-def _row(row: Characteristic, feature: str) -> dict[str, Any]:
+def _row(row: Characteristic, feature: str, frame: ControlFrame | None) -> dict[str, Any]:
     limits = row.limits
     return {
         "name": row.name,
@@ -204,6 +230,7 @@ def _row(row: Characteristic, feature: str) -> dict[str, Any]:
         "limits": None
         if limits is None
         else {"nominal": limits.nominal, "lower": limits.lower, "upper": limits.upper},  # infinite: null
+        "control_frame": None if frame is None else asdict(frame),
         "deviation": row.deviation,
         "verdict": row.verdict,
         "complete": row.complete,

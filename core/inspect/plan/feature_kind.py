@@ -16,6 +16,11 @@ from core.inspect.characteristic import Quantity
 ElementKind: TypeAlias = Literal["plane", "axis", "point"]
 """What other features can be measured from: see `core.inspect.fit.elements`."""
 
+ToleranceSymbol: TypeAlias = Literal[
+    "flatness", "cylindricity", "parallelism", "perpendicularity", "position", "profile of a surface"
+]
+"""What a characteristic is after ISO 1101."""
+
 Automatic: TypeAlias = Literal["searched", "numbered", "all points"]
 """What an automatic region is: the surface of this kind that explains most points, the n-th largest plane face, or the
 whole scan."""
@@ -37,6 +42,8 @@ class ResultKind:
         Whether it grows with the part's temperature, and can be compared with a master.
     numbered
         Whether there are several, "height 1", "height 2", …, each with its own of the feature's nominal heights.
+    symbol
+        What stands in its feature control frame; None: it has none.
     """
 
     name: str
@@ -44,6 +51,7 @@ class ResultKind:
     one_sided: bool = False
     expands: bool = False
     numbered: bool = False
+    symbol: ToleranceSymbol | None = None
 
 
 @dataclass(frozen=True, slots=True)

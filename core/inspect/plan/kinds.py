@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from core.inspect.plan.feature_kind import ChoiceField, ElementKind, FeatureKind, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
@@ -76,7 +77,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Plane, flatness"),
         label("A plane fitted to a face: its flatness, and what other features are measured from"),
         "mdi6.square-outline",
-        results=(ResultKind(label("flatness"), one_sided=True),),
+        results=(ResultKind(label("flatness"), one_sided=True, symbol="flatness"),),
         element="plane",
         automatic="numbered",
     ),
@@ -95,7 +96,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Cylinder, diameter"),
         label("A cylinder fitted robustly: its diameter and form"),
         "mdi6.cylinder",
-        results=(_DIAMETER, _FORM),
+        results=(_DIAMETER, replace(_FORM, symbol="cylindricity")),
         element="axis",
     ),
     FeatureKind(
@@ -167,7 +168,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Parallelism to a datum"),
         label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
         "mdi6.equal",
-        results=(ResultKind(label("parallelism"), one_sided=True),),
+        results=(ResultKind(label("parallelism"), one_sided=True, symbol="parallelism"),),
         made_of=2,
         part_titles=_TO_A_DATUM,
         made_from=_WITH_DIRECTION,
@@ -178,7 +179,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Perpendicularity to a datum"),
         label("Of the first feature to the second, its datum (ISO 1101): planes or cylinders that are in the list"),
         "mdi6.angle-right",
-        results=(ResultKind(label("perpendicularity"), one_sided=True),),
+        results=(ResultKind(label("perpendicularity"), one_sided=True, symbol="perpendicularity"),),
         made_of=2,
         part_titles=_TO_A_DATUM,
         made_from=_WITH_DIRECTION,
@@ -189,7 +190,7 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Position to the datums"),
         label("Of a cylinder or a sphere that is in the list, to the datums of the part's coordinates (ISO 1101)"),
         "mdi6.target",
-        results=(ResultKind(label("position"), one_sided=True),),
+        results=(ResultKind(label("position"), one_sided=True, symbol="position"),),
         made_of=1,
         part_titles=(label("Feature"),),
         made_from=("axis", "point"),
@@ -221,7 +222,10 @@ KINDS: tuple[FeatureKind, ...] = (
         label("Deviation from a nominal surface"),
         label("How far the surface lies off a nominal one from a STEP or STL file"),
         "mdi6.compare",
-        results=(ResultKind(label("profile"), one_sided=True), ResultKind(label("mean"))),
+        results=(
+            ResultKind(label("profile"), one_sided=True, symbol="profile of a surface"),
+            ResultKind(label("mean")),
+        ),
         automatic="all points",
         settings="deviation",
         fields=_DEVIATION,

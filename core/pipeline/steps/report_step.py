@@ -327,6 +327,8 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
         inspected=file.characteristics,
         points={name: indices for name, indices in file.points.items() if len(indices)},
         features=file.features,
+        control_frames=file.control_frames,
+        datums=file.datums,
         seen_at=_seen_at(read_json(path).get("plan"), file),
         sections={name: profile for name, profile in file.sections.items() if len(profile)},
         deviations=_deviations(path, file, content.camera.camera),

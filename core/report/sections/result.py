@@ -14,6 +14,7 @@ from core.inspect.conformity import WORST_FIRST, Verdict
 from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import heads, plain_table, ruled_table
+from core.report.layout.control_frame import ControlFrameMark
 from core.report.layout.style import (
     BOLD,
     HAIRLINE,
@@ -171,17 +172,19 @@ WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
     """One row for each characteristic; the names of those whose numbers are in `budgets` lead to their budgets."""
     keys = [budget_key(number) if number in budgets else "" for number in range(len(content.characteristics))]
-    return characteristics_table(look, content.characteristics, keys)
+    return characteristics_table(look, content, content.characteristics, keys)
 
 
-def characteristics_table(look: ReportLook, shown: Sequence[Characteristic], keys: Sequence[str] = ()) -> Table:
+def characteristics_table(
+    look: ReportLook, content: ReportContent, shown: Sequence[Characteristic], keys: Sequence[str] = ()
+) -> Table:
     """One row for each characteristic, its name leading to its key, if it has one."""
     head = heads(
         look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision",
         numbers=range(1, 7),
     )  # fmt: skip
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]
-    rows += [_row(look, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
+    rows += [_row(look, content, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
     table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
     table.setStyle(TableStyle([("LEFTPADDING", (7, 0), (7, -1), 5)]))
     return table
@@ -192,7 +195,7 @@ def budget_key(number: int) -> str:
     return f"budget-{number}"
 
 
-def _row(look: ReportLook, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
+def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
     words, (unit, factor) = look.words, shown_unit(one)
     decimals = decimals_of(factor * one.U)
     limits = one.limits
@@ -201,7 +204,11 @@ def _row(look: ReportLook, one: Characteristic, key: str) -> list[Flowable | lis
     deviation = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True) if known else ""
     name = shown_name(one, words)
     title = look.link(name, key, "small_strong") if key else look.text(name, "small_strong")
-    rule: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
+    below: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
+    if letter := content.datums.get(content.features.get(one.name, "")):
+        below.insert(0, look.say("Datum {letter}", "rule", letter=letter))
+    if frame := content.control_frames.get(one.name):
+        below.insert(0, ControlFrameMark(look, frame))
     U = words.fixed(factor * one.U, decimals) if math.isfinite(one.U) else words("unknown")
     numbers = (
         nominal,
@@ -213,7 +220,7 @@ def _row(look: ReportLook, one: Characteristic, key: str) -> list[Flowable | lis
     )
     decision = f"{SIGNS[one.verdict]} {words(VERDICTS[one.verdict])}"
     return [
-        [title, *rule],
+        [title, *below],
         *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
         look.text(decision, "small_strong"),
     ]

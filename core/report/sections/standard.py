@@ -163,7 +163,7 @@ def _sections(look: ReportLook, content: ReportContent, pictures: Pictures, limi
         body: list[Flowable] = [
             Picture(pictures[f"section-{number}"], limits.picture_scale),
             look.text(caption, "caption"),
-            *([characteristics_table(look, rows), Spacer(0, 2 * mm)] if rows else []),
+            *([characteristics_table(look, content, rows), Spacer(0, 2 * mm)] if rows else []),
         ]
         parts.append(OnOnePage(body) if number else section(look, "sections", "Cross-sections", body))
     return parts

@@ -9,7 +9,14 @@ import pytest
 
 from core.errors import InputError
 from core.files.arrays_file import write_arrays
+from core.files.results.inspection_file import write_inspection
 from core.files.study.study_file import write_study
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.evaluate import Inspection
+from core.inspect.features.measured import FeatureResult
+from core.inspect.plan.control_frame import ControlFrame
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.pipeline.steps.report_step import with_inspection, with_studies
 from core.report.content import CalibrationMark
 from core.study.type1 import type1_study
@@ -75,6 +82,18 @@ def test_a_section_brings_its_profile_and_a_distance_is_seen_where_its_first_fea
     found = with_inspection(content, tmp_path)
     assert found.seen_at == {"between": "top"}
     assert list(found.sections) == ["cut"] and np.array_equal(found.sections["cut"], profile)
+
+
+def test_feature_control_frames_and_datums_are_those_the_plan_asked_for(tmp_path, content):
+    limits = (("flatness", Limits(0.0, -math.inf, 0.05)),)
+    features = (FeatureSpec("top", "plane", limits=limits), FeatureSpec("side", "plane"))
+    row = Characteristic("top flatness", "flatness", 0.03, 0.004, limits=limits[0][1])
+    results = (FeatureResult(features[0], characteristics=(row,)), FeatureResult(features[1]))
+    plan = InspectionPlan(features, PartFrame("top", "side"))
+    write_inspection(tmp_path / "inspection.json", Inspection(plan, results), "aaa-bbb")
+    found = with_inspection(content, tmp_path)
+    assert found.datums == {"top": "A", "side": "B"}
+    assert found.control_frames == {"top flatness": ControlFrame("flatness", 0.05)}
 
 
 def test_the_inspection_of_another_scan_is_refused(tmp_path, content):
