@@ -54,6 +54,8 @@ class ReportTemplate:
     ----------
     name, address
         Of the laboratory, for the head of page one; `address` in lines.
+    country
+        Of the laboratory, two letters of ISO 3166-1: a digital calibration certificate wants it.
     logo
         The bytes of a PNG or JPEG picture for the head of page one; none if empty.
     accent
@@ -72,6 +74,7 @@ class ReportTemplate:
 
     name: str = ""
     address: tuple[str, ...] = ()
+    country: str = ""
     logo: bytes = b""
     accent: str = "#14586E"
     footer: str = ""

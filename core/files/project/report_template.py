@@ -48,6 +48,9 @@ class _Template(Table):
     address: list[_Line] = Field(
         default_factory=list, max_length=10, description="a list of at most 10 lines of at most 200 characters"
     )
+    country: Annotated[str, Field(pattern="^([A-Z]{2})?$")] = Field(
+        "", description='two letters of ISO 3166-1, as "DE"'
+    )
     logo: str = ""
     accent: Annotated[str, Field(pattern=r"^#[0-9A-Fa-f]{6}$")] = Field("#14586E", description='a colour as "#14586E"')
     footer: str = Field("", max_length=500, description="a text of at most 500 characters")
@@ -74,6 +77,7 @@ def read_report_template(path: Path) -> ReportTemplate:
     return ReportTemplate(
         name=file.name,
         address=tuple(file.address),
+        country=file.country,
         logo=_logo(path.parent / file.logo) if file.logo else b"",
         accent=file.accent,
         footer=file.footer,

@@ -60,6 +60,9 @@ _ALL = (
     ExportKind("results", label("Results with their schema (JSON)"), "result.json", "inspect", label("results")),
     ExportKind("dfq", label("Results for statistics (Q-DAS DFQ)"), "result.dfq", "inspect", label("results")),
     ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "inspect", label("results")),
+    ExportKind(
+        "dcc", label("Digital calibration certificate (DCC 3.3)"), "result.xml", "inspect", label("certificate")
+    ),
     ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "inspect", label("geometry")),
     ExportKind("json", label("Thickness (JSON)"), "gauge.json", "inspect", label("thickness")),
     ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),

@@ -10,6 +10,7 @@ from pathlib import Path
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.atomic import write_bytes
+from core.files.exchange.dcc import write_dcc
 from core.files.exchange.dfq import write_dfq
 from core.files.exchange.opencv_calibration import write_opencv
 from core.files.exchange.qif import write_qif
@@ -148,6 +149,7 @@ WRITERS: Mapping[str, Write] = {
     "results": _of_content(write_result_json),
     "dfq": _of_content(write_dfq),
     "qif": _of_content(write_qif),
+    "dcc": _of_content(write_dcc),
     "dxf": _dxf,
     "json": _copy("gauge"),
     "opencv": _opencv,

@@ -63,7 +63,7 @@ class ReportPage(StepPage):
             enable(button, missing, self._export_help(kind))
         nothing = all(p.export_missing(kind) for kind in self.exports)
         why_not = p.export_missing("pdf") if nothing else ""
-        enable(self.more, why_not, tr("Other programs' formats: E57, 3MF, DFQ, QIF and more"))
+        enable(self.more, why_not, tr("Other programs' formats: E57, 3MF, DFQ, QIF, DCC and more"))
         why = "" if p.results_folder() is not None else tr("There are no results yet.")
         enable(self.folder, why, str(p.results_folder()))
         self._show_pages()

@@ -39,6 +39,11 @@ def export_words(kind: str) -> tuple[str, str, str]:
             "mdi6.code-json",
         ),
         "dfq": (tr("Results (Q-DAS DFQ)"), tr("All results, for statistics programs"), "mdi6.chart-bell-curve"),
+        "dcc": (
+            tr("Digital calibration certificate (DCC 3.3)"),
+            tr("All results as XML, for laboratories"),
+            "mdi6.certificate-outline",
+        ),
         "qif": (tr("Results (QIF 3.0)"), tr("All results, for quality programs"), "mdi6.file-check-outline"),
         "dxf": (
             tr("Geometry (DXF)"),

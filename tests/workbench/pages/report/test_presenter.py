@@ -356,7 +356,16 @@ def test_a_read_only_projects_report_is_exported_elsewhere_but_not_kept_with_it(
 def test_without_a_thickness_only_its_file_is_missing(report: ReportPresenter) -> None:
     measured(report, "camera", "planes", "scan")
     missing = {kind: report.export_missing(kind) for kind in EXPORTS}
-    assert {kind for kind, why in missing.items() if why} == {"table", "xlsx", "results", "dfq", "qif", "dxf", "json"}
+    assert {kind for kind, why in missing.items() if why} == {
+        "table",
+        "xlsx",
+        "results",
+        "dfq",
+        "qif",
+        "dcc",
+        "dxf",
+        "json",
+    }
     assert missing["json"] == "Measure the thickness first."
 
 
