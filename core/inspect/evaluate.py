@@ -22,12 +22,13 @@ from core.inspect.plan.alignment import three_two_one
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.plan.kinds import kind_of
+from core.inspect.plan.kinds import brought_kinds, kind_of
+from core.inspect.plan.plugins import NAME_TAKEN, failure, plugins, unusable
 from core.inspect.plan.temperature import COMPARED, at_reference, compared, temperature_of
 from core.inspect.uncertainty.part import TEMPERATURE_ASSUMED, Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
-from core.messages import Message
+from core.messages import Message, plain
 from core.model import Pose
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -146,7 +147,8 @@ def evaluate(
     doubt = scene.errors.doubt
     notes = (*([doubt] if doubt else []), *([frame_problem] if frame_problem else []), *_missing(scene.errors))
     notes += _of_part(plan, scene.errors.part)
-    return Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
+    inspection = Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
+    return replace(inspection, notes=(*notes, *_of_plugins(inspection)))
 
 
 def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is_known: bool) -> FeatureResult:
@@ -162,12 +164,44 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
         result = measure(spec, scene)
     except InputError as error:
         return FeatureResult(spec, problem=InputError(error.what, where=where, todo=error.todo).message)
+    except Exception as error:
+        if spec.kind not in brought_kinds():
+            raise
+        said = failure(brought_kinds()[spec.kind][1], spec.kind, error)
+        return FeatureResult(spec, problem=InputError(said, where=where).message)
     rows = result.characteristics
+    if spec.kind in brought_kinds():
+        rows = tuple(replace(row, notes=(*row.notes, _brought(spec.kind))) for row in rows)
     if scene.temperature is not None:
         rows = tuple(at_reference(row, scene.temperature) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
         rows = tuple(_by_master(row, plan.master, scene.errors) for row in rows)
     return replace(result, characteristics=rows)
+
+
+def _brought(kind: str) -> Message:
+    """That a result is none of this program's own."""
+    origin = brought_kinds()[kind][1]
+    return Message(
+        "plugin.measured_by",
+        "Measured by the package {package} {version}, which is no part of Trisect.",
+        package=origin.package,
+        version=origin.version,
+    )
+
+
+def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
+    """What checks of other packages say of an inspection, and what of such packages does not work."""
+    found = plugins()
+    said = list(found.problems)
+    said += [unusable(name, found.kinds[name][1], NAME_TAKEN) for name in found.kinds.keys() - brought_kinds()]
+    for check in found.checks:
+        try:
+            said += [plain(f"{check.name} ({check.origin.package} {check.origin.version}): {text}")
+                     for text in check.of(inspection)]  # fmt: skip
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's check raises: the measurement stands)
+            said.append(failure(check.origin, check.name, error))
+    return tuple(said)
 
 
 def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> Characteristic:
@@ -216,7 +250,11 @@ def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, fram
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
     master = plan.master if plan.master is not None and spec.name in plan.master.features else None
     measured = replace(spec, limits=(), nominal_heights=())
-    said = repr((of, measured, plan.k, plan.temperature, master, rests_on, frame))
+    brought = brought_kinds().get(spec.kind)
+    origin = None if brought is None else brought[1]  # another version of a package measures anew
+    said = repr(
+        (*([] if origin is None else [origin]), of, measured, plan.k, plan.temperature, master, rests_on, frame)
+    )
     return hashlib.sha256(said.encode()).hexdigest()[:32]
 
 

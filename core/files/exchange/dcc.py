@@ -53,7 +53,10 @@ def dcc_document(content: ReportContent) -> Element:
     laboratory, country = one_line(content.laboratory or content.template.name), content.template.country
     if not laboratory or not country:
         raise InputError(
-            Message("export.dcc_without_laboratory", "a digital calibration certificate names the laboratory and its country"),
+            Message(
+                "export.dcc_without_laboratory",
+                "a digital calibration certificate names the laboratory and its country",
+            ),
             todo=Message("export.advice_name_laboratory", 'give name and country = "DE" in the template of the report'),
         )
     if not content.characteristics:

@@ -4,10 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from core.inspect.plan.feature_kind import ChoiceField, ElementKind, FeatureKind, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
+
+if TYPE_CHECKING:
+    from core.inspect.plan.plugins import Origin
 
 MOST_FACES = 8
 """Plane faces found by their number, and levels of steps: `core.inspect.fit.plane_search` looks for as many."""
@@ -242,7 +246,21 @@ def kind_of(spec: FeatureSpec) -> FeatureKind:
 
 def kind_named(name: str) -> FeatureKind:
     """The kind called so; KeyError if there is none."""
-    return {kind.name: kind for kind in KINDS}[name]
+    own = {kind.name: kind for kind in KINDS}
+    return own[name] if name in own else brought_kinds()[name][0]
+
+
+def every_kind() -> tuple[FeatureKind, ...]:
+    """The program's own kinds, and those that other packages bring."""
+    return (*KINDS, *(kind for kind, _ in brought_kinds().values()))
+
+
+def brought_kinds() -> Mapping[str, tuple[FeatureKind, Origin]]:
+    """Kinds that other packages bring and where they come from; none that takes the name of one of our own."""
+    from core.inspect.plan.plugins import plugins  # looking for packages takes time that most never need
+
+    own = {kind.name for kind in KINDS}
+    return {name: brought for name, brought in plugins().kinds.items() if name not in own}
 
 
 def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
@@ -255,4 +273,4 @@ def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
 
 def expanding() -> frozenset[str]:
     """Names of the characteristics that grow with the part's temperature."""
-    return frozenset(result.name for kind in KINDS for result in kind.results if result.expands)
+    return frozenset(result.name for kind in every_kind() for result in kind.results if result.expands)

@@ -200,7 +200,7 @@ class FeaturesPanel(QWidget):
     def _make_menu(self) -> None:
         menu = QMenu(self)
         menu.setToolTipsVisible(True)
-        for kind in kinds.KINDS:
+        for kind in kinds.every_kind():
             action = menu.addAction(words.title(kind))
             action.triggered.connect(lambda _=False, kind=kind: self._add(kind))
             action.setIcon(icon(kind.icon))
