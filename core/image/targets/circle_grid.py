@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.image.targets.ellipses import Ellipse, centre_shift, fit_dark_ellipse
+from core.image.targets.ellipses import Ellipse, centre_shift, fit_dark_ellipses
 from core.image.targets.kinds import CircleGrid
 from core.image.targets.picture import Picture, as_8bit, enlarged, reduced, without_stripes
 from core.image.targets.pose import homography_of, map_by
@@ -161,7 +161,7 @@ def _view(
     grid: CircleGrid, picture: Picture, centres: Array, radii: Array, name: str, camera: Camera | None
 ) -> TargetView:
     """Ellipses at full size, and the perspective's shift taken off their centres."""
-    fitted = [fit_dark_ellipse(picture, *spot) for spot in zip(centres, radii, strict=True)]
+    fitted = fit_dark_ellipses(picture, centres, radii)
     usual = float(np.median([ellipse.sigma for ellipse in fitted if ellipse is not None] or [0.0]))
     fitted = [
         ellipse if ellipse is not None and ellipse.sigma < max(UNSUSPICIOUS_PX, 5 * usual) else None

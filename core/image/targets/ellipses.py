@@ -2,14 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.image.targets.edges import PictureSpline, profiles
 from core.image.targets.picture import Picture
 from core.model.arrays import Array
-from core.model.robust import mad_sd
+from core.model.robust import MAD_TO_SD
+
+SAMPLES = (32, 256)
+"""Fewest and most places on an outline where its edge is looked for; between them one for each pixel."""
+
+LEAST_SEEN = 0.6
+"""Share of an outline's places that must fit its ellipse."""
+
+LEAST_POINTS = 8
+"""So many of them, however few there are."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -21,79 +32,148 @@ class Ellipse:
     sigma: float
 
 
-def fit_dark_ellipse(picture: Picture, centre: Array, radius: float) -> Ellipse | None:
-    """The outline of a dark disc near `centre` (2,) of about `radius` pixels; None if less than 60 % of it is seen."""
-    ellipse = Ellipse(np.asarray(centre, dtype=np.float64), np.eye(2) * radius, 0.0)
-    reach = max(3.0, 0.45 * radius)
-    spline = PictureSpline(picture, ellipse.centre[None], 1.6 * radius + 2 * reach + 4)
-    for half_width in (reach, min(reach, 5.0), min(reach, 5.0)):
-        fitted = _fit_once(spline, ellipse, half_width)
-        if fitted is None or np.linalg.norm(fitted.centre - centre) > radius:
-            return None
-        ellipse = fitted
-    return ellipse
+@dataclass(frozen=True, eq=False, slots=True)
+class _Ellipses:
+    """Some ellipses: as :class:`Ellipse`, each with one more axis (N, …) in front."""
+
+    centre: Array
+    shape: Array
+    sigma: Array
+
+    def of(self, which: NDArray[np.bool_]) -> _Ellipses:
+        """Those that `which` (N,) names."""
+        return _Ellipses(self.centre[which], self.shape[which], self.sigma[which])
 
 
-def _fit_once(spline: PictureSpline, about: Ellipse, half_width: float) -> Ellipse | None:
-    """Edge points across the outline of `about`, and the ellipse through most of them."""
-    count = int(np.clip(2 * np.pi * np.sqrt(abs(np.linalg.det(about.shape))), 32, 256))
-    angle = np.arange(count) * 2 * np.pi / count
-    circle = np.column_stack([np.cos(angle), np.sin(angle)])
-    outward = circle @ np.linalg.inv(about.shape)
-    outward /= np.linalg.norm(outward, axis=1, keepdims=True)
-    uv = about.centre + circle @ about.shape.T
-    across = profiles(spline, uv, outward, half_width)
-    points = uv + across.offset[:, None] * outward
-    if not across.valid.any():
-        return None
-    steep = across.valid & (across.steepness > 0.4 * np.median(across.steepness[across.valid]))
-    with np.errstate(invalid="ignore"):
-        usual_fall = np.quantile(across.fall[across.valid], 0.3) + 0.1 * np.nanmedian(across.bright - across.dark)
-        plain = steep & (across.fall < 1.5 * usual_fall)  # no stripe crosses the profile
-    used = plain
-    ellipse, distance = about, np.zeros(count)
+@dataclass(frozen=True, eq=False, slots=True)
+class _Outlines:
+    """Edge points `uv` (N, K, 2) of N outlines; `plain` (N, K) False where there is none, or not a mere edge.
+
+    `places` (N,) are how many were looked for: the rest of a row is filled up.
+    """
+
+    uv: Array
+    plain: NDArray[np.bool_]
+    places: NDArray[np.intp]
+
+
+def fit_dark_ellipses(picture: Picture, centres: Array, radii: Array) -> list[Ellipse | None]:
+    """The outlines of dark discs near `centres` (N, 2) of about `radii` (N,) pixels; None where 60 % are not seen.
+
+    All at a time: a fit for each costs twenty times what its sums do.
+    """
+    reach = np.maximum(3.0, 0.45 * radii)
+    splines = [
+        PictureSpline(picture, centre[None], 1.6 * radius + 2 * half_width + 4)
+        for centre, radius, half_width in zip(centres, radii, reach, strict=True)
+    ]
+    left = np.arange(len(centres))
+    ellipses = _Ellipses(centres, radii[:, None, None] * np.eye(2), np.zeros(len(centres)))
+    for widest in (np.inf, 5.0, 5.0):
+        outlines = _outlines([splines[index] for index in left], ellipses, np.minimum(reach[left], widest))
+        ellipses, fitted = _through_most(outlines)
+        left = left[fitted]
+        near = np.linalg.norm(ellipses.centre - centres[left], axis=1) <= radii[left]
+        ellipses, left = ellipses.of(near), left[near]
+    found: list[Ellipse | None] = [None] * len(centres)
+    for index, centre, shape, sigma in zip(left, ellipses.centre, ellipses.shape, ellipses.sigma, strict=True):
+        found[index] = Ellipse(centre, shape, float(sigma))
+    return found
+
+
+def _outlines(splines: Sequence[PictureSpline], about: _Ellipses, half_width: Array) -> _Outlines:
+    """Edge points across the outlines of `about`, looked for up to `half_width` (N,) pixels on either side."""
+    perimeter = 2 * np.pi * np.sqrt(np.abs(np.linalg.det(about.shape)))
+    places = np.clip(perimeter, *SAMPLES).astype(np.intp)
+    most = int(places.max(initial=0))
+    uv = np.zeros((len(splines), most, 2))
+    valid = np.zeros((len(splines), most), dtype=bool)
+    steepness, fall, rise = np.zeros(valid.shape), np.zeros(valid.shape), np.full(valid.shape, np.nan)
+    for n, (spline, count) in enumerate(zip(splines, places, strict=True)):
+        angle = np.arange(count) * 2 * np.pi / count
+        circle = np.column_stack([np.cos(angle), np.sin(angle)])
+        outward = circle @ np.linalg.inv(about.shape[n])
+        outward /= np.linalg.norm(outward, axis=1, keepdims=True)
+        start = about.centre[n] + circle @ about.shape[n].T
+        across = profiles(spline, start, outward, half_width[n])
+        uv[n, :count] = start + across.offset[:, None] * outward
+        valid[n, :count], steepness[n, :count], fall[n, :count] = across.valid, across.steepness, across.fall
+        rise[n, :count] = across.bright - across.dark
+    steep = valid & (steepness > 0.4 * _quantiles(steepness, valid, 0.5)[:, None])
+    usual_fall = _quantiles(fall, valid, 0.3) + 0.1 * _quantiles(rise, np.isfinite(rise), 0.5)
+    plain = steep & (fall < 1.5 * usual_fall[:, None])  # no stripe crosses the profile
+    return _Outlines(uv, plain, places)
+
+
+def _through_most(outlines: _Outlines) -> tuple[_Ellipses, NDArray[np.intp]]:
+    """The ellipses through most points of their outlines, and the indices of the outlines that have one."""
+    left = np.arange(len(outlines.places))
+    uv, plain, used = outlines.uv, outlines.plain, outlines.plain
+    least = np.maximum(LEAST_POINTS, LEAST_SEEN * outlines.places)
+    ellipses, distance = _Ellipses(np.zeros((0, 2)), np.zeros((0, 2, 2)), np.zeros(0)), np.zeros(used.shape)
     for _ in range(4):
-        if used.sum() < max(8, 0.6 * count):
-            return None
-        fitted = _least_squares(points[used])
-        if fitted is None:
-            return None
-        ellipse = fitted
-        distance = _distances(ellipse, points)
-        scale = max(mad_sd(distance[used]), 0.02)
-        used = plain & (np.abs(distance) < 4 * scale)
-    sigma = float(np.sqrt(np.mean(distance[used] ** 2) * 2 / used.sum()))
-    return Ellipse(ellipse.centre, ellipse.shape, sigma)
+        enough = used.sum(axis=1) >= least[left]
+        left, uv, plain, used = left[enough], uv[enough], plain[enough], used[enough]
+        ellipses, elliptic = _least_squares(uv, used)
+        left, uv, plain, used = left[elliptic], uv[elliptic], plain[elliptic], used[elliptic]
+        distance = _distances(ellipses, uv)
+        scale = np.maximum(MAD_TO_SD * _quantiles(np.abs(distance), used, 0.5), 0.02)
+        used = plain & (np.abs(distance) < 4 * scale[:, None])
+    count = used.sum(axis=1)
+    sigma = np.sqrt(np.where(used, distance**2, 0.0).sum(axis=1) * 2) / count
+    return _Ellipses(ellipses.centre, ellipses.shape, sigma), left
 
 
-def _least_squares(points: Array) -> Ellipse | None:
-    """Direct ellipse fit (Halíř & Flusser 1998), in coordinates normalised for conditioning."""
-    middle, scale = points.mean(axis=0), points.std()
-    x, y = ((points - middle) / scale).T
-    quadratic = np.column_stack([x * x, x * y, y * y])
-    linear = np.column_stack([x, y, np.ones_like(x)])
-    from_linear = -np.linalg.solve(linear.T @ linear, linear.T @ quadratic)
-    reduced = quadratic.T @ quadratic + quadratic.T @ linear @ from_linear
-    vectors = np.linalg.eig(np.array([reduced[2] / 2, -reduced[1], reduced[0] / 2]))[1].real
-    elliptic = 4 * vectors[0] * vectors[2] - vectors[1] ** 2 > 0
-    if not elliptic.any():
-        return None
-    a, b, c = vectors[:, elliptic][:, 0]
-    d, e, f = from_linear @ np.array([a, b, c])
-    form = np.array([[a, b / 2], [b / 2, c]])
-    centre = np.linalg.solve(2 * form, [-d, -e])
-    level = centre @ form @ centre - f
-    values, axes = np.linalg.eigh(form / level)
-    if not (values > 0).all():
-        return None
-    return Ellipse(middle + scale * centre, axes @ np.diag(scale / np.sqrt(values)) @ axes.T, 0.0)
+def _quantiles(values: Array, used: NDArray[np.bool_], share: float) -> Array:
+    """The quantile (N,) of the used ones of `values` (N, K) in each row; infinite where there is none."""
+    ranked = np.sort(np.where(used, values, np.inf), axis=1)
+    at = np.maximum(used.sum(axis=1) - 1, 0) * share
+    low, rows = at.astype(np.intp), np.arange(len(values))
+    below, above = ranked[rows, low], ranked[rows, np.minimum(np.ceil(at).astype(np.intp), ranked.shape[1] - 1)]
+    with np.errstate(invalid="ignore"):  # infinite less infinite
+        return np.asarray(np.where(at > low, below + (at - low) * (above - below), below), dtype=np.float64)
 
 
-def _distances(ellipse: Ellipse, points: Array) -> Array:
-    """Signed distances (N,) in pixels of `points` (N, 2) from the outline, to first order."""
-    local = (points - ellipse.centre) @ np.linalg.inv(ellipse.shape).T
-    radius = np.linalg.norm(local, axis=1)
-    gradient = np.linalg.norm(local @ np.linalg.inv(ellipse.shape), axis=1) / radius
+def _least_squares(uv: Array, used: NDArray[np.bool_]) -> tuple[_Ellipses, NDArray[np.bool_]]:
+    """Direct ellipse fits (Halíř & Flusser 1998) to the used of points (N, K, 2), normalised for conditioning.
+
+    The ellipses, and which (N,) of the rows have one.
+    """
+    weight = used.astype(np.float64)[..., None]
+    count = weight.sum(axis=1)
+    middle = (uv * weight).sum(axis=1) / count
+    centred = (uv - middle[:, None]) * weight
+    scale = np.sqrt((centred**2).sum(axis=(1, 2)) / (2 * count[:, 0]))
+    x, y = np.moveaxis(centred / scale[:, None, None], 2, 0)
+    quadratic = np.stack([x * x, x * y, y * y], axis=2)
+    linear = np.stack([x, y, weight[..., 0]], axis=2)
+    turned, turned_linear = quadratic.transpose(0, 2, 1), linear.transpose(0, 2, 1)
+    from_linear = -np.linalg.solve(turned_linear @ linear, turned_linear @ quadratic)
+    reduced = turned @ quadratic + turned @ linear @ from_linear
+    vectors = np.linalg.eig(np.stack([reduced[:, 2] / 2, -reduced[:, 1], reduced[:, 0] / 2], axis=1))[1].real
+    is_ellipse = 4 * vectors[:, 0] * vectors[:, 2] - vectors[:, 1] ** 2 > 0
+    rows = np.flatnonzero(is_ellipse.any(axis=1))
+    quadratic_part = vectors[rows, :, is_ellipse[rows].argmax(axis=1)]
+    linear_part = np.einsum("nij,nj->ni", from_linear[rows], quadratic_part)
+    form = quadratic_part[:, [[0, 1], [1, 2]]] * [[1.0, 0.5], [0.5, 1.0]]
+    centre = np.linalg.solve(2 * form, -linear_part[:, :2, None])[..., 0]
+    level = np.einsum("ni,nij,nj->n", centre, form, centre) - linear_part[:, 2]
+    values, axes = np.linalg.eigh(form / level[:, None, None])
+    real = (values > 0).all(axis=1)
+    rows, values, axes, centre = rows[real], values[real], axes[real], centre[real]
+    half_axes = axes * (scale[rows, None] / np.sqrt(values))[:, None, :]
+    fits = np.zeros(len(uv), dtype=bool)
+    fits[rows] = True
+    placed = middle[rows] + scale[rows, None] * centre
+    return _Ellipses(placed, half_axes @ axes.transpose(0, 2, 1), np.zeros(len(rows))), fits
+
+
+def _distances(ellipses: _Ellipses, points: Array) -> Array:
+    """Signed distances (N, K) in pixels of `points` (N, K, 2) from their outlines, to first order."""
+    back = np.linalg.inv(ellipses.shape)
+    local = (points - ellipses.centre[:, None]) @ back.transpose(0, 2, 1)
+    radius = np.linalg.norm(local, axis=2)
+    gradient = np.linalg.norm(local @ back, axis=2) / radius
     distances: Array = (radius - 1) / gradient
     return distances
 

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from core.image.targets import CircleGrid, TargetNotFound, camera_shift, detect
-from core.image.targets.ellipses import centre_shift
+from core.image.targets.ellipses import centre_shift, fit_dark_ellipses
 from tests.image.rendered_targets import Noise, circles, pose, render, rig
 from tests.shared import REAL_SETS
 
@@ -83,3 +83,19 @@ def test_linelight_is_found_in_all_poses_with_the_laser_on_and_off():
     rms, matrix, *_ = cv2.calibrateCamera([grid.points.astype(np.float32)] * 12, uv, (1920, 1080), None, None)
     assert rms < 0.0986  # what OpenCV's blob centres give
     assert matrix[[0, 1], [0, 1]] == pytest.approx([1144.4393, 1142.4883], abs=1.5)
+
+
+def test_outlines_found_together_are_those_found_each_alone_and_a_hidden_one_spoils_no_other():
+    picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), noise=Noise(0.5))
+    centres = CAMERA.project_pose(STEEP, GRID.points)
+    radii = np.linspace(6.0, 9.0, len(centres))  # true are some 7.7 px: each finds its own way there
+    hidden = 24
+    u, v = centres[hidden].astype(int)
+    picture[v - 9 : v + 10, u - 9 : u + 10] = 120
+    together = fit_dark_ellipses(picture, centres, radii)
+    assert [ellipse is None for ellipse in together] == [index == hidden for index in range(len(centres))]
+    for index in (0, 20, 48):
+        (alone,) = fit_dark_ellipses(picture, centres[[index]], radii[[index]])
+        assert together[index].centre == pytest.approx(alone.centre, abs=1e-9)
+        assert together[index].shape @ together[index].shape.T == pytest.approx(alone.shape @ alone.shape.T, abs=1e-8)
+        assert together[index].sigma == pytest.approx(alone.sigma, rel=1e-9)
