@@ -101,6 +101,16 @@ def test_a_camera_target_of_which_nothing_is_stated_confirms_nothing(tmp_path, s
     assert with_compared_sizes(UNSTATED, found, camera)[0].scale_assumed
 
 
+def test_a_camera_target_that_rig_toml_does_not_name_is_not_looked_for(tmp_path, simulated, pictures):
+    """In memory it is the paper's checkerboard: each picture was said not to show a board that nobody has."""
+    camera, shown = pictures
+    opened(tmp_path, simulated, shown, 60.0)
+    (tmp_path / "set" / "rig.toml").write_text('[plane_target]\nkind = "black_square"\nside_mm = 60.0\n')
+    found = open_set(tmp_path / "set")
+    assert compare_targets(found, camera) == (None, ())
+    assert with_compared_sizes(UNSTATED, found, camera) == (UNSTATED, ())
+
+
 def test_targets_that_are_not_fixed_to_each_other_say_nothing(tmp_path, simulated, pictures):
     camera, shown = pictures
     half = shown[0].shape[1] // 2
