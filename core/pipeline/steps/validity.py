@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
 from core.calibrate.board_shape import SIZE_UNCONFIRMED
+from core.calibrate.fan.picture_residuals import OFF_ALIKE
 from core.calibrate.results import Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
@@ -21,6 +22,14 @@ from core.pipeline.steps.workspace import Calibration, Workspace
 
 _DAY_S = 86_400.0
 """Seconds of a day."""
+
+
+POINTS_UNCONFIRMED = Message(
+    "validity.target_points_off",
+    "In all poses of the laser planes' calibration the target's points lie off alike, which U need not contain: "
+    "nothing measured proves conformity. Calibrate again with a true target and camera, or measure a known artefact.",
+)
+"""Why nothing proves conformity where target and camera did not fit each other."""
 
 
 def history_name(rig: Rig, calibration_id: str) -> str:
@@ -37,7 +46,8 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
     """Why nothing measured proves conformity on the day it was recorded; None if calibration and check held.
 
     The check nearest in time counts, before the recording or after it. What is not stated has no limit. A size of the
-    plane target that is assumed proves nothing on any day.
+    plane target that is assumed proves nothing on any day. Neither does a target whose points lie off alike in all
+    poses, which U need not contain, before an artefact has passed.
     """
     found = work.found
     when = taken_at(found.frames)
@@ -60,7 +70,12 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             date=nearest.taken_at.astimezone(),
         )
     lapsed = _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
-    return lapsed or (SIZE_UNCONFIRMED if calibration.fan.scale_assumed else None)
+    if lapsed is not None or calibration.fan.scale_assumed:
+        return lapsed or SIZE_UNCONFIRMED
+    off_alike = any(note.code in OFF_ALIKE for note in calibration.fan.notes)
+    if off_alike and _passed_artefact(found.rig, checks, when) is None:
+        return POINTS_UNCONFIRMED
+    return None
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
@@ -71,24 +86,31 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     share of the artefact: a short one says less of a long part. A re-adjusted fan keeps the uncertainty it was
     re-adjusted with, and is confirmed only by an artefact that says as much.
     """
-    fan, rig = calibration.fan, work.found.rig
+    fan = calibration.fan
     if not fan.scale_assumed:
         return calibration
     when = taken_at(work.found.frames)
     try:
-        checks = history_of(rig, calibration.id).of_calibration(calibration.id)
+        checks = history_of(work.found.rig, calibration.id).of_calibration(calibration.id)
     except InputError:
         return calibration  # doubt_of_the_day tells that it cannot be read
-    artefacts = [check for check in checks if check.artefact]
-    nearest = min(artefacts, key=lambda check: abs(check.taken_at - when), default=None)
-    if nearest is None or nearest.verdict != "passed":
-        return calibration
-    if rig.validity.check_days is not None and abs(_days(when, nearest.taken_at)) > rig.validity.check_days:
+    nearest = _passed_artefact(work.found.rig, checks, when)
+    if nearest is None:
         return calibration
     shown = math.hypot(nearest.error_mm, nearest.unseen_mm / 2) / nearest.step_mm
     if fan.readjusted is not None and shown > fan.scale_sd:
         return calibration
     return replace(calibration, fan=with_known_size(fan, shown))
+
+
+def _passed_artefact(rig: Rig, checks: Sequence[PastCheck], when: datetime) -> PastCheck | None:
+    """The artefact measured nearest in time to `when`, if it passed no longer ago than a check holds."""
+    artefacts = [check for check in checks if check.artefact]
+    nearest = min(artefacts, key=lambda check: abs(check.taken_at - when), default=None)
+    if nearest is None or nearest.verdict != "passed":
+        return None
+    holds = rig.validity.check_days is None or abs(_days(when, nearest.taken_at)) <= rig.validity.check_days
+    return nearest if holds else None
 
 
 def _as_check(known: Readjustment, calibration_id: str) -> PastCheck:

@@ -14,6 +14,7 @@ from core.files.recording.rig import Validity, default_rig
 from core.files.recording.set_listing import PlanePair
 from core.files.results.rig_history import PastCheck, history_file, keep_check
 from core.files.results.run_file import RunRecord
+from core.messages import Message
 from core.model import Fan, LightPlane
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from tests.check_cases import check
@@ -45,7 +46,7 @@ def checked(days, p=0.4):
 
 
 def doubt(work, readjusted=None):
-    fan = SimpleNamespace(readjusted=readjusted, scale_assumed=False)
+    fan = SimpleNamespace(readjusted=readjusted, scale_assumed=False, notes=())
     told = doubt_of_the_day(work, SimpleNamespace(id=ID, fan=fan))
     return "" if told is None else told.code
 
@@ -112,6 +113,27 @@ def test_a_readjusted_fan_is_confirmed_by_an_artefact_that_says_as_much_as_it_ho
     assert with_size_by_artefact(work, readjusted).fan.scale_assumed, "7e-4 are more than 5e-4"
     artefact_measured(0.5, step_mm=100.0)
     assert not with_size_by_artefact(work, readjusted).fan.scale_assumed
+
+
+@pytest.mark.parametrize("code", ["fan.point_off_target", "fan.points_off_in_region"])
+def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact_has_passed(tmp_path, code):
+    """A point printed aside in every pose shifts the planes, and U does not know by how much."""
+    work, true = recorded(tmp_path, Validity(check_days=3)), calibrated(assumed=False)
+    off = replace(true, fan=replace(true.fan, notes=(Message(code, "off"),)))
+
+    def doubted():
+        told = doubt_of_the_day(work, off)
+        return told is not None and told.code == "validity.target_points_off"
+
+    checked(0.5)
+    assert doubt_of_the_day(work, true) is None
+    assert doubted(), "pictures of a check show the same target"
+    artefact_measured(5)
+    assert doubted(), "too long ago"
+    artefact_measured(2)
+    assert not doubted()
+    artefact_measured(1, verdict="doubtful")
+    assert doubted(), "the nearest one counts"
 
 
 def test_what_is_not_stated_has_no_limit(tmp_path):
