@@ -49,8 +49,8 @@ class Bundle:
     ----------
     planes
         The light planes.
-    covariance
-        (3N, 3N) of the stacked π in 1/mm², the camera taken as known.
+    joint
+        (U + B, U + B) covariance of the planes' own unknowns and the plate's bows, the camera taken as known.
     by_camera
         (3N, 10) how the stacked π follow a change of the camera's parameters, the pictures the same.
     camera
@@ -65,8 +65,8 @@ class Bundle:
         Redundancy of the stripes' residuals (a real number).
     corner_scale
         Factor on the stated uncertainty of the target's points.
-    extra_mm
-        Standard deviation in mm of a stripe's offset beyond its own noise.
+    extra
+        (K,) standard deviations in mm of what stripes' offsets, slopes and bends have beyond their own noise.
     pose_errors
         For each pose (P,), RMS of the residuals of its stripes or, if that is larger, of its target points, in
         standard deviations.
@@ -79,7 +79,7 @@ class Bundle:
     """
 
     planes: PlaneSet
-    covariance: Array
+    joint: Array
     by_camera: Array
     camera: Camera
     camera_covariance: Array | None
@@ -87,10 +87,22 @@ class Bundle:
     shape: BoardShape
     freedom: float
     corner_scale: float
-    extra_mm: float
+    extra: Array
     pose_errors: Array
     expected_mm: float
     without_each: Array
+
+    @property
+    def covariance(self) -> Array:
+        """(3N, 3N) of the stacked π in 1/mm², the camera taken as known."""
+        to_pis = self.planes.jacobian
+        unknowns = to_pis.shape[1]
+        return np.asarray(to_pis @ self.joint[:unknowns, :unknowns] @ to_pis.T)
+
+    @property
+    def extra_mm(self) -> float:
+        """Standard deviation in mm of a stripe's offset beyond its own noise."""
+        return float(self.extra[0] / np.sqrt(2))
 
 
 def solve(
@@ -171,8 +183,6 @@ def _result(seen: Observations, solution: Solution[State, PoseEquations], trust:
     every = seen.with_every_camera_parameter(state, trust)
     alone = every.by_first(known)
     covariance = alone.covariance
-    to_pis = state.planes.jacobian
-    extra_mm = float(trust.extra[0] / np.sqrt(2))
     expected_mm = seen.expected_mm(state, trust)
     without_each = alone.steps_without_each()
     covariance = covariance * _widening(covariance[:unknowns, :unknowns], without_each[:, :unknowns])
@@ -182,15 +192,15 @@ def _result(seen: Observations, solution: Solution[State, PoseEquations], trust:
         corrected[np.ix_(seen.free, seen.free)] = solution.linear.covariance[known:, known:]
     return Bundle(
         planes=state.planes,
-        covariance=to_pis @ covariance[:unknowns, :unknowns] @ to_pis.T,
-        by_camera=to_pis @ every.followed_by(known)[:unknowns],
+        joint=covariance,
+        by_camera=state.planes.jacobian @ every.followed_by(known)[:unknowns],
         camera=seen.camera(state),
         camera_covariance=corrected,
         poses=state.poses,
         shape=seen.shape(state.bow, covariance[unknowns:, unknowns:]),
         freedom=float((1 - alone.leverages()[seen.corners :]).sum()),
         corner_scale=trust.corner_scale,
-        extra_mm=extra_mm,
+        extra=trust.extra,
         pose_errors=_pose_errors(seen, alone.residuals, _errors(seen, state, trust)),
         expected_mm=expected_mm,
         without_each=without_each,

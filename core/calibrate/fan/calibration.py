@@ -18,7 +18,7 @@ import numpy as np
 
 from core.calibrate.board_shape import TRUE, Board, BoardShape, BoardTolerance
 from core.calibrate.fan.bundle import Bundle, solve
-from core.calibrate.fan.cross_validation import prediction_errors
+from core.calibrate.fan.cross_validation import predict
 from core.calibrate.fan.observations import BundlePose, Plate
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet
 from core.calibrate.fan.poses.line_assignment import NOT_SEEN, assign_lines
@@ -146,11 +146,11 @@ def fit_fan(
     used = free
     if not isinstance(verdict.start, FreePlanes):
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
-    errors = prediction_errors(used, _bundle_poses(located), camera, plate)
+    foretold = predict(used, _bundle_poses(located), camera, plate)
     flat = None
     if plate is not None and options.seen_bowed is None:
         flat = solve(verdict.start, _bundle_poses(located), camera)
-    summary = summarise(located, free, used, verdict, errors, further, flat)
+    summary = summarise(located, free, used, verdict, foretold, further, flat)
     return replace(
         summary,
         notes=(*summary.notes, *options.target.notes("plane_target", shape_known=options.seen_bowed is not None)),

@@ -10,6 +10,7 @@ import numpy as np
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
+from core.calibrate.fan.cross_validation import Predictions
 from core.calibrate.fan.picture_residuals import judge_points, notes_on_points
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.target_plane import on_target
@@ -20,11 +21,8 @@ from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
 
-POORLY_PREDICTED = 4.0
-"""A pose that the others predict this many times worse than the median pose is worth a note."""
-
 WORTH_A_NOTE_MM = 0.05
-"""Errors of prediction and bows below this are not noted."""
+"""Scatter and bows below this are not noted."""
 
 SCATTERED = 3.0
 """Poses that disagree by this many times their noise do so by themselves, not by chance of points and stripes."""
@@ -42,17 +40,17 @@ def summarise(
     free: Bundle,
     used: Bundle,
     verdict: Verdict,
-    prediction_errors: Array,
+    foretold: Predictions,
     notes: Sequence[Message],
     flat: Bundle | None = None,
 ) -> FanCalibration:
     """Put together the result of a free fit, the fit in use and the verdict between them, with `notes` in front.
 
-    `prediction_errors` in mm are those of the poses that are used. Where nothing but the stripes tells the target's
-    bow, `flat` is the fit in use with a flat target.
+    `foretold` is of the poses that are used. Where nothing but the stripes tells the target's bow, `flat` is the fit in
+    use with a flat target.
     """
     pis = used.planes.pis
-    adjusted, errors = iter(used.poses), iter(prediction_errors.tolist())
+    adjusted, errors = iter(used.poses), iter(foretold.error_mm.tolist())
     poses = tuple(
         _plane_pose(pose, next(adjusted), pis, used.shape, next(errors))
         if pose.used
@@ -88,14 +86,14 @@ def summarise(
             *_notes(located, poses),
             *of_lines,
             *notes_on_points(judge_points(located, used)),
-            *_notes_on_scatter(prediction_errors, max(used.expected_mm, bent_mm)),
-            *_notes_on_predictions(poses),
+            *_notes_on_scatter(foretold.error_mm, max(used.expected_mm, bent_mm)),
+            *_notes_on_predictions([pose.features.name for pose in located if pose.used], foretold),
             *_notes_on_bow(used.shape),
         ),
         stripe_sd_mm=used.extra_mm,
         corner_scale=used.corner_scale,
         by_camera=used.by_camera,
-        cross_validation_mm=float(np.sqrt(np.mean(prediction_errors**2))),
+        cross_validation_mm=float(np.sqrt(np.mean(foretold.error_mm**2))),
         board=used.shape,
         bends=bends,
     )
@@ -220,23 +218,18 @@ def _notes_on_scatter(prediction_errors: Array, expected_mm: float) -> tuple[Mes
     )
 
 
-def _notes_on_predictions(poses: Sequence[PlanePose]) -> tuple[Message, ...]:
-    """On the poses that the others predict badly."""
-    known = [pose for pose in poses if np.isfinite(pose.prediction_mm)]
-    if not known:
-        return ()
-    usual = float(np.median([pose.prediction_mm for pose in known]))
+def _notes_on_predictions(names: Sequence[str], foretold: Predictions) -> tuple[Message, ...]:
+    """On the poses that the others predict badly, of all that have these names."""
     return tuple(
         Message(
             "fan.poorly_predicted",
             "the other poses foretell the stripes of {pose} to {error:.3f} mm only, those of a usual pose to "
             "{usual:.3f} mm: look at its pictures, or take more poses like it",
-            pose=pose.name,
-            error=pose.prediction_mm,
-            usual=usual,
+            pose=names[index],
+            error=float(foretold.error_mm[index]),
+            usual=foretold.usual_mm,
         )
-        for pose in known
-        if pose.prediction_mm > max(POORLY_PREDICTED * usual, WORTH_A_NOTE_MM)
+        for index in foretold.poor
     )
 
 

@@ -258,10 +258,20 @@ def test_each_pose_is_foretold_by_the_others():
 def test_a_pose_that_the_others_do_not_foretell_is_named():
     """Its stripes agree with the planes only because the pose turned for them; its own points say another distance."""
     seen = features(WHERE, Noise(), 21, points=GRID)
-    seen[2] = replace(seen[2], view=replace(seen[2].view, points=seen[2].view.points * 1.002))
+    seen[2] = replace(seen[2], view=replace(seen[2].view, points=seen[2].view.points * 1.001))
     result = fit_fan(seen, CAMERA, THREE)
     assert max(result.poses, key=lambda pose: np.nan_to_num(pose.prediction_mm)).name == "p2"
     assert any("foretell the stripes of p2" in str(note) for note in result.notes)
+
+
+def test_a_small_target_far_beyond_all_others_is_not_accused_for_it():
+    """Nothing is wrong with it: the others say little of light there, and its own corners little of its tilt."""
+    far = Pose(np.eye(3), np.array([-20.0, 72.0, 1200.0]))
+    for seed in (40, 41):
+        result = fit_fan(features([*WHERE, far], Noise(0.05), seed), CAMERA, THREE)
+        errors = np.array([pose.prediction_mm for pose in result.poses])
+        assert errors[-1] > max(4 * np.median(errors), 0.05)
+        assert not any("foretell the stripes" in str(note) for note in result.notes)
 
 
 def test_more_lines_than_promised_is_noted():

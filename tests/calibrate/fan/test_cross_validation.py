@@ -6,7 +6,7 @@ import pytest
 from core.calibrate.fan import calibration
 from core.calibrate.fan.bundle import solve
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.cross_validation import prediction_errors
+from core.calibrate.fan.cross_validation import predict
 from core.calibrate.fan.stripe_distances import Stripes
 from tests.calibrate.fan_scenes import ALPHA, CAMERA, GRID, PAPER, Noise, features, poses
 
@@ -18,9 +18,9 @@ def test_one_step_tells_what_fits_anew_tell(monkeypatch, count, lines, corner_px
 
     def remembered(used, on_poses, camera, plate=None):
         asked.update(used=used, poses=on_poses)
-        return prediction_errors(used, on_poses, camera, plate)
+        return predict(used, on_poses, camera, plate)
 
-    monkeypatch.setattr(calibration, "prediction_errors", remembered)
+    monkeypatch.setattr(calibration, "predict", remembered)
     seen = features(poses(count, 1), Noise(corner_px), 20, pis=PAPER[:lines], points=GRID)
     result = fit_fan(seen, CAMERA, FanOptions(lines, ALPHA if lines > 1 else None))
     anew = []
