@@ -12,6 +12,8 @@ References
 ----------
 Winkler, A. M. et al., Permutation inference for the general linear model, NeuroImage 92 (2014) 381–397,
 doi:10.1016/j.neuroimage.2014.01.060 (sign flipping).
+Satterthwaite, F. E., An approximate distribution of estimates of variance components, Biometrics Bull. 2 (1946)
+110–114, doi:10.2307/3002019.
 Wald, A. & Wolfowitz, J., Ann. Math. Statist. 11 (1940) 147–162, doi:10.1214/aoms/1177731909 (runs).
 Searle, S. R., Casella, G., McCulloch, C. E., Variance Components (1992), §7.4 (best linear unbiased prediction), §8.3
 (its variance by iteration).
@@ -89,6 +91,11 @@ class Judgement:
         How many times as large as stated is what errs in each residual alone; NaN where shared errors are not known.
     freedom
         Degrees of freedom that `alone` is known by.
+    whole
+        How many times as large as stated residuals are on the whole, shared errors included and what the fit has taken
+        out of them excepted; NaN where shared errors are not known.
+    whole_freedom
+        Degrees of freedom that `whole` is known by (a real number): few where most of it is of few shared errors.
     """
 
     rms: float
@@ -100,6 +107,8 @@ class Judgement:
     systematic: float
     alone: float = np.nan
     freedom: int = 0
+    whole: float = np.nan
+    whole_freedom: float = 0.0
 
     @property
     def times(self) -> float:
@@ -209,6 +218,7 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
     for _ in range(_ROUNDS if rank else 0):
         likeliest = score / (size + 1 / max(variance, 1e-300))
         variance = float(np.mean(likeliest**2 + 1 / (size + 1 / max(variance, 1e-300))))
+    whole, whole_freedom = _whole(residuals, errors)
     profile = np.full(residuals.cells, np.nan)
     profile[seen] = axes[:, known] @ (score / (size + 1 / max(variance, 1e-300))) if rank else 0.0
     return Judgement(
@@ -221,7 +231,32 @@ def judge_with_shared(residuals: Residuals, errors: SharedErrors) -> Judgement:
         systematic=float(np.sqrt(variance)) if p < SIGNIFICANT else 0.0,
         alone=alone,
         freedom=max(freedom, 0),
+        whole=whole,
+        whole_freedom=whole_freedom,
     )
+
+
+def _whole(residuals: Residuals, errors: SharedErrors) -> tuple[float, float]:
+    """How many times as large as stated the residuals are on the whole, and the degrees of freedom it is known by.
+
+    In units of what is stated of each, y = ε + S ζ has the covariance V; of it the fit leaves M y, M the projector off
+    its parameters. The sum of squares has the mean tr MV and the variance 2 tr (MV)², as a χ² of (tr MV)² / tr (MV)²
+    degrees of freedom has, times a factor.
+    """
+    unit = residuals.expected
+    fitted = np.linalg.qr(_independent(errors.design / unit[:, None], errors.own / unit))[0]
+
+    def left(values: Array) -> Array:
+        return np.asarray(values - fitted @ (fitted.T @ values))
+
+    own, shared = (errors.own / unit) ** 2, left(errors.shared / unit[:, None])
+    mean = float(own.sum() - own @ (fitted**2).sum(axis=1) + (shared**2).sum())
+    crossed, together = (fitted * own[:, None]).T @ fitted, shared.T @ shared
+    square = float(own @ own - 2 * (own**2) @ (fitted**2).sum(axis=1) + (crossed**2).sum())
+    square += float(2 * own @ (shared**2).sum(axis=1) + (together**2).sum())
+    if mean <= 0 or square <= 0:
+        return np.nan, 0.0
+    return float(np.sqrt((left(residuals.values / unit) ** 2).sum() / mean)), mean**2 / square
 
 
 def _independent(design: Array, own: Array) -> Array:

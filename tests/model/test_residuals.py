@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 from scipy.ndimage import gaussian_filter1d
+from scipy.special import chdtrc
 
 from core.model.residuals import (
     Judgement,
@@ -102,6 +103,28 @@ def test_a_pattern_that_shared_errors_explain_is_chance_as_rarely_as_stated():
     assert 1 <= sum(one.p < 0.05 for one in found) <= 22
     assert np.mean([one.alone for one in found]) == pytest.approx(1.0, abs=0.02)
     assert sum(judged_with_shared(seed, known=False).p < 0.01 for seed in range(20)) > 10
+
+
+def scatter_of_few_planes(seed: int, stated: float = 1.0) -> Judgement:
+    """Of 300 residuals most of whose error is that of the 6 planes they lie on."""
+    rng = np.random.default_rng(seed)
+    group, own = np.repeat(np.arange(6), 50), np.full(300, 0.1)
+    shared = 0.2 * (group[:, None] == np.arange(6))
+    values = own * rng.normal(size=300) + shared @ rng.normal(size=6)
+    acting = SharedErrors(stated * own, stated * shared, np.ones((300, 1)))
+    expected = stated * np.hypot(own, 0.2)
+    return judge_with_shared(Residuals(values, expected, group, np.zeros(300, np.intp), 1), acting)
+
+
+def test_the_whole_scatter_is_known_by_as_few_freedoms_as_there_are_shared_errors():
+    found = [scatter_of_few_planes(seed) for seed in range(200)]
+    freedom = np.array([one.whole_freedom for one in found])
+    assert ((freedom > 5) & (freedom < 12)).all()
+    by_chance = chdtrc(freedom, freedom * np.array([one.whole for one in found]) ** 2)
+    assert 2 <= (by_chance < 0.05).sum() <= 20
+    assert np.mean([one.whole**2 for one in found]) == pytest.approx(1.0, abs=0.1)
+    assert np.mean([one.times > 1.2 for one in found]) > 0.1, "what is stated of each says little of six planes"
+    assert scatter_of_few_planes(3, stated=0.5).whole == pytest.approx(2 * found[3].whole)
 
 
 def test_a_pattern_beyond_shared_errors_is_found_with_its_size_whatever_the_stated_noise():

@@ -11,9 +11,10 @@ Patterns are looked for over patches of a face as the camera sees it, or, in a s
 a part laid on its nominal surface its motion as a whole and its mean deviation are no pattern: the one is the
 alignment's, whichever it was, and the other is told by itself.
 
-Whether points scatter as stated is asked twice. Their whole σ is hardly tested where most of it is a light plane, of
-which a scan holds but few; their own noise alone, what is left of σ without the plane, is not just that where the plane
-was found with the help of this very point. Only where both are too small, and that is no chance, is it told.
+Whether points scatter as stated is asked twice. Their whole scatter is hardly tested where most of it is of light
+planes or of the calibrations, of which a scan holds but few: so few are its degrees of freedom. Their own noise alone,
+what is left without these, is not just that where a plane was found with the help of this very point. Only where both
+are too large, and neither is chance, is it told.
 """
 
 from __future__ import annotations
@@ -45,8 +46,7 @@ STANDS_OUT_PX = 0.2
 Stripes that are not quite as modelled leave up to 0.1 on ideal rendered scans, flat as the parts are."""
 TIMES = 1.2
 """Scatter over stated σ from which on it is told, if both the whole of it and the part that errs in each stretch alone
-are so much too large. On ideal rendered scans the whole is 0.3 to 0.95, for σ holds what a fit takes out; the other
-part is up to 1.9."""
+are so much too large."""
 _BEYOND = 3.0
 """Standard deviations from which on a point counts for less."""
 _BOWL = 0.6
@@ -332,8 +332,8 @@ def _pixel_mm(cloud: Cloud) -> float:
 
 def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...]:
     """A note on points that scatter more than stated, if they surely do."""
-    by_chance = float(chdtrc(found.freedom, found.freedom * found.alone**2)) if found.freedom > 0 else 1.0
-    if min(found.times, found.alone) <= TIMES or by_chance >= SURELY:
+    asked = ((found.whole, found.whole_freedom), (found.alone, found.freedom))
+    if any(times <= TIMES or _by_chance(times, freedom) >= SURELY for times, freedom in asked):
         return ()
     return (
         Message(
@@ -341,9 +341,14 @@ def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...
             "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts "
             "on them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise.",
             name=list(names),
-            times=found.times,
+            times=found.whole,
         ),
     )
+
+
+def _by_chance(times: float, freedom: float) -> float:
+    """Probability that a scatter of so many degrees of freedom is so many times what it should be."""
+    return float(chdtrc(freedom, freedom * times**2)) if freedom > 0 else 1.0
 
 
 def _of_pattern(pattern: Pattern, places: Places, number: int, name: Message) -> Message:
