@@ -155,8 +155,9 @@ class _OfStep(NamedTuple):
             Message(
                 "check.leaves_much",
                 "The check leaves a step of {step_mm:g} mm uncertain by U = {unseen_mm:.3f} mm, the calibrations alone "
-                "by {calibrations_mm:.3f} mm. Take twice as many pictures more, near and far: a target's few corners "
-                "say little of how it is tilted, a black square's four less than a grid of them.",
+                "by {calibrations_mm:.3f} mm. Take twice as many pictures more, near and far, each tilted by about 40° "
+                "to another side: seen nearly square on, a target's few corners say little of how it is tilted, a "
+                "black square's four less than a grid of them.",
                 step_mm=check.step_mm,
                 unseen_mm=check.unseen_mm,
                 calibrations_mm=calibrations,

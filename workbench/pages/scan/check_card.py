@@ -151,7 +151,9 @@ class CheckCard(QFrame):
 
     def _taking(self) -> tuple[Level, str, str]:
         """Level, word and sentence while pictures are taken."""
-        hold = tr("Hold the plane target into the fan where the parts will be, each time tilted another way.")
+        hold = tr(
+            "Hold the plane target into the fan where the parts will be, each time tilted by about 40° to another side."
+        )
         live = self._live
         return "", live.counts_text() or live.state_text(), f"{hold}\n{self._seen}" if self._seen else hold
 
