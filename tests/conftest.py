@@ -2,6 +2,7 @@ import faulthandler
 import gc
 import itertools
 import os
+import random
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -13,6 +14,11 @@ from core.files.results.rig_history import DATA
 from tests.shared import SAID_ALOUD, made_once
 
 _TESTS = itertools.count()
+
+
+def pytest_addoption(parser: pytest.Parser) -> None:
+    """Tests in another order, so that what one leaves behind is found by the next."""
+    parser.addoption("--shuffled", type=int, metavar="SEED", help="modules, and tests within them, in a random order")
 
 
 @pytest.hookimpl(trylast=True)
@@ -45,10 +51,23 @@ def pytest_collection() -> Iterator[None]:
         gc.enable()
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     """Modules with long proofs first, then windows: a long module handed out last would keep one process busy alone."""
+    seed = config.getoption("shuffled")
+    if seed is not None:
+        _shuffle(items, random.Random(seed))
+        return
     long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("accuracy")}
     items.sort(key=lambda item: (item.path not in long, "workbench" not in item.path.parts))
+
+
+def _shuffle(items: list[pytest.Item], chance: random.Random) -> None:
+    """Modules in any order and the tests within each: a module's fixtures are made once all the same."""
+    items.sort(key=lambda item: item.nodeid)
+    chance.shuffle(items)
+    places = sorted({item.path for item in items})
+    chance.shuffle(places)
+    items.sort(key=lambda item: places.index(item.path))
 
 
 @pytest.fixture(scope="session")
