@@ -20,9 +20,11 @@ import hashlib
 import os
 import re
 import time
+from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import asdict, dataclass, replace
 from datetime import datetime
+from itertools import count
 from pathlib import Path
 
 from core.errors import InputError
@@ -153,6 +155,11 @@ def require_free(to: Path) -> None:
             where=to,
             todo=Message("advice.choose_another_name", "choose another name"),
         )
+
+
+def free_folder(base: Path, name: str, fits: Callable[[Path], bool] = lambda path: not path.exists()) -> Path:
+    """The first of NAME, NAME 2, NAME 3, … in `base` that fits: that is not there, unless something else is asked."""
+    return next(path for n in count(1) if fits(path := base / (name if n == 1 else f"{name} {n}")))
 
 
 def put_opener(folder: Path) -> None:

@@ -16,6 +16,7 @@ from core.files.project.data import Done, ProjectFile, ProjectInfo, Sources, new
 from core.files.project.folder import (
     backups,
     create_project,
+    free_folder,
     is_project,
     project_from_set,
     read_project,
@@ -306,3 +307,12 @@ def test_a_version_is_kept_no_sooner_than_asked_for(tmp_path):
     assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["a"]
     write_project(tmp_path, named("e"))
     assert [read_project(path).project.info.name for path in backups(tmp_path)] == ["d", "a"]
+
+
+def test_a_free_folder_has_the_name_or_the_next_number_and_may_be_one_that_suits(tmp_path):
+    assert free_folder(tmp_path, "Part") == tmp_path / "Part"
+    for name in ("Part", "Part 2"):
+        (tmp_path / name).mkdir()
+    (tmp_path / "Part 3").touch()
+    assert free_folder(tmp_path, "Part") == tmp_path / "Part 4"
+    assert free_folder(tmp_path, "Part", Path.is_dir) == tmp_path / "Part"

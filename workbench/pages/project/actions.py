@@ -13,7 +13,15 @@ from PySide6.QtWidgets import QWidget
 from core.acquire.source import Step
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile, new_project
-from core.files.project.folder import OPENER, can_be_saved, is_project, project_from_set, read_project, rescues
+from core.files.project.folder import (
+    OPENER,
+    can_be_saved,
+    free_folder,
+    is_project,
+    project_from_set,
+    read_project,
+    rescues,
+)
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from core.simulate.sample import simulated_project
 from core.translations import languages
@@ -77,8 +85,7 @@ class ProjectActions(QObject):
         """
         folder = self.model.folder
         base, name = (folder, "imported") if folder is not None else (self.bench.settings.projects_folder, "set")
-        names = (name + (f" {number}" if number > 1 else "") for number in range(1, 1000))
-        dialog = ImportDialog(self.bench, next(base / one for one in names if not (base / one).exists()), self._window)
+        dialog = ImportDialog(self.bench, free_folder(base, name), self._window)
         dialog.imported.connect(lambda imported, plan: self._use_imported(imported.folder, tuple(plan.parts), folder))
         dialog.open()
 
@@ -168,7 +175,7 @@ class ProjectActions(QObject):
 
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""
-        folder = self._free_folder(tr("Simulated rig"))
+        folder = free_folder(self.bench.settings.projects_folder, tr("Simulated rig"))
         self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
 
     def begin_first_measurement(self) -> None:
@@ -186,7 +193,8 @@ class ProjectActions(QObject):
             if self.model.folder != asked_in:
                 self.bench.notices.info(tr("The pictures are ready: Help, First measurement."))
                 return
-            made, folder = replace(project, info=replace(project.info, operator="")), self._free_folder(name)
+            made = replace(project, info=replace(project.info, operator=""))
+            folder = free_folder(self.bench.settings.projects_folder, name)
             self._create(folder, lambda _: made, folder.name, then=self.first_measurement_begun.emit)
 
         self._preparing = self.bench.run_long(
@@ -200,11 +208,6 @@ class ProjectActions(QObject):
 
     def _prepared(self, *_: Any) -> None:
         self._preparing = None
-
-    def _free_folder(self, name: str) -> Path:
-        """A folder that is not there yet, for a project of this name or of the name with a number."""
-        names = (name + (f" {number}" if number > 1 else "") for number in range(1, 1000))
-        return next(place for one in names if not (place := self.bench.settings.projects_folder / one).exists())
 
     def begin_next_part(self) -> None:
         """The next part of the series, in a project of its own, at its scan."""

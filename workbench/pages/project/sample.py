@@ -8,7 +8,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.files.project.folder import is_project
+from core.files.project.folder import free_folder, is_project
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.work import jobs
@@ -67,9 +67,8 @@ class SampleProject(QObject):
 
     def _folder(self) -> Path:
         """Where the sample is, or the first free place for it."""
-        base, name = self._bench.settings.projects_folder, tr("Sample")
-        places = (base / (name if number == 1 else f"{name} {number}") for number in range(1, 1000))
-        return next(place for place in places if is_project(place) or not place.exists())
+        base = self._bench.settings.projects_folder
+        return free_folder(base, tr("Sample"), lambda path: is_project(path) or not path.exists())
 
     def _ended(self, *_: Any) -> None:
         self._task = None
