@@ -142,3 +142,11 @@ def test_json_is_the_same_in_every_language(simulated, measured, tmp_path):
         trisect("gauge", tmp_path / "none", "--out", out, "--json", "--language", name).out for name in ("en", "de")
     ]
     assert refused[0] == refused[1]
+
+
+@pytest.mark.parametrize(("name", "shown"), [("thickness", "Dicke"), ("camera", "camera"), ("files", "files")])
+def test_a_name_of_ones_own_is_not_translated_though_the_catalogue_has_the_word(tmp_path, name, shown):
+    (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n")
+    said = trisect("study", "repeats", tmp_path / "repeats.csv", "--characteristic", name, "--language", "de")
+    assert said.out.split()[0] == shown, said.out
+    assert language.told("files") == "Dateien"

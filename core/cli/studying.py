@@ -19,7 +19,7 @@ from core.files.study.study_file import Study, study_values, write_study
 from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
-from core.report.wording import decimals_of
+from core.report.wording import decimals_of, study_name
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
 from core.study.capability import LIMIT as CAPABILITY
@@ -270,7 +270,7 @@ def _repeats(study: RepeatStudy) -> Rows:
 
     lines = [
         (
-            told(study.name),
+            study_name(study.name, words()),
             told(
                 plural_message(
                     "cli.repeats",
@@ -375,7 +375,10 @@ def _series(study: SeriesStudy) -> Rows:
         return tr("none") if math.isinf(value) else f"{_fixed(value, digits)} {unit}"
 
     lines = [
-        (told(study.name), tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s))),
+        (
+            study_name(study.name, words()),
+            tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s)),
+        ),
         (tr("limits"), tr("{lower} to {upper}", lower=shown(study.lower), upper=shown(study.upper))),
     ]
     if study.charts is not None:

@@ -14,6 +14,7 @@ from PIL import Image
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 
+from core.messages import Label
 from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.layout.style import TEXT_WIDTH, ReportLook
@@ -59,7 +60,8 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
         for number, profile in enumerate(content.sections.values())
     }
     if content.points_used and len(content.cloud):
-        named = {look.words.known(name): indices for name, indices in content.points_used.items()}
+        used = content.points_used.items()
+        named = {look.words(name) if isinstance(name, Label) else name: indices for name, indices in used}
         drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)
     if gauge is not None:
         drawings["maps"] = lambda: plots.residual_figure(look, gauge, content.cloud, width, FACES_MM)

@@ -14,6 +14,7 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import NO_BREAK_SPACE, Language, Message, label, plural_message
+from core.study.repeats import THICKNESS
 from core.translations import language
 
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
@@ -131,6 +132,11 @@ def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
         return one.name  # somebody's own name, as of a cut
     return f"{feature}{words.known(kind)}{number}"
+
+
+def study_name(name: str, words: Words = ENGLISH) -> str:
+    """Name of what a study measured: the thickness in the reader's language, any other as the user gave it."""
+    return words(name) if name == THICKNESS else name
 
 
 def shown_unit(one: Characteristic) -> tuple[str, float]:

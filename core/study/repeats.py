@@ -31,6 +31,10 @@ TO_LIMITS = 2.66
 """3/d₂ with d₂ = 1.128 of two values: from the mean moving range to three standard deviations (ISO 7870-2)."""
 
 
+THICKNESS = "thickness"
+"""What values are of unless another name is given: the program's own word for it."""
+
+
 @dataclass(frozen=True, slots=True)
 class RepeatStatistics:
     """What `n` measurements of one thickness say together, in mm.
@@ -211,7 +215,7 @@ def repeat_study(
     budget: UncertaintyBudget,
     *,
     complete: bool,
-    name: str = "thickness",
+    name: str = THICKNESS,
     labels: Sequence[str] = (),
     U: Sequence[float] = (),
     asked: Requirement = Requirement(),

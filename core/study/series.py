@@ -19,6 +19,7 @@ from core.messages import Message
 from core.model.arrays import Array
 from core.study.budget import OF_EACH_SCAN
 from core.study.capability import LIMIT, Index, Indices, Scatter, indices, looks_normal
+from core.study.repeats import THICKNESS
 from core.study.series_chart import FEWEST_POINTS, POINTS_A_BREAK, RULE_WORDS, SeriesCharts, single_values, subgroups
 
 Finding: TypeAlias = Literal["", "capable", "not capable", "not proven"]
@@ -264,7 +265,7 @@ def series_study(
     *,
     size: int = 1,
     stated: StatedUncertainty | None = None,
-    name: str = "thickness",
+    name: str = THICKNESS,
     labels: Sequence[str] = (),
     unit: str = "mm",
     doubted: Sequence[str] = (),

@@ -16,14 +16,16 @@ from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution
 from core.messages import plain
+from core.progress import silent
 from core.report import pdf
 from core.report.content import MOST_CALLOUTS
+from core.report.drawings import drawings
 from core.report.layout.style import ReportLook
 from core.report.pdf import build_report
 from core.report.plots.charts import callouts
 from core.report.plots.run_chart import run_chart_figure
 from core.report.template import SECTIONS, ReportTemplate
-from core.report.wording import Words
+from core.report.wording import Words, study_name
 from core.scan.surface.fused_surface import Mesh
 from core.translations import language
 
@@ -132,6 +134,16 @@ def test_a_cross_section_has_its_profile_and_the_rows_measured_in_it(data):
     text = words(data).replace("\u00a0", " ")
     after = text[text.rindex("cut A: measured points near the plane of the section.") :]
     assert after.index("step 2 height 10 mm ±0.05 mm 10.200 mm 0.020 2 +0.200 ✗ Not conforming") < 150
+
+
+def test_names_of_ones_own_stay_as_they_are_though_the_catalogue_has_the_words(content):
+    look = ReportLook(Words(language("de")), content.template.accent)
+    points = {"files": content.gauge.upper.indices}
+    known = [replace(content, points=points), replace(content, points=points, inspected=())]
+    drawn = [drawings(look, one, silent)["points"]() for one in known]
+    legends = [text.get_text().split("\n")[0] for one in drawn for text in one.axes[0].get_legend().get_texts()]
+    assert sorted(legends) == ["Obere Fläche", "Untere Fläche", "files", "files"]
+    assert [study_name(name, look.words) for name in ("thickness", "files")] == ["Dicke", "files"]
 
 
 def test_studies_are_printed_with_figures_and_notes(data):

@@ -27,9 +27,9 @@ from core.inspect.results import Contribution
 from core.messages import Message
 from core.model.arrays import Array
 from core.study.acceptance import QUANTITIES, Quantity, Reading
+from core.study.repeats import THICKNESS
 
 VALUE = ("value", "value_mm", "thickness_mm", "value_deg")
-THICKNESS = "thickness"
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -15,7 +15,7 @@ from core.files.json_text import to_json
 from core.files.project.data import KeptStudy
 from core.files.project.folder import is_project, read_project, results_folder
 from core.files.reading import read_bytes, read_text
-from core.files.study.input import THICKNESS, Repeats, crossed_of, readings_of, repeats_of
+from core.files.study.input import Repeats, crossed_of, readings_of, repeats_of
 from core.files.study.results import measured_in
 from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
 from core.files.study.table import separator_of, table_of
@@ -24,6 +24,7 @@ from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
 from core.study.grr import GrrStudy, grr_study
+from core.study.repeats import THICKNESS
 from core.study.series import SeriesStudy, series_study, stated_uncertainty
 from core.study.type1 import Type1Study, type1_study
 

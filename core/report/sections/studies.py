@@ -14,7 +14,7 @@ from core.messages import from_json, label
 from core.report.content import ReportContent
 from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, heads, plain_table, ruled_table, section
 from core.report.layout.style import TEXT_WIDTH, ReportLook
-from core.report.wording import decimals_of
+from core.report.wording import decimals_of, study_name
 
 TITLES = {
     "repeats": label("Repeats of {name}"),
@@ -94,7 +94,7 @@ def study_charts(study: Study) -> dict[str, Mapping[str, Any]]:
 
 
 def _named(look: ReportLook, study: Study) -> dict[str, str]:
-    return {"name": look.words.known(study["characteristic"])} if study["kind"] in ("repeats", "series") else {}
+    return {"name": study_name(study["characteristic"], look.words)} if study["kind"] in ("repeats", "series") else {}
 
 
 def _parts(look: ReportLook, study: Study) -> list[Flowable]:
