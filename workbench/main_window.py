@@ -363,22 +363,19 @@ class MainWindow(QMainWindow):
         (self.pages[now.page].card.buttons[now.button] if now.button else self.next).setFocus()
 
     def _refresh(self) -> None:
-        self._refresh_menus()
+        facts = self._menu_facts()
+        self.menus.refresh(facts)
         if not self.model.is_open:
             return
         self._show_instruction()
         states = self.model.states
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
-        facts = self._menu_facts()
         last = why_not("next", facts)
         missing = self.presenters[self._current].blocker() if self._current else ""
         enable(self.next, last or missing, tr("Go on to the next step"))
         self.next.setVisible(not last)
         self.missing.setText("" if last else missing)
         enable(self.back, why_not("back", facts), tr("Go back to the step before"))
-
-    def _refresh_menus(self) -> None:
-        self.menus.refresh(self._menu_facts())
 
     def _menu_facts(self) -> MenuFacts:
         page = self.presenters.get(self._current)
@@ -431,7 +428,6 @@ class MainWindow(QMainWindow):
         task.done.connect(self._task_done)
         self.task_bar.begin(task.label)
         self._refreshing.soon()
-        self._refresh_menus()
 
     def _task_progressed(self, stage: str, done: int, total: int) -> None:
         self._stage = stage
@@ -454,7 +450,6 @@ class MainWindow(QMainWindow):
             self._task = None
             self.task_bar.end()
             self._refreshing.soon()
-            self._refresh_menus()
 
 
 def _turn(stack: QStackedWidget, page: QWidget) -> None:

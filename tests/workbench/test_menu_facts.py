@@ -5,10 +5,15 @@ from __future__ import annotations
 from itertools import product
 from pathlib import Path
 
+import pytest
+from PySide6.QtWidgets import QApplication
+
 from core.files.project.data import new_project
 from workbench.main_window import MainWindow
 from workbench.menus import NEED_A_PROJECT, OF_A_PAGE, MenuFacts, why_not
 from workbench.step_state import ORDER
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 ENTRIES = ("new", "open", "import", "undo", "messages", "manual", "cancel", *NEED_A_PROJECT, "step scan")
 STATES = [
@@ -46,3 +51,25 @@ def test_on_every_page_the_entries_do_something_or_say_why_not(window: MainWindo
             assert not button.isEnabled() or entries[name].isEnabled(), (page, name)
             if not entries[name].isEnabled():
                 assert button.toolTip() == entries[name].toolTip(), (page, name)
+
+
+def test_the_menus_are_refreshed_once_as_a_job_starts_and_once_as_it_ends(
+    window: MainWindow, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window.model.create(tmp_path / "one", new_project("one"))
+    QApplication.processEvents()
+    seen: list[bool] = []
+    refresh, lane = window.menus.refresh, window.bench.measuring
+
+    def counted(facts: MenuFacts) -> None:
+        seen.append(facts.job)
+        refresh(facts)
+
+    monkeypatch.setattr(window.menus, "refresh", counted)
+    task = Task(lane, window, 0, jobs.SAMPLE_PROJECT, "a job")
+    lane.task_started.emit(task)
+    QApplication.processEvents()
+    assert (seen, window.menus.actions["cancel"].isEnabled()) == ([True], True)
+    lane.task_ended.emit(task)
+    QApplication.processEvents()
+    assert (seen, window.menus.actions["cancel"].isEnabled()) == ([True, False], False)
