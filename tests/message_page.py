@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
 from itertools import groupby
 from string import Formatter
@@ -52,17 +52,21 @@ went well."""
 HEAD = """# Every error and warning, by code
 
 Written by `make messages` from the program itself: the English text, its values in {braces}, and what the program says
-to do about it. Where nothing stands there, the text says it, or what stands above the table does. *Explained* leads to
-the page on troubleshooting, with the usual cause and what helps.
+to do about it. Where nothing stands there, the text says it, or what stands above the table does. *Usual cause* leads
+to the page on troubleshooting.
 """
+
+Named = dict[str, list[tuple[str, str]]]
+"""By the name of a constant or of a function: code and text of each message that it may be."""
 
 RAISED = ("InputError", "WrongValue", "TargetNotFound", "Unplugged")
 """Errors that have a message; others are called with `todo`."""
 
 
-def explained() -> set[str]:
-    """The codes that the page on troubleshooting explains."""
-    return {code for first, *_ in _rows() for code in re.findall(r"`([a-z_0-9]+\.[a-z_0-9]+)`", first)}
+def explained() -> dict[str, str]:
+    """By the code: what helps, as the page on troubleshooting says beside the usual cause."""
+    coded = r"`([a-z_0-9]+\.[a-z_0-9]+)`"
+    return {code: helps for first, _, helps in _rows() for code in re.findall(coded, first)}
 
 
 def rooms() -> dict[str, tuple[str, str]]:
@@ -83,16 +87,15 @@ def codes() -> list[str]:
 def page() -> str:
     """The page as Markdown."""
     texts = {text.code: text.english[-1] for text in all_texts()}
-    advice, on_troubleshooting, about_rooms = errors(), explained(), rooms()
+    advice, helps, about_rooms = errors(), explained(), rooms()
     parts = [HEAD]
     for room, within in groupby(codes(), lambda code: code.partition(".")[0]):
-        about, helps = about_rooms[room]
-        parts.append(
-            f"## {room}: {about}\n\n{helps[0].upper()}{helps[1:]}.\n\n| code | text | what to do |\n|---|---|---|"
-        )
+        about, general = about_rooms[room]
+        general = f"{general[0].upper()}{general[1:]}"
+        parts.append(f"## {room}: {about}\n\n{general}.\n\n| code | text | what to do |\n|---|---|---|")
         for code in within:
             todo = ["; or: ".join(map(_shown, advice.get(code, ())))]
-            todo += ["[explained](troubleshooting.md)"] if code in on_troubleshooting else []
+            todo += [f"{helps[code]} ([usual cause](troubleshooting.md))"] if code in helps else []
             parts.append(f"| `{code}` | {_shown(texts[code])} | {'; '.join(filter(None, todo))} |")
         parts.append("")
     return "\n".join(parts)
@@ -111,22 +114,29 @@ def is_name(code: str) -> bool:
 
 def errors() -> dict[str, list[str]]:
     """By the code of an error, what the calls that tell it say to do."""
+    trees = [
+        ast.parse(path.read_text(encoding="utf-8"))
+        for folder in ("core", "workbench")
+        for path in sorted((ROOT / folder).rglob("*.py"))
+    ]
+    shared: Named = {}
+    for tree in trees:
+        for name, known in _named(tree.body).items():
+            shared.setdefault(name, []).extend(known)
     found: dict[str, list[str]] = {}
-    for folder in ("core", "workbench"):
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            for code, advice in errors_of(ast.parse(path.read_text(encoding="utf-8"))):
-                known = found.setdefault(code, [])
-                known += [one for one in advice if one not in known]
+    for tree in trees:
+        for code, advice in errors_of(tree, shared):
+            known = found.setdefault(code, [])
+            known += [one for one in advice if one not in known]
     return found
 
 
-def errors_of(tree: ast.AST) -> Iterator[tuple[str, list[str]]]:
-    """The code of each error that a module tells, and what it says to do there."""
-    named: dict[str, list[tuple[str, str]]] = {}
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
-                named.setdefault(ast.unparse(target), []).extend(_messages(node.value, {}))
+def errors_of(tree: ast.Module, shared: Named | None = None) -> Iterator[tuple[str, list[str]]]:
+    """The code of each error that a module tells, and what it says to do there; `shared`: constants of all modules."""
+    here = {one.asname or one.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for one in node.names}
+    named = {name: known for name, known in (shared or {}).items() if name in here}
+    for name, known in _named(ast.walk(tree)).items():
+        named[name] = [*named.get(name, ()), *known]
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and node.args:
             todo = [keyword.value for keyword in node.keywords if keyword.arg == "todo"]
@@ -135,14 +145,31 @@ def errors_of(tree: ast.AST) -> Iterator[tuple[str, list[str]]]:
                 yield from ((code, advice) for code, _ in _messages(node.args[0], named))
 
 
-def _messages(node: ast.expr, named: dict[str, list[tuple[str, str]]]) -> list[tuple[str, str]]:
+def _named(nodes: Iterable[ast.AST]) -> Named:
+    """Code and text of the messages that names stand for, and that functions, by name with "()", give back."""
+    found: Named = {}
+    for node in nodes:
+        if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
+            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
+                found.setdefault(ast.unparse(target), []).extend(_messages(node.value, {}))
+        elif isinstance(node, ast.FunctionDef):
+            given = [one.value for one in ast.walk(node) if isinstance(one, ast.Return) and one.value is not None]
+            found.setdefault(f"{node.name}()", []).extend(text for one in given for text in _messages(one, {}))
+    return found
+
+
+def _messages(node: ast.expr, named: Named) -> list[tuple[str, str]]:
     """Code and text of what an expression can tell, not of what stands within a message's places."""
     if isinstance(node, ast.IfExp):
         return _messages(node.body, named) + _messages(node.orelse, named)
     if isinstance(node, ast.BoolOp):
         return [one for value in node.values for one in _messages(value, named)]
     if isinstance(node, ast.Call) and called(node) in CODED:
-        return [(ast.literal_eval(node.args[0]), ast.literal_eval(node.args[CODED[called(node)]]))]
+        code, text = node.args[0], node.args[CODED[called(node)]]
+        told = [one.value for one in (code, text) if isinstance(one, ast.Constant)]
+        return [(told[0], told[1])] if len(told) == 2 else []
+    if isinstance(node, ast.Call):
+        return named.get(f"{called(node)}()", [])
     return named.get(ast.unparse(node), [])
 
 

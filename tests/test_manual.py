@@ -32,7 +32,12 @@ def test_folders_and_modules_that_are_named_exist(page):
 def test_message_codes_that_are_explained_exist_and_are_on_the_page_of_all():
     explained = message_page.explained()
     assert explained
-    assert not explained - set(message_page.codes())
+    assert not explained.keys() - set(message_page.codes())
+
+
+def test_every_error_says_what_to_do_beside_it_or_on_the_page_on_troubleshooting():
+    explained = message_page.explained()
+    assert not [code for code, advice in message_page.errors().items() if not advice and code not in explained]
 
 
 def test_every_error_and_warning_is_on_the_page_of_all_and_nothing_else():
@@ -49,15 +54,19 @@ def test_every_room_of_messages_says_what_helps_and_no_other_does():
     assert set(message_page.rooms()) == {code.partition(".")[0] for code in message_page.codes()}
 
 
-def test_what_to_do_about_an_error_stands_beside_it_or_in_a_constant():
+def test_what_to_do_about_an_error_stands_beside_it_in_a_constant_or_in_a_function():
     source = """
 _ASK = Message("advice.ask", "ask {whom}")
 raise InputError(Message("a.b", "one", why=Message("a.why", "inner")), todo=_ASK)
 raise WrongValue(Message("a.c", "two") if x else Message("a.d", "three"))
+raise InputError(Message("a.e", "four"), todo=SHARED if x else which_way(3))
+def which_way(n): return Message("advice.way", "this way")
 tell(Message("a.note", "no error"))
+from core.other import SHARED
 """
-    found = list(message_page.errors_of(ast.parse(source)))
-    assert found == [("a.b", ["ask {whom}"]), ("a.c", []), ("a.d", [])]
+    shared = {"SHARED": [("advice.shared", "share")], "_ASK": [("advice.other", "not this module's")]}
+    found = list(message_page.errors_of(ast.parse(source), shared))
+    assert found == [("a.b", ["ask {whom}"]), ("a.c", []), ("a.d", []), ("a.e", ["share", "this way"])]
 
 
 def test_places_are_spelled_out():
