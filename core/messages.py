@@ -225,6 +225,11 @@ class Language:
         return message.many if message.many and n != 1 else message.text
 
 
+def capital(text: str) -> str:
+    """Make a text one that begins a sentence, or a title."""
+    return text[:1].upper() + text[1:]
+
+
 class _Formatter(string.Formatter):
     """`str.format` with the values of messages."""
 
@@ -235,7 +240,7 @@ class _Formatter(string.Formatter):
         language = self._language
         if isinstance(value, Message):
             text = language(value)
-            return text[:1].upper() + text[1:] if format_spec == "capital" else text
+            return capital(text) if format_spec == "capital" else text
         if isinstance(value, Field):
             known = language.fields.get(value.key)
             name = value.key if value.whole else value.key.rpartition(".")[2]

@@ -46,6 +46,7 @@ from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
+from core.states import DECISIONS
 from core.study.artefact_check import ArtefactCheck
 
 
@@ -326,7 +327,7 @@ def _set_row(result: SetResult) -> tuple[str, ...]:
         result.folder.name,
         thickness,
         U,
-        told(result.verdict) if result.verdict else tr("none"),
+        tr(DECISIONS[result.verdict or ""]),
         grouped(result.points),
         frames,
         seconds,

@@ -31,6 +31,7 @@ from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
+from core.states import CHECKS, DECISIONS
 from core.study.artefact_check import ArtefactCheck
 from core.study.control_chart import ControlChart
 
@@ -179,7 +180,7 @@ def gauge_rows(gauge: GaugeResult) -> Rows:
         limits = tr("{nominal:g} mm ± {tolerance:g} mm", nominal=gauge.nominal_mm, tolerance=gauge.tolerance_mm)
         rows.append((tr("nominal"), limits))
         rows.append((tr("deviation"), f"{words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
-    verdict = told(gauge.verdict) if gauge.verdict else tr("none: rig.toml states no nominal value")
+    verdict = tr(DECISIONS[gauge.verdict]) if gauge.verdict else tr("none: rig.toml states no nominal value")
     rows.append((tr("verdict"), verdict))
     upper, lower = gauge.points_used
     flatness = tr(
@@ -330,7 +331,7 @@ def _past_check(check: PastCheck, chart: ControlChart) -> str:
         "{step:g} mm off by {error:+.3f} mm, {where} {lower:+.3f} … {upper:+.3f} mm {rule}",
         step=check.step_mm, error=check.error_mm, where=where, lower=chart.lower, upper=chart.upper, rule=rule,
     )  # fmt: skip
-    return f"{told(check.verdict)}, {by}; {off}{warm}"
+    return f"{tr(CHECKS[check.verdict])}, {by}; {off}{warm}"
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:

@@ -33,6 +33,7 @@ from core.progress import Progress
 from core.report.content import ReportContent
 from core.report.template import LANGUAGES, PAPERS, Paper
 from core.report.wording import decimals_of, grouped, shown_name
+from core.states import DECISIONS
 
 _COLUMNS = (
     label("characteristic"), label("measured"), label("U"), label("nominal"), label("limits"), label("deviation"),
@@ -86,7 +87,15 @@ def _cells(row: Characteristic) -> tuple[str, ...]:
     sides = [words.numeral(f"{value * scale:+g}") if math.isfinite(value) else "–" for value in (lower, upper)]
     limits = f"± {words.numeral(f'{upper * scale:g}')}{unit}" if lower == -upper else f"{' … '.join(sides)}{unit}"
     nominal = words.numeral(f"{row.limits.nominal * scale:g}") + unit
-    return name, text(row.value), text(row.U), nominal, limits, text(row.deviation, signed=True), told(row.verdict)
+    return (
+        name,
+        text(row.value),
+        text(row.U),
+        nominal,
+        limits,
+        text(row.deviation, signed=True),
+        tr(DECISIONS[row.verdict]),
+    )
 
 
 def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:

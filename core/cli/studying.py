@@ -20,6 +20,7 @@ from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
 from core.report.wording import decimals_of, study_name
+from core.states import DECISIONS
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
 from core.study.capability import LIMIT as CAPABILITY
@@ -258,7 +259,7 @@ def study_rows(study: Study) -> Rows:
             found = [row for one in study.quantities for row in _quantity(one)]
         case SeriesStudy():
             found = _series(study)
-    return [*found, (tr("verdict"), told(study.verdict) if study.verdict else tr("none: no limit was given"))]
+    return [*found, (tr("verdict"), tr(DECISIONS[study.verdict]) if study.verdict else tr("none: no limit was given"))]
 
 
 def _repeats(study: RepeatStudy) -> Rows:
@@ -457,4 +458,4 @@ def _quantity(one: CheckedQuantity) -> Rows:
         "{error} mm at {position}, {positions}, {limit}",
         error=_fixed(one.largest_error, 4, signed=True), position=one.worst.position, positions=positions, limit=limit,
     )  # fmt: skip
-    return [(told(one.title), said + (f": {told(one.verdict)}" if one.verdict else ""))]
+    return [(told(one.title), said + (f": {tr(DECISIONS[one.verdict])}" if one.verdict else ""))]

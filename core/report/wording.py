@@ -13,7 +13,8 @@ from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.messages import NO_BREAK_SPACE, Language, Message, label, plural_message
+from core.messages import NO_BREAK_SPACE, Language, Message, capital, label, plural_message
+from core.states import DECISIONS
 from core.study.repeats import THICKNESS
 from core.translations import language
 
@@ -81,12 +82,6 @@ __all__ = ["grouped"]
 COVERAGE = {1.0: "68", 2.0: "95", 3.0: "99.7"}
 """Coverage of a normal distribution in %, for the factors k in common use."""
 
-VERDICTS = {
-    Verdict.CONFORMING: label("Conforming"),
-    Verdict.NOT_CONFORMING: label("Not conforming"),
-    Verdict.NOT_PROVEN: label("Not proven"),
-    Verdict.NONE: label("No verdict"),
-}
 SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
 """Of each decision: it is never told by colour alone."""
 
@@ -132,6 +127,11 @@ def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
         return one.name  # somebody's own name, as of a cut
     return f"{feature}{words.known(kind)}{number}"
+
+
+def decision(verdict: str, words: Words = ENGLISH) -> str:
+    """What was decided, as a title: "Not conforming"."""
+    return capital(words(DECISIONS[verdict]))
 
 
 def study_name(name: str, words: Words = ENGLISH) -> str:

@@ -41,8 +41,3 @@ def count(number: int) -> str:
 def wording() -> Words:
     """The words and numbers of results in the window's language, as the report writes them."""
     return Words(chosen())
-
-
-def capital(text: str) -> str:
-    """A text that begins a sentence."""
-    return text[:1].upper() + text[1:]

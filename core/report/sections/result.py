@@ -11,7 +11,7 @@ from reportlab.platypus import Flowable, Paragraph, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
-from core.messages import plural_message
+from core.messages import capital, plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import heads, plain_table, ruled_table
 from core.report.layout.control_frame import ControlFrameMark
@@ -31,8 +31,8 @@ from core.report.layout.style import (
 )
 from core.report.wording import (
     SIGNS,
-    VERDICTS,
     decimals_of,
+    decision,
     decision_sentence,
     grouped,
     points_counted,
@@ -130,8 +130,8 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
     if worst:
         nearest = min((one for one in found if one.verdict == worst), key=lambda one: one.room)
         title = words("{name}: the worst of {all}", name=shown_name(nearest, words), all=words(results))
-        headline = [look.text(title[:1].upper() + title[1:], "label"), _value(look, nearest)]
-    facts = {words(VERDICTS[verdict]): grouped(number) for verdict, number in counts.items() if number}
+        headline = [look.text(capital(title), "label"), _value(look, nearest)]
+    facts = {decision(verdict, words): grouped(number) for verdict, number in counts.items() if number}
     said = words(
         "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
         "ISO 14253-1 a deviation must stay within its tolerance even when it is enlarged by U."
@@ -218,11 +218,11 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
         words.general(one.k),
         deviation,
     )
-    decision = f"{SIGNS[one.verdict]} {words(VERDICTS[one.verdict])}"
+    decided = f"{SIGNS[one.verdict]} {decision(one.verdict, words)}"
     return [
         [title, *below],
         *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
-        look.text(decision, "small_strong"),
+        look.text(decided, "small_strong"),
     ]
 
 
@@ -237,7 +237,7 @@ class VerdictMark(Flowable):  # type: ignore[misc]
         """Paint it (called by reportlab)."""
         tone = {Verdict.CONFORMING: self.look.accent, Verdict.NONE: MUTED}.get(self.verdict, INK)
         filled = self.verdict in (Verdict.CONFORMING, Verdict.NOT_CONFORMING)
-        words = f"{SIGNS[self.verdict]}  {self.look.words(VERDICTS[self.verdict])}"
+        words = f"{SIGNS[self.verdict]}  {decision(self.verdict, self.look.words)}"
         size = min(10.5, 10.5 * (self.width - 6) / words_width(words, BOLD, 10.5))
         canvas = self.canv
         canvas.setStrokeColor(color(tone))

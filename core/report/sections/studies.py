@@ -15,6 +15,7 @@ from core.report.content import ReportContent
 from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, heads, plain_table, ruled_table, section
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.wording import decimals_of, study_name
+from core.states import DECISIONS
 
 TITLES = {
     "repeats": label("Repeats of {name}"),
@@ -25,11 +26,6 @@ TITLES = {
 }
 """Heading of each kind of study."""
 
-VERDICTS = (
-    label("conforming"), label("not conforming"), label("not proven"), label("capable"), label("not capable"),
-    label("acceptable"), label("acceptable with reservations"), label("not acceptable"),
-)  # fmt: skip
-"""As study.json has them."""
 SOURCES = (
     label("gauge R&R"), label("repeatability"), label("reproducibility"), label("operators"), label("interaction"),
     label("parts"), label("total"),
@@ -99,7 +95,7 @@ def _named(look: ReportLook, study: Study) -> dict[str, str]:
 
 def _parts(look: ReportLook, study: Study) -> list[Flowable]:
     """Figures and tables of one study."""
-    verdict = {look.words("verdict"): look.words.known(study["verdict"])} if study["verdict"] else {}
+    verdict = {look.words("verdict"): look.words(DECISIONS[study["verdict"]])} if study["verdict"] else {}
     match study["kind"]:
         case "repeats":
             return [_figures(look, _repeats(look, study) | verdict)]
@@ -211,7 +207,7 @@ def _quantities(look: ReportLook, study: Study) -> Flowable:
             look.text(words.fixed(one["largest_error"], 4, signed=True), "number"),
             look.text(one["worst_position"], "small"),
             look.text("" if one["limit"] is None else words.general(one["limit"]), "number"),
-            look.text(words.known(one["verdict"]), "small_strong"),
+            look.text(words(DECISIONS[one["verdict"]]), "small_strong"),
         ]
         for one in study["quantities"]
     ]

@@ -9,10 +9,9 @@ from core.calibrate.camera.views import RecalledCamera, SeenViews, ViewsJudgemen
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
-from core.messages import Message
+from core.messages import Message, capital
 from workbench.language import text_of, tr
 from workbench.pages.calibration.work import CalibrationWork, Key
-from workbench.pages.words import capital
 from workbench.work import jobs
 
 

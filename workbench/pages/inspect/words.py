@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from core.files.csv_text import harmless
 from core.files.project.data import Repeat
+from core.messages import capital
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
+from core.states import DECISIONS
 from core.study.repeats import RepeatStatistics
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
-from workbench.pages.words import capital, wording
+from workbench.pages.words import wording
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 
@@ -108,11 +110,10 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
 def type1_rows(study: Type1Study) -> list[ValueRow]:
     """Bias, Cg and Cgk of a type-1 study, and whether they suffice."""
     level: Level = "good" if study.verdict == CAPABLE else "bad"
-    verdict = tr("capable") if level == "good" else tr("not capable")
     low, high = (wording().fixed(end, 2) for end in study.cg_interval)
     lasts = wording().fixed(study.smallest_tolerance, 4)
     return [
-        (tr("Type-1 study"), verdict, tr("Capable if Cg and Cgk are 1.33 or more"), level),
+        (tr("Type-1 study"), tr(DECISIONS[study.verdict]), tr("Capable if Cg and Cgk are 1.33 or more"), level),
         (
             tr("Tolerance T"),
             f"{number(study.tolerance, 'g')} mm",

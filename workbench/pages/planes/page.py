@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
-from core.messages import Message
+from core.messages import Message, capital
 from workbench.language import text_of, tr
 from workbench.pages.calibration.page import CalibrationPage
 from workbench.pages.calibration.target_panel import TargetPanel
@@ -16,7 +16,6 @@ from workbench.pages.planes.panels import PLATES, LaserForm, PlanesCard, PlanesL
 from workbench.pages.planes.picture import PoseTab
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.planes.tabs import PlanesHistoryTab, RigTab
-from workbench.pages.words import capital
 from workbench.views import ask
 
 

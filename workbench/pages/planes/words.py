@@ -9,9 +9,10 @@ from typing import Any
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
+from core.messages import capital
 from workbench.language import number, text_of, tr
 from workbench.pages.calibration.words import history_row, used_row
-from workbench.pages.words import capital, degrees, mm, px
+from workbench.pages.words import degrees, mm, px
 from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow
 

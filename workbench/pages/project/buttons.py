@@ -30,7 +30,7 @@ def why_not_measure_all(facts: WholeFacts) -> str:
     if facts.live:
         return tr("Stop the live source first.")
     if not facts.left:
-        return tr("Everything is up to date.")
+        return tr("Everything is done.")
     if facts.read_only:
         return tr("The project is read-only: go on in a copy (File, Save a copy).")
     if "scan" in facts.left and not facts.scan_chosen:

@@ -66,7 +66,7 @@ class ProjectPage(StepPage):
         enable(
             self.whole,
             self.presenter.whole.cannot_start,
-            tr("Do every step that is not up to date, to the report; stops where you have to decide"),
+            tr("Do every step that is not done yet or out of date, to the report; stops where you have to decide"),
         )
         self.place.setText(breakable(self.presenter.place()))
 

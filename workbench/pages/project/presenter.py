@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from typing import Any, Literal
 
 from core.files.project.data import ProjectInfo
+from core.states import STEP_STATES
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
@@ -30,7 +31,7 @@ class ProjectPresenter(StepPresenter):
         self.whole.opened()
 
     def do_whole(self) -> None:
-        """Do every step that is not up to date, to the report; why that cannot be done now is said."""
+        """Do every step that is not done yet or out of date, to the report; why that cannot be done now is said."""
         if why := self.whole.cannot_start:
             self.bench.notices.info(why)
         self.whole.start()
@@ -53,17 +54,11 @@ class ProjectPresenter(StepPresenter):
 
     def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
         """One row a step: title, state in words, the sentence that explains it, level."""
-        words: dict[State, tuple[str, ProgressLevel]] = {
-            State.TODO: (tr("to do"), ""),
-            State.READY: (tr("ready"), ""),
-            State.DONE: (tr("done"), "good"),
-            State.OUTDATED: (tr("out of date"), "warn"),
-        }
-        states = self.model.states
+        levels: dict[State, ProgressLevel] = {State.DONE: "good", State.OUTDATED: "warn"}
         titles = self._titles()
         return [
-            (titles[step], words[states[step].state][0], states[step].sentence, words[states[step].state][1])
-            for step in ORDER
+            (titles[step], tr(STEP_STATES[one.state]), one.sentence, levels.get(one.state, ""))
+            for step, one in self.model.states.items()
             if step != "project"
         ]
 

@@ -11,12 +11,14 @@ from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
+from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
+from core.states import CHECKS, STEP_STATES
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.side_buttons import CheckButtons, CheckFacts, check_buttons
-from workbench.pages.words import capital, mm, px
+from workbench.pages.words import mm, px
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
@@ -174,14 +176,14 @@ class CheckCard(QFrame):
                 return "bad", tr("Not checked"), check.problem
         assert check.look is not None
         if stage is CheckStage.OUTDATED:
-            what = ", ".join(check.changed_since())
-            return "warn", tr("Out of date"), tr("Changed since the check: {what}; check again.", what=what)
-        words = {"good": tr("In order"), "warn": tr("In doubt"), "bad": tr("Changed")}
-        level, said = LEVELS[check.look.verdict], [check.look.sentence]
+            said = tr("Changed since the check: {what}; check again.", what=", ".join(check.changed_since()))
+            return "warn", capital(tr(STEP_STATES["outdated"])), said
+        verdict, found = check.look.verdict, [check.look.sentence]
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:
-            level, said = "bad" if level == "bad" else "warn", [*said, outside]
-        return level, words[level], " ".join((*map(text_of, said), *([check.refusal] if check.refusal else [])))
+            verdict, found = "failed" if verdict == "failed" else "doubtful", [*found, outside]
+        sentences = " ".join((*map(text_of, found), *([check.refusal] if check.refusal else [])))
+        return LEVELS[verdict], capital(tr(CHECKS[verdict])), sentences
 
     def _show_chart(self, history: RigHistory | None, past: PastCheck | None) -> None:
         """All checks with these calibrations, each scaled to the height of the last one's step."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 
-from core.messages import Message
+from core.messages import Message, capital
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import number, text_of, tr
-from workbench.pages.words import capital, count, mm, percent
+from workbench.pages.words import count, mm, percent
 from workbench.views.lists.value_rows import ValueRow
 
 _RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")

@@ -8,6 +8,7 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
 from core.scan.preview.preflight import Check, Name, State
+from core.states import CONDITIONS
 from workbench.language import text_of, tr
 from workbench.views.common import IconLabel
 
@@ -53,7 +54,6 @@ class ChecksCard(QFrame):
 
     def _show(self) -> None:
         titles = self._titles()
-        states = {"ok": tr("in order"), "failed": tr("not in order"), "unknown": tr("not known")}
         while len(self._rows) < len(self._checks):
             self._add_row()
         for place, row in enumerate(self._rows):
@@ -62,8 +62,8 @@ class ChecksCard(QFrame):
         for check, (sign, name, said) in zip(self._checks, self._rows, strict=False):
             symbol, colour = _SIGNS[check.state]
             sign.show_icon(symbol, colour)
-            sign.setAccessibleName(states[check.state])
-            sign.setToolTip(states[check.state])
+            sign.setAccessibleName(tr(CONDITIONS[check.state]))
+            sign.setToolTip(tr(CONDITIONS[check.state]))
             name.setText(titles[check.name])
             said.setText(text_of(check.message))
 

@@ -8,6 +8,8 @@ from typing import Literal
 from PySide6.QtCore import QEvent, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
+from core.messages import capital
+from core.states import DECISIONS
 from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
@@ -130,14 +132,9 @@ class Verdict(QFrame):
 
     def _show(self) -> None:
         symbol, colour = VERDICT_ICONS[self._kind]
-        words = {
-            "": tr("No verdict"),
-            "conforming": tr("Conforming"),
-            "not conforming": tr("Not conforming"),
-            "not proven": tr("Not proven"),
-        }
+        word = capital(tr(DECISIONS[self._kind]))
         self._sign.show_icon(symbol, colour)
-        self._word.setText(words[self._kind])
+        self._word.setText(word)
         dress(self._word, f"color: {getattr(shades(), colour)}; font-size: 16px; font-weight: 600;")
-        self.setAccessibleName(words[self._kind])
+        self.setAccessibleName(word)
         dress_edged(self, colour)

@@ -18,6 +18,6 @@ def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: W
     possible = bool(facts.left) and not facts.read_only and (facts.scan_chosen or "scan" not in facts.left)
     assert bool(why) != (idle and possible)
     if idle and not facts.left:
-        assert why == "Everything is up to date.", "nothing else is told where nothing is left"
+        assert why == "Everything is done.", "nothing else is told where nothing is left"
     if idle and facts.left and facts.read_only:
         assert "read-only" in why, "pictures need not be chosen for what cannot be written"

@@ -98,7 +98,7 @@ def test_the_button_says_why_nothing_is_to_be_done(technician: Technician, measu
     t.model.open(measured_project)
     t.idle()
     page: Any = t.window.pages["project"]
-    t.until(lambda: page.whole.toolTip() == "Everything is up to date.", "the button's reason")
+    t.until(lambda: page.whole.toolTip() == "Everything is done.", "the button's reason")
     assert not page.whole.isEnabled()
     t.model.edit("no scan", replace(t.model.project, sources=replace(t.model.project.sources, scan="")))
     t.until(lambda: "Choose or record" in page.whole.toolTip(), "another reason")

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
+from core.states import DECISIONS
 from core.study.series_chart import RULE_WORDS, Chart
 from workbench.language import number, text_of, tr
 from workbench.pages.inspect import words as inspect_words
@@ -104,18 +105,7 @@ def _shown(chart: Chart, count: int, label_of: Callable[[int], str], axes: tuple
 
 def verdict_row(verdict: str) -> ValueRow:
     """What was decided."""
-    words = {
-        "": tr("no limit stated"),
-        "capable": tr("capable"),
-        "not capable": tr("not capable"),
-        "acceptable": tr("acceptable"),
-        "acceptable with reservations": tr("with reservations"),
-        "not acceptable": tr("not acceptable"),
-        "conforming": tr("conforming"),
-        "not proven": tr("not proven"),
-        "not conforming": tr("not conforming"),
-    }
-    return tr("Decision"), words[verdict], "", LEVELS.get(verdict, "")
+    return tr("Decision"), tr(DECISIONS[verdict]) if verdict else tr("no limit stated"), "", LEVELS.get(verdict, "")
 
 
 def _grr_rows(study: GrrStudy) -> list[ValueRow]:
