@@ -11,6 +11,7 @@ from typer.main import get_command
 from core.cli import language
 from core.cli.app import app
 from core.cli.simulating import HELP_VALUES
+from core.files.project.audit import append, read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
 from core.translations import PSEUDO
@@ -88,6 +89,25 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
     assert {command: words for command, words in left.items() if words} == {}
 
 
+def test_the_audit_trail_has_no_untranslated_word_but_names_of_fields_and_what_people_wrote(tmp_path):
+    project = tmp_path / "project"
+    create_project(project, ProjectFile(new_project("2026")))
+    append(project, "measured", files={"camera.json": "0" * 64})
+    append(project, "reported")
+    own = {
+        word for entry in read_trail(project).entries for one in entry.changes for word in words_of(one.field, one.new)
+    }
+    who = words_of(read_trail(project).entries[0].who, read_trail(project).entries[0].host)
+    assert len(own) > 20
+    assert left_in_english("audit", project, "--remark", "seen by the customer") - own - set(who) == {
+        *("seen", "the", "customer")
+    }
+
+
+def words_of(*texts):
+    return re.findall(r"[^\W\d_]{3,}", " ".join(texts))
+
+
 def cells(shape):
     return [(p, o, r) for p in range(shape[0]) for o in range(shape[1]) for r in range(shape[2])]
 
@@ -100,6 +120,75 @@ def test_all_help_is_in_the_catalogues():
     ]
     assert len(texts) > 250
     assert [text for text in texts if text and not text.startswith("⟦")] == []
+
+
+def commands(*path):
+    """What is typed for each command and each group of commands, and what Typer knows of it."""
+    found = get_command(app)
+    for name in path:
+        found = found.commands[name]
+    yield path, found
+    for name in getattr(found, "commands", {}):
+        yield from commands(*path, name)
+
+
+def typed_alike(command):
+    """Words that are typed, or stand for what is typed, in every language."""
+    for one in command.params:
+        choices = one.type_descriptor.choices or ()
+        yield from (*one.opts, *one.secondary_opts, one.metavar or "", *(choice.value for choice in choices))
+        yield str(getattr(one.default, "value", one.default))
+    yield from (*getattr(command, "commands", ()), "--language", "CODE", "--help", "-h")
+
+
+@pytest.mark.parametrize(("path", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands()])
+def test_no_help_has_an_untranslated_word(monkeypatch, path, command):
+    monkeypatch.setenv("COLUMNS", "300")  # in narrow columns a word is broken in two
+    said = trisect(*path, "--help", "--language", PSEUDO)
+    assert (said.code, said.out.count("⟦") > 5) == (0, True)
+    words = set(re.findall(r"[^\W\d_][\w.\-/]+", outside_brackets(said.out)))
+    alike = {word for text in typed_alike(command) for word in re.findall(r"[^\W\d_][\w.\-/]+", text)}
+    assert words - alike - {"trisect", *path} == set()
+
+
+@pytest.mark.parametrize(
+    ("words", "sentence"),
+    [
+        (("scann",), 'there is no command "scann"; perhaps you mean scan.'),
+        (("study", "x"), 'there is no command "x"; see trisect study --help.'),
+        (("--language", "en"), "a command is missing; see trisect --help."),
+        (("scan",), "SET is missing; see trisect scan --help."),
+        (("scan", "set"), "--out is missing; see trisect scan --help."),
+        (("scan", "my", "set", "--out", "dir"), 'there is no place for "set"; see trisect scan --help.'),
+        (("scan", "--methd", "network"), "there is no option --methd; perhaps you mean --method."),
+        (("scan", "--qqq"), "there is no option --qqq; see trisect scan --help."),
+        (("scan", "set", "--out"), "--out: needs a value."),
+        (("scan", "set", "--profile=4"), "--profile: takes no value."),
+        (("scan", "set", "--method", "magic"), '--method: there is no "magic"; choose among network, three-crossings.'),
+        (("scan", "set", "--sigma-cut", "fine"), '--sigma-cut: "fine" is no number; see trisect scan --help.'),
+        (("target", "--columns", "3.5"), '--columns: "3.5" is no whole number; see trisect target --help.'),
+    ],
+)
+def test_a_wrong_command_line_is_told_in_one_sentence_in_each_language(monkeypatch, words, sentence):
+    said = trisect(*words)
+    assert (said.code, said.out, said.sentence) == (2, "", f"trisect: {sentence}")
+    if "--language" not in words:
+        monkeypatch.setenv("TRISECT_LANGUAGE", PSEUDO)
+        said = trisect(*words)
+        left = set(re.findall(r"[^\W\d_]{2,}", outside_brackets(said.err)))
+        assert (said.code, left <= {"trisect", *re.findall(r"\w+", " ".join(words))}) == (2, True), said.err
+
+
+def test_a_wrong_command_line_is_told_to_programs_too():
+    told = json.loads(trisect("scan", "--json").out)
+    assert (told["code"], told["values"]) == ("cli.missing", {"name": "SET"})
+
+
+def test_every_command_stands_under_a_heading_that_says_what_it_is_for():
+    assert [path for path, one in commands() if len(path) == 1 and not one.rich_help_panel] == []
+    said = trisect("--help", "--language", "de")
+    headings = ["Ein Teil messen", "Den Aufbau kalibrieren und prüfen", "Berichte, Studien, andere Programme"]
+    assert [heading for heading in headings if f"─ {heading} ─" not in said.out] == []
 
 
 def test_chinese_help_is_not_cut_at_the_end_of_a_line():

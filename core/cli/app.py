@@ -11,40 +11,29 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated, Any
+from typing import Annotated
 
 import typer
-from typer.core import TyperGroup
 from typer.main import get_command
 
 from core import __version__
 from core.cli import language
 from core.cli.measuring_commands import commands as measuring
-from core.cli.options import EPILOG, ExitCode
+from core.cli.options import EPILOG, ExitCode, Panel
 from core.cli.preparing_commands import commands as preparing
 from core.cli.project_commands import commands as projects
 from core.cli.result_commands import commands as results
 from core.cli.simulating import HELP_VALUES
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
+from core.cli.usage import Commands, NoArgsIsHelpError, UsageError, usage_error
 from core.errors import Cancelled, InputError
 from core.messages import Message
 from core.messages import as_json as as_json_message
 
-
-class _Commands(TyperGroup):
-    """The commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
-
-    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
-        try:
-            return super().invoke(ctx)
-        except KeyboardInterrupt as interrupt:
-            raise Cancelled from interrupt
-
-
 app = typer.Typer(
     name="trisect",
-    cls=_Commands,
+    cls=Commands,
     help="Measure a part with one camera, a fixed three-line laser and a hand-moved single-line laser.",
     epilog=EPILOG,
     no_args_is_help=True,
@@ -54,7 +43,7 @@ app = typer.Typer(
 )
 for commands in (measuring, results, preparing, projects, simulating):
     app.add_typer(commands)
-app.add_typer(studies, name="study")
+app.add_typer(studies, name="study", rich_help_panel=Panel.RESULTS)
 
 
 def _say_version(wanted: bool) -> None:
@@ -103,7 +92,12 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _run(words: list[str]) -> None:
     """Run the commands; they leave by SystemExit with their own code."""
     try:
-        language.speak(get_command(app), HELP_VALUES)(words, prog_name="trisect")
+        command = language.speak(get_command(app), HELP_VALUES)
+        sys.exit(command(words, prog_name="trisect", standalone_mode=False))
+    except NoArgsIsHelpError:
+        sys.exit(ExitCode.BAD_INPUT)
+    except UsageError as error:
+        raise usage_error(error, words) from error
     finally:
         sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
 

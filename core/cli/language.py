@@ -27,13 +27,14 @@ _TYPERS_OWN = {
     "ARGUMENTS_PANEL_TITLE": label("Arguments"),
     "OPTIONS_PANEL_TITLE": label("Options"),
     "COMMANDS_PANEL_TITLE": label("Commands"),
-    "ERRORS_PANEL_TITLE": label("Error"),
     "REQUIRED_LONG_STRING": label("[required]"),
-    "RICH_HELP": label("Try [blue]'{command_path} {help_option}'[/] for help."),
 }
-"""Words that Typer puts into help, by their names in its module; their places are Typer's to fill."""
+"""Words that Typer puts into help, by their names in its module."""
 _DEFAULT = label("default")
 _SHOW_HELP = label("Show this message and exit.")
+_USAGE = label("Usage:")
+_OPTIONS_PLACE, _COMMAND_PLACE = label("[OPTIONS]"), label("COMMAND [ARGS]...")
+"""Places in the line behind it."""
 
 _spoken: Language = ENGLISH
 
@@ -108,9 +109,15 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
             one.params.append(copy(option))
         help_option = one.get_help_option(typer.Context(one, help_option_names=HELP_OPTIONS))
         help_option.help = _SHOW_HELP
+        one.context_class, one.options_metavar = _Context, tr(_OPTIONS_PLACE)
         one.help, one.epilog = _helped(one.help, values), _helped(one.epilog, values)
+        one.rich_help_panel = _helped(one.rich_help_panel, values)
+        if hasattr(one, "commands"):
+            one.subcommand_metavar = tr(_COMMAND_PLACE)
         for shown in (*one.params, help_option):
             shown.help = _helped(shown.help, values)
+            if shown.param_type_name == "argument" or shown.is_flag:
+                shown.display_type = _no_type
     if _spoken is not ENGLISH or "typer.rich_utils" in sys.modules:  # which costs a start, and speaks English by itself
         _name_panels()
     return command
@@ -138,6 +145,22 @@ def _fold_help() -> None:
         return text
 
     rich_utils._make_rich_text = folded
+
+
+def _no_type(_: typer.Context) -> str:
+    """Neither <path> is said of a SET nor <bool> of an option that takes no value."""
+    return ""
+
+
+class _UsageLine(typer.Context.formatter_class):  # type: ignore[misc, valid-type]
+    """The line that says what may be typed, in the language."""
+
+    def write_usage(self, prog: str, args: str = "", prefix: str | None = None) -> None:
+        super().write_usage(prog, args, f"{tr(_USAGE)} " if prefix is None else prefix)
+
+
+class _Context(typer.Context):
+    formatter_class = _UsageLine
 
 
 def _takes(

@@ -19,6 +19,7 @@ from core.cli.options import (
     Json,
     MethodOption,
     Out,
+    Panel,
     Part,
     Profile,
     Set,
@@ -37,7 +38,7 @@ TAKEN_OVER = ("core.pipeline.steps.scan_pictures", "core.pipeline.steps.planes_s
 Celsius = Annotated[float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")]
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def run(
     folder: Set,
     out: Out,
@@ -78,9 +79,9 @@ def run(
     raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def batch(
-    sets: Annotated[list[Path], typer.Argument(metavar="SETS…", help="Recording sets, all names different.")],
+    sets: Annotated[list[Path], typer.Argument(metavar="SET", help="Recording sets, all names different.")],
     out: Out,
     executor: Annotated[
         str, typer.Option(metavar="WHO", help="processes, threads, or dask://HOST:PORT for a Dask cluster.")
@@ -103,7 +104,7 @@ def batch(
     raise typer.Exit(measuring.batch_exit_code(results))
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.CALIBRATE)
 def camera(
     folder: Set, out: Out, skew: Skew = None, k3: K3 = False, exclude: Exclude = None, json: Json = False
 ) -> None:
@@ -116,7 +117,7 @@ def camera(
     shown.show(as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.CALIBRATE)
 def planes(
     folder: Set,
     out: Out,
@@ -143,7 +144,7 @@ def planes(
     shown.show(as_json=json)
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.CALIBRATE)
 def check(
     folder: Set,
     out: Out,
@@ -186,7 +187,7 @@ def check(
     raise typer.Exit(measuring.exit_code("conforming" if result.passed else "changed"))
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.CALIBRATE)
 def artefact(
     folder: Set,
     out: Out,
@@ -202,7 +203,7 @@ def artefact(
     raise typer.Exit(measuring.exit_code(result.verdict, good=("passed",)))
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.MEASURE)
 def scan(
     folder: Set,
     out: Out,
@@ -227,7 +228,7 @@ def scan(
     measuring.show_times(watched)
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def profile(
     folder: Set,
     out: Out,
@@ -264,7 +265,7 @@ def profile(
     raise typer.Exit(measuring.exit_code(result.verdict))
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def gauge(folder: Set, out: Out, json: Json = False) -> None:
     """Measure the thickness of the cloud in DIR as SET/rig.toml asks; writes gauge.json."""
     from core.cli import measuring

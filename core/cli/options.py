@@ -30,6 +30,17 @@ class ExitCode(IntEnum):
     INTERRUPTED = 130
 
 
+class Panel:
+    """What commands are for: their headings in `trisect --help`, in the order of their first commands."""
+
+    MEASURE = label("Measure a part")
+    CALIBRATE = label("Calibrate and check the rig")
+    RESULTS = label("Reports, studies, other programs")
+    PREPARE = label("Before a measurement")
+    PROJECTS = label("Projects of the window")
+    TRY = label("Try it without a rig")
+
+
 class WhichTarget(str, Enum):  # noqa: UP042
     """One of a rig's two targets."""
 

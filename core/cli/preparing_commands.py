@@ -8,21 +8,22 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
-from core.cli.options import Json, OrderBy, SigmaCut, WhichTarget
+from core.cli.options import Json, OrderBy, Panel, SigmaCut, WhichTarget
 
 commands = typer.Typer()
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PREPARE)
 def target(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
     kind: Annotated[
         str, typer.Argument(metavar="KIND", help="checkerboard, charuco, circle_grid or black_square.")
     ] = "",
     columns: Annotated[
-        int | None, typer.Option(help="Inner corners (checkerboard), squares (charuco) or circles in a row.")
+        int | None,
+        typer.Option(metavar="N", help="Inner corners (checkerboard), squares (charuco) or circles in a row."),
     ] = None,
-    rows: Annotated[int | None, typer.Option(help="The same in a column.")] = None,
+    rows: Annotated[int | None, typer.Option(metavar="N", help="The same in a column.")] = None,
     size_mm: Annotated[
         float | None, typer.Option("--size-mm", metavar="MM", help="Side of a square, or pitch of the circles.")
     ] = None,
@@ -31,7 +32,7 @@ def target(
     ] = None,
     dictionary: Annotated[str, typer.Option(metavar="NAME", help="OpenCV's name of the markers.")] = "DICT_4X4_100",
     asymmetric: Annotated[bool, typer.Option("--asymmetric", help="Every second row of circles moved.")] = False,
-    paper: Annotated[str, typer.Option(help="A4, A3, A2, Letter or Tabloid.")] = "A4",
+    paper: Annotated[str, typer.Option(metavar="NAME", help="A4, A3, A2, Letter or Tabloid.")] = "A4",
     title: Annotated[str, typer.Option(metavar="NAME", help="A name of yours to print with it.")] = "",
     rig: Annotated[
         Path | None, typer.Option("--rig", metavar="FILE", help="Take the target from this rig.toml instead.")
@@ -52,10 +53,10 @@ def target(
     preparing.show_sheet(printed, paper, out, as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PREPARE)
 def card(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The PDF to write.")],
-    paper: Annotated[str, typer.Option(help="A4 or Letter.")] = "A4",
+    paper: Annotated[str, typer.Option(metavar="NAME", help="A4 or Letter.")] = "A4",
     json: Json = False,
 ) -> None:
     """Write the quick card as a PDF: one page to hang beside the rig, in the language of this command."""
@@ -65,13 +66,13 @@ def card(
     preparing.show_card(out, as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PREPARE)
 def plan(
     rig: Annotated[Path, typer.Argument(metavar="RIG", help="A rig.toml, or the recording set that holds it.")],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write plan.json and sigma.png there.")
     ] = None,
-    scans: Annotated[int, typer.Option(help="Scans drawn for the prediction.")] = 2,
+    scans: Annotated[int, typer.Option(metavar="N", help="Scans drawn for the prediction.")] = 2,
     no_changes: Annotated[
         bool, typer.Option("--no-changes", help="Do not try which change of the rig helps most: sooner done.")
     ] = False,
@@ -91,7 +92,7 @@ def plan(
     shown.show(as_json=json)
 
 
-@commands.command("import")
+@commands.command("import", rich_help_panel=Panel.PREPARE)
 def import_(
     folder: Annotated[Path, typer.Argument(metavar="SET", help="The recording set to make, or to add parts to.")],
     camera: Annotated[

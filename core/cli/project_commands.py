@@ -10,7 +10,7 @@ import typer
 
 from core.cli.bar import bar
 from core.cli.language import spoken, told, tr
-from core.cli.options import EPILOG, ExitCode, Json, one_of
+from core.cli.options import EPILOG, ExitCode, Json, Panel, one_of
 
 if TYPE_CHECKING:
     from core.files.project.audit import Entry
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 commands = typer.Typer()
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PROJECTS)
 def pack(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The file to write: NAME.trisectz.")],
@@ -34,7 +34,7 @@ def pack(
     Shown(rows, {"files_packed": made.files, "bytes": made.bytes}, files={"packed": made.path}).show(as_json=json)
 
 
-@commands.command("next-part")
+@commands.command("next-part", rich_help_panel=Panel.PROJECTS)
 def next_part(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of the last part's project.")],
     serial: Annotated[str, typer.Option(metavar="NUMBER", help="Serial number of the next part.")],
@@ -51,7 +51,7 @@ def next_part(
     Shown([(tr("project"), str(folder))], {"project": str(folder)}).show(as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PROJECTS)
 def unpack(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A packed project: NAME.trisectz.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="The folder to make.")],
@@ -66,7 +66,7 @@ def unpack(
     Shown([(tr("project"), str(folder))], {"project": str(folder)}).show(as_json=json)
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.PROJECTS)
 def verify(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="A project, or a folder of results.")],
     set_: Annotated[
@@ -105,7 +105,7 @@ def verify(
     raise typer.Exit(ExitCode.NOT_PROVEN if found.problems else ExitCode.DONE)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PROJECTS)
 def audit(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
     csv: Annotated[Path | None, typer.Option("--csv", metavar="FILE", help="Write it as a table, too.")] = None,
@@ -147,7 +147,7 @@ def audit(
     Shown(rows, {"entries": entries, "head": trail.head}, trail.problems, files).show(as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.PROJECTS)
 def people(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
     add: Annotated[
@@ -196,8 +196,11 @@ def people(
 
 
 def _told(entry: Entry) -> str:
-    said = tr("{what} by {who} on {host}", what=told(entry.what), who=entry.who, host=entry.host)
-    return f"{said}, {entry.by} ({told(entry.role)})" if entry.by else said
+    from core.files.project.audit import WHAT_NAMES
+    from core.files.project.people import ROLE_NAMES
+
+    said = tr("{what} by {who} on {host}", what=tr(WHAT_NAMES[entry.what]), who=entry.who, host=entry.host)
+    return f"{said}, {entry.by} ({tr(ROLE_NAMES[entry.role])})" if entry.role in ROLE_NAMES else said
 
 
 def _pin(name: str) -> str:

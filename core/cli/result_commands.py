@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
-from core.cli.options import EPILOG, Json, Out, Part, Set
+from core.cli.options import EPILOG, Json, Out, Panel, Part, Set
 
 commands = typer.Typer()
 
@@ -23,7 +23,7 @@ Customer = Annotated[str, typer.Option("--customer", metavar="NAME", help="Who i
 Operator = Annotated[str, typer.Option("--operator", metavar="NAME", help="Who measured.")]
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
 def inspect(
     source: Annotated[
         Path,
@@ -48,7 +48,7 @@ def inspect(
     raise typer.Exit(work.inspection_exit_code(inspection))
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.RESULTS)
 def mesh(
     results: Annotated[Path, typer.Argument(metavar="DIR", help="A folder of results.")],
     formats: Annotated[
@@ -73,7 +73,7 @@ def mesh(
     shown.show(as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.RESULTS)
 def report(
     folder: Set,
     out: Out,
@@ -105,7 +105,7 @@ def report(
     shown.show(as_json=json)
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.RESULTS)
 def export(
     results: Annotated[Path, typer.Argument(metavar="DIR", help="A folder of results.")],
     formats: Annotated[
@@ -135,7 +135,7 @@ def export(
     shown.show(as_json=json)
 
 
-@commands.command(name="import-camera")
+@commands.command("import-camera", rich_help_panel=Panel.CALIBRATE)
 def import_camera(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="OpenCV's FileStorage (YAML, JSON, XML) or ROS's YAML.")],
     out: Out,

@@ -15,7 +15,7 @@ import typer
 from core.cli.bar import bar
 from core.cli.language import tr
 from core.cli.measuring_commands import TAKEN_OVER
-from core.cli.options import EPILOG, Json
+from core.cli.options import EPILOG, Json, Panel
 from core.progress import Progress
 from core.scan.method import Method
 from core.second_process import second_process
@@ -37,7 +37,7 @@ _QUICK_SCALE, _QUICK_FRAMES, _QUICK_CUT_MM = 0.25, 24, 0.3
 pictures need."""
 
 
-@commands.command()
+@commands.command(rich_help_panel=Panel.TRY)
 def simulate(
     thing: Annotated[str, typer.Argument(metavar="OBJECT", help="What stands on the table: {objects}.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="SET", help="Folder of the new recording set.")],
@@ -46,21 +46,29 @@ def simulate(
         typer.Option("--height", metavar="MM", help="Height of a block or mask, diameter of a sphere or cylinder."),
     ] = SCENARIO.height_mm,
     stl: Annotated[str, typer.Option("--stl", metavar="FILE", help="The file of an stl.")] = SCENARIO.stl_path,
-    frames: Annotated[int, typer.Option(help="Frames of the scan.")] = SCENARIO.frames,
-    views: Annotated[int, typer.Option(help="Views of the camera target.")] = SCENARIO.camera_views,
-    poses: Annotated[int, typer.Option(help="Poses of the plane target.")] = SCENARIO.plane_poses,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same pictures.")] = SCENARIO.seed,
-    scale: Annotated[float, typer.Option(help="Picture size over 3840 × 2748.")] = SCENARIO.scale,
-    noise: Annotated[float, typer.Option(help="Factor on shot and read noise; 0 for none.")] = SCENARIO.noise,
-    speckle: Annotated[float, typer.Option(help="Contrast of the lasers' speckle; 0 for none.")] = SCENARIO.speckle,
-    bits: Annotated[int, typer.Option(help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
-    ambient: Annotated[float, typer.Option(help="Grey level of a white surface in the room's light.")] = (
-        SCENARIO.ambient_grey
-    ),
-    texture: Annotated[float, typer.Option(help="Relative unevenness of the surfaces.")] = SCENARIO.texture,
-    camera_target: Annotated[str, typer.Option(help="One of {camera_targets}.")] = SCENARIO.camera_target,
-    plane_target: Annotated[str, typer.Option(help="One of {plane_targets}.")] = SCENARIO.plane_target,
-    check_poses: Annotated[int, typer.Option(help="Pictures of an interim check.")] = SCENARIO.check_poses,
+    frames: Annotated[int, typer.Option(metavar="N", help="Frames of the scan.")] = SCENARIO.frames,
+    views: Annotated[int, typer.Option(metavar="N", help="Views of the camera target.")] = SCENARIO.camera_views,
+    poses: Annotated[int, typer.Option(metavar="N", help="Poses of the plane target.")] = SCENARIO.plane_poses,
+    seed: Annotated[int, typer.Option(metavar="N", help="The same seed gives the same pictures.")] = SCENARIO.seed,
+    scale: Annotated[float, typer.Option(metavar="SHARE", help="Picture size over 3840 × 2748.")] = SCENARIO.scale,
+    noise: Annotated[
+        float, typer.Option(metavar="FACTOR", help="Factor on shot and read noise; 0 for none.")
+    ] = SCENARIO.noise,
+    speckle: Annotated[
+        float, typer.Option(metavar="CONTRAST", help="Contrast of the lasers' speckle; 0 for none.")
+    ] = SCENARIO.speckle,
+    bits: Annotated[int, typer.Option(metavar="N", help="Depth of the pictures, 8 or 16.")] = SCENARIO.bits,
+    ambient: Annotated[
+        float, typer.Option(metavar="GREY", help="Grey level of a white surface in the room's light.")
+    ] = (SCENARIO.ambient_grey),
+    texture: Annotated[
+        float, typer.Option(metavar="SHARE", help="Relative unevenness of the surfaces.")
+    ] = SCENARIO.texture,
+    camera_target: Annotated[
+        str, typer.Option(metavar="NAME", help="One of {camera_targets}.")
+    ] = SCENARIO.camera_target,
+    plane_target: Annotated[str, typer.Option(metavar="NAME", help="One of {plane_targets}.")] = SCENARIO.plane_target,
+    check_poses: Annotated[int, typer.Option(metavar="N", help="Pictures of an interim check.")] = SCENARIO.check_poses,
     turned: Annotated[
         float, typer.Option(metavar="URAD", help="The laser turned by so much since its calibration.")
     ] = SCENARIO.turned_urad,
@@ -77,7 +85,9 @@ def simulate(
         SCENARIO.hand_mm_s
     ),
     tremor: Annotated[float, typer.Option(metavar="MM", help="Amplitude of the hand's tremor.")] = SCENARIO.tremor_mm,
-    moved_frame: Annotated[int, typer.Option(help="From this frame on something has moved:")] = SCENARIO.moved_frame,
+    moved_frame: Annotated[
+        int, typer.Option(metavar="N", help="From this frame on something has moved:")
+    ] = SCENARIO.moved_frame,
     lifted: Annotated[float, typer.Option(metavar="MM", help="… the object up.")] = SCENARIO.lifted_mm,
     pushed: Annotated[float, typer.Option(metavar="MM", help="… the object aside.")] = SCENARIO.pushed_mm,
     table_sunk: Annotated[float, typer.Option(metavar="MM", help="… the table with the object.")] = SCENARIO.table_mm,
@@ -86,7 +96,7 @@ def simulate(
         bool, typer.Option("--published-planes", help="The paper's printed planes instead of an exact 5° pencil.")
     ] = False,
     no_reference: Annotated[bool, typer.Option("--no-reference", help="Leave scan/reference.png out.")] = False,
-    fan_lines: Annotated[int, typer.Option(help="Lines of the fan: 3, or 1.")] = SCENARIO.fan_lines,
+    fan_lines: Annotated[int, typer.Option(metavar="N", help="Lines of the fan: 3, or 1.")] = SCENARIO.fan_lines,
     no_hand_laser: Annotated[
         bool, typer.Option("--no-hand-laser", help="Frames of the fan alone, for `trisect profile`.")
     ] = False,
@@ -159,7 +169,7 @@ def simulate(
         sys.stdout.write(f"{told}\n")
 
 
-@commands.command(epilog=EPILOG)
+@commands.command(epilog=EPILOG, rich_help_panel=Panel.TRY)
 def demo(
     out: Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results.")] = Path("out"),
     quick: Annotated[bool, typer.Option("--quick", help="A smaller sample: sooner done, less exact.")] = False,

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from core.cli.usage import Commands
 from core.messages import label
 
 EPILOG = label(
@@ -15,6 +16,7 @@ EPILOG = label(
 )
 
 studies = typer.Typer(
+    cls=Commands,
     help="Judge a way of measuring: repeats, type-1 study, gauge R&R, acceptance check; or a series of parts.",
     epilog=EPILOG,
     no_args_is_help=True,

@@ -30,13 +30,26 @@ from core.files.project.changes import Change
 from core.files.project.lock import user_name
 from core.files.reading import json_of, read_bytes
 from core.files.tables import TIME_WORDS, Time
-from core.messages import Message
+from core.messages import Message, label
 
 AUDIT = "audit.jsonl"
 START = "0" * 64
 """What the first entry says of the one before."""
 
 What = Literal["created", "saved", "taken over", "measured", "reported", "remark", "people", "people reset", "signed"]
+
+WHAT_NAMES: Mapping[What, str] = {
+    "created": label("created"),
+    "saved": label("saved"),
+    "taken over": label("taken over"),
+    "measured": label("measured"),
+    "reported": label("report made"),
+    "remark": label("remark"),
+    "people": label("people changed"),
+    "people reset": label("people reset"),
+    "signed": label("signed"),
+}
+"""What was done, in words."""
 
 _Hash = Annotated[str, Field(pattern="^[0-9a-f]{64}$", description="64 hex digits")]
 

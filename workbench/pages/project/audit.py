@@ -8,7 +8,7 @@ from PySide6.QtWidgets import QDialog, QInputDialog, QPlainTextEdit, QPushButton
 
 from core.errors import InputError
 from core.files.atomic import write_text
-from core.files.project.audit import Entry, Trail, append, read_trail, trail_table
+from core.files.project.audit import WHAT_NAMES, Entry, Trail, append, read_trail, trail_table
 from core.files.project.people import ROLE_NAMES, sign
 from core.messages import visible
 from workbench.bench import Bench
@@ -107,18 +107,7 @@ class AuditWindow(QDialog):
 
 
 def _in_words(entry: Entry) -> str:
-    what = {
-        "created": tr("created"),
-        "saved": tr("saved"),
-        "taken over": tr("taken over"),
-        "measured": tr("measured"),
-        "reported": tr("report made"),
-        "remark": tr("remark"),
-        "people": tr("people changed"),
-        "people reset": tr("people reset"),
-        "signed": tr("signed"),
-    }[entry.what]
-    lines = [f"{entry.n}  {time_of(entry.at, seconds=True)}  {entry.who}@{entry.host}  {what}"]
+    lines = [f"{entry.n}  {time_of(entry.at, seconds=True)}  {entry.who}@{entry.host}  {tr(WHAT_NAMES[entry.what])}"]
     lines += [f"    {entry.by} ({tr(ROLE_NAMES[entry.role])})"] if entry.role in ROLE_NAMES else []
     lines += [f"    {one.field}: {one.old or '–'} → {one.new or '–'}" for one in entry.changes]
     lines += [f"    {name}  {digest}" for name, digest in entry.files.items()]

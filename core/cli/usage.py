@@ -1,0 +1,110 @@
+"""What is wrong with a command line, told as every other refusal: one sentence, in the reader's language."""
+
+from __future__ import annotations
+
+import difflib
+import sys
+from collections.abc import Sequence
+from typing import Any
+
+import typer
+from typer.core import TyperGroup
+
+from core.errors import Cancelled, InputError
+from core.messages import Message, plain
+
+_ERRORS: Any = sys.modules[typer.BadParameter.__module__]
+"""Typer carries click in a package of its own, which is called otherwise in other versions of it."""
+UsageError: type[Exception] = _ERRORS.UsageError
+"""What Typer raises for a command line that it cannot read."""
+NoArgsIsHelpError: type[Exception] = _ERRORS.NoArgsIsHelpError
+"""What it raises after it has printed the help, where nothing was typed."""
+
+
+class Commands(TyperGroup):
+    """A group of commands; Ctrl-C passes through as `Cancelled`, or Typer would leave with the code of "not proven"."""
+
+    def invoke(self, ctx: typer.Context) -> Any:  # type: ignore[override]
+        """Run the command that was asked for (called by Typer)."""
+        try:
+            return super().invoke(ctx)
+        except KeyboardInterrupt as interrupt:
+            raise Cancelled from interrupt
+
+    def resolve_command(self, ctx: typer.Context, args: list[str]) -> Any:  # type: ignore[override]
+        """Find the command that was asked for (called by Typer); InputError if there is none of that name."""
+        if args[0] not in self.commands:
+            what = Message("cli.no_such_command", 'there is no command "{command}"', command=args[0])
+            raise InputError(what, todo=_see_help(ctx, difflib.get_close_matches(args[0], self.commands)))
+        return super().resolve_command(ctx, args)
+
+
+def usage_error(error: Any, words: Sequence[str]) -> InputError:
+    """An error of Typer's as one of our own.
+
+    Parameters
+    ----------
+    error
+        A `UsageError`.
+    words
+        The command line.
+    """
+    ctx, where = error.ctx, ""
+    choices: Sequence[str] = ()
+    near: Sequence[str] = ()
+    match error:
+        case _ERRORS.NoSuchOption():
+            what = Message("cli.no_such_option", "there is no option {option}", option=error.option_name)
+            near = error.possibilities or ()
+        case _ERRORS.BadOptionUsage():
+            where = error.option_name
+            given = any(word.startswith(f"{where}=") for word in words)
+            what = (
+                Message("cli.takes_no_value", "takes no value")
+                if given
+                else Message("cli.needs_value", "needs a value")
+            )
+        case _ERRORS.MissingParameter():
+            what = Message("cli.missing", "{name} is missing", name=_name(error.param))
+        case _ERRORS.BadParameter() if error.param is not None:
+            where = _name(error.param)
+            what, choices = _bad_value(error)
+        case _ if ctx is not None and hasattr(ctx.command, "commands"):  # a name that is none is refused by `Commands`
+            what = Message("cli.no_command", "a command is missing")
+        case _:
+            # Typer names the words in its sentence only: "Got unexpected extra argument(s) (b c)".
+            extra = error.message.partition("(s) (")[2].removesuffix(")") or error.message
+            what = Message("cli.too_many_words", 'there is no place for "{extra}"', extra=extra)
+    return InputError(what, where=where, todo=_choose(choices) if choices else _see_help(ctx, near))
+
+
+def _name(param: Any) -> str:
+    """What the user calls it: --out, SET."""
+    return str(param.opts[0] if param.param_type_name == "option" else param.metavar)
+
+
+def _bad_value(error: Any) -> tuple[Message, Sequence[str]]:
+    """What is wrong with a value, and the values there are, where they can be counted."""
+    if error.__cause__ is None:
+        return plain(error.message), ()
+    found = error.__cause__.errors()[0]  # pydantic's
+    value = str(found["input"])
+    if found["type"].startswith("int_"):
+        return Message("cli.not_a_whole_number", '"{value}" is no whole number', value=value), ()
+    if found["type"].startswith("float_"):
+        return Message("cli.not_a_number", '"{value}" is no number', value=value), ()
+    choices = error.param.type_descriptor.choices
+    if choices is None:
+        return plain(error.message), ()
+    told = Message("export.no_such_choice", 'there is no "{chosen}"', chosen=value)
+    return told, [str(one.value) for one in choices]
+
+
+def _choose(choices: Sequence[str]) -> Message:
+    return Message("advice.choose_among", "choose among {choices}", choices=tuple(choices))
+
+
+def _see_help(ctx: Any, near: Sequence[str]) -> Message | str:
+    if near:
+        return Message("advice.perhaps", "perhaps you mean {choices}", choices=tuple(near))
+    return Message("advice.see_help", "see {command} --help", command=ctx.command_path) if ctx is not None else ""
