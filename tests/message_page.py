@@ -126,8 +126,8 @@ def errors() -> dict[str, list[str]]:
     found: dict[str, list[str]] = {}
     for tree in trees:
         for code, advice in errors_of(tree, shared):
-            known = found.setdefault(code, [])
-            known += [one for one in advice if one not in known]
+            said = found.setdefault(code, [])
+            said += [one for one in advice if one not in said]
     return found
 
 
@@ -166,7 +166,7 @@ def _messages(node: ast.expr, named: Named) -> list[tuple[str, str]]:
         return [one for value in node.values for one in _messages(value, named)]
     if isinstance(node, ast.Call) and called(node) in CODED:
         code, text = node.args[0], node.args[CODED[called(node)]]
-        told = [one.value for one in (code, text) if isinstance(one, ast.Constant)]
+        told = [str(one.value) for one in (code, text) if isinstance(one, ast.Constant)]
         return [(told[0], told[1])] if len(told) == 2 else []
     if isinstance(node, ast.Call):
         return named.get(f"{called(node)}()", [])
