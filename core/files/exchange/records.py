@@ -7,8 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from core.files.atomic import write_text
+from core.files.csv_text import csv_text
 from core.inspect.characteristic import Characteristic
 from core.inspect.uncertainty.coverage import effective_dof
 from core.report.content import ReportContent
@@ -159,3 +162,15 @@ def as_table(columns: Sequence[str], rows: Sequence[Row]) -> list[list[Any]]:
 
 def _said(value: float | None) -> str:
     return "" if value is None else f"{value:g}"
+
+
+def write_result_csv(path: Path, content: ReportContent) -> None:
+    """Write one line for each characteristic; what is not known stays empty.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    rows = [result_row(one) for one in content.characteristics]
+    write_text(path, csv_text(as_table(RESULT_COLUMNS, rows)))

@@ -14,7 +14,7 @@ from core.files.exchange.dcc import write_dcc
 from core.files.exchange.dfq import write_dfq
 from core.files.exchange.opencv_calibration import write_opencv
 from core.files.exchange.qif import write_qif
-from core.files.exchange.result_csv import write_result_csv
+from core.files.exchange.records import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.ros_camera_info import write_camera_info
 from core.files.exchange.xlsx import write_xlsx

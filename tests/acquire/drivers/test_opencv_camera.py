@@ -6,8 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
-from core.acquire.drivers.opencv_camera import WAITING, OpenCVSource
-from core.acquire.drivers.opencv_devices import list_cameras
+from core.acquire.drivers.opencv_camera import WAITING, OpenCVSource, list_cameras
 from core.acquire.source import Ended, Lasers, SourceSettings, Unplugged
 from core.errors import InputError
 

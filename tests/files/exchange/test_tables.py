@@ -12,7 +12,7 @@ import pytest
 from openpyxl import load_workbook
 
 from core.files.exchange.dfq import write_dfq
-from core.files.exchange.result_csv import write_result_csv
+from core.files.exchange.records import write_result_csv
 from core.files.exchange.result_json import write_result_json
 from core.files.exchange.xlsx import write_xlsx
 from core.messages import visible
