@@ -8,7 +8,6 @@ from pathlib import Path
 from core.acquire.source import Capabilities, Ended, Frame, Lasers, SourceChoice, SourceSettings, Unplugged
 from core.errors import InputError
 from core.files.recording.rig import Rig
-from core.pipeline.live import loop as live_loop
 from core.pipeline.live import session as live
 from core.pipeline.live.commands import LiveRequest
 from core.pipeline.live.events import LiveView
@@ -107,7 +106,7 @@ class Window:
 def record(monkeypatch, source, window, step, rig: Rig, folder: Path, **choices):
     """A whole live recording with a scripted source."""
     monkeypatch.setattr(live, "make_source", lambda choice, rig: source)
-    monkeypatch.setattr(live_loop, "RETRY_S", 0.05)
+    monkeypatch.setattr(live, "RETRY_S", 0.05)
     settings = choices.pop("settings", SourceSettings())
     request = LiveRequest(step, SourceChoice("scripted"), settings, rig, folder, **choices)
     pickle.dumps(request)
