@@ -23,7 +23,7 @@ from workbench.views.layouts import Folding, enable, in_row
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_scan import InspectionView
-    from workbench.pages.inspect.buttons import SurfaceButtons
+    from workbench.pages.inspect.stage import SurfaceButtons
 
 STEPS = 200
 """Of the slider from the smallest σ to the largest."""

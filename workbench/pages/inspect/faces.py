@@ -12,8 +12,8 @@ from PySide6.QtCore import QObject, Signal
 from core.files.recording.rig import GaugeSpec
 from core.model.arrays import Array
 from workbench.language import tr
-from workbench.pages.inspect.buttons import FacesButtons, FacesFacts, faces_buttons
 from workbench.pages.inspect.scan import InspectScan
+from workbench.pages.inspect.stage import FacesButtons, FacesFacts, faces_buttons
 from workbench.project_model import ProjectModel
 
 FACES = ("upper", "lower")

@@ -13,8 +13,7 @@ from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
 from workbench.pages.inspect.features.form import CLICK
 from workbench.pages.inspect.features.panel import FeaturesPanel
 from workbench.pages.inspect.features.plot import PlotTab
-from workbench.pages.inspect.panels import FacesPanel, PartPanel, ResultPanel
-from workbench.pages.inspect.picks_panel import PicksPanel
+from workbench.pages.inspect.panels import FacesPanel, PartPanel, PicksPanel, ResultPanel
 from workbench.pages.inspect.picture import PictureTab
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.repeats.tab import RepeatsTab

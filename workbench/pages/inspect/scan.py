@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import Project
 from workbench.bench import Bench
 from workbench.language import text_of, tr
-from workbench.pages.inspect.buttons import SurfaceButtons, SurfaceFacts, surface_buttons
+from workbench.pages.inspect.stage import SurfaceButtons, SurfaceFacts, surface_buttons
 from workbench.step_state import State
 from workbench.work import jobs
 

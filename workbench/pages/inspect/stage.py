@@ -1,9 +1,15 @@
-"""How far the thickness is and what can be done, told by plain facts."""
+"""How far the thickness is and which buttons of the Inspect page can be pressed, told by plain facts.
+
+Every reason is a sentence, or "" where nothing speaks against it; of the thickness it is one of `WhyNot`.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
+
+from workbench.language import tr
 
 
 class Stage(StrEnum):
@@ -81,3 +87,100 @@ def why_not_measure(facts: Facts) -> WhyNot:
     if facts.measuring:
         return WhyNot.MEASURING
     return WhyNot.FACE_MISSING if facts.face_missing else WhyNot.NOTHING
+
+
+@dataclass(frozen=True, slots=True)
+class SurfaceFacts:
+    """What showing the surface, and drawing and picking on it, rest on."""
+
+    scan: bool
+    """There is a scan among the results."""
+    unreadable: bool
+    shown: bool
+    """It, or the one before, has been read."""
+    mesh: bool
+    """What is shown has a mesh."""
+
+
+class SurfaceButtons(NamedTuple):
+    """Why each button is grey."""
+
+    use: str
+    """Show the points; draw, pick and click on them."""
+    mesh: str
+    """Show the mesh."""
+    measure: str
+    """Measure on it: it need not be shown."""
+
+
+def surface_buttons(facts: SurfaceFacts) -> SurfaceButtons:
+    """What can be done with the surface."""
+    if facts.shown:
+        return SurfaceButtons("", "" if facts.mesh else tr("This scan has no mesh."), "")
+    none = tr("The scan cannot be read.") if facts.unreadable else "" if facts.scan else tr("Scan the part first.")
+    why = none or tr("The scan is being read.")
+    return SurfaceButtons(why, why, none)
+
+
+@dataclass(frozen=True, slots=True)
+class FacesFacts:
+    """What the regions of the two faces rest on."""
+
+    no_surface: str
+    """Why nothing can be drawn."""
+    found: bool
+    """The outlines of both faces are there."""
+    own: bool
+    """Both regions were drawn, or taken from those found."""
+    missing: str
+    """What is asked for where only one was."""
+
+
+class FacesButtons(NamedTuple):
+    """Why each button is grey."""
+
+    draw: str
+    take_found: str
+    automatic: str
+    exchange: str
+
+
+def faces_buttons(facts: FacesFacts) -> FacesButtons:
+    """What can be done with the regions."""
+    if facts.own:
+        taken = tr("The faces are regions of your own already: drag their corners in the picture.")
+        return FacesButtons(facts.no_surface, taken, "", "")
+    first = tr("Measure the thickness first, so that there are faces to begin with.")
+    return FacesButtons(
+        draw=facts.no_surface,
+        take_found="" if facts.found else facts.no_surface or first,
+        automatic="" if facts.missing else tr("The faces are found automatically already."),
+        exchange=facts.missing or tr("The faces are found automatically: there is nothing to exchange."),
+    )
+
+
+@dataclass(frozen=True, slots=True)
+class PicksFacts:
+    """What points and distances rest on."""
+
+    no_surface: str
+    """Why nothing can be picked."""
+    some: bool
+    """There are points or distances in the list."""
+    chosen: bool
+    """One of them is."""
+
+
+class PicksButtons(NamedTuple):
+    """Why each button is grey."""
+
+    pick: str
+    remove: str
+    clear: str
+
+
+def picks_buttons(facts: PicksFacts) -> PicksButtons:
+    """What can be done with points and distances."""
+    none = "" if facts.some else tr("Nothing is picked yet.")
+    choose = "" if facts.chosen else tr("Choose a point or a distance in the list first.")
+    return PicksButtons(facts.no_surface, none or choose, none)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,12 +12,42 @@ from core.files.project.data import ProjectFile
 from core.files.project.keys import STEPS, left_to_do
 from workbench.bench import Bench
 from workbench.language import text_of, tr
-from workbench.pages.project.buttons import WholeFacts, why_not_measure_all
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
 EDIT = "whole job"
 """What it accepts is one edit, undone as a whole."""
+
+
+@dataclass(frozen=True, slots=True)
+class WholeFacts:
+    """What *Measure everything* rests on."""
+
+    running: bool
+    """It is being done, or waits for its turn."""
+    live: bool
+    """A live source is on, or what it recorded is still being put into the project."""
+    left: frozenset[str]
+    """The steps that are not up to date."""
+    scan_chosen: bool
+    """Pictures of a scan are chosen."""
+    read_only: bool
+    """Nothing can be written into the project."""
+
+
+def why_not_measure_all(facts: WholeFacts) -> str:
+    """Why not everything can be measured now."""
+    if facts.running:
+        return tr("Everything is being measured.")
+    if facts.live:
+        return tr("Stop the live source first.")
+    if not facts.left:
+        return tr("Everything is done.")
+    if facts.read_only:
+        return tr("The project is read-only: go on in a copy (File, Save a copy).")
+    if "scan" in facts.left and not facts.scan_chosen:
+        return tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan.")
+    return ""
 
 
 class MeasuringAll(QObject):

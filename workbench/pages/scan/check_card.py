@@ -17,7 +17,7 @@ from core.states import CHECKS, STEP_STATES
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
-from workbench.pages.scan.side_buttons import CheckButtons, CheckFacts, check_buttons
+from workbench.pages.scan.stage import CheckButtons, CheckFacts, check_buttons
 from workbench.pages.words import mm, px
 from workbench.theme import icon, shades
 from workbench.views import ask

@@ -14,7 +14,7 @@ from core.files.recording.options import StatedTilt
 from core.report.wording import thickness_line
 from workbench.bench import Bench
 from workbench.language import text_of, tr
-from workbench.pages.scan.side_buttons import ProfilesFacts, why_not_profiles
+from workbench.pages.scan.stage import ProfilesFacts, why_not_profiles
 from workbench.pages.words import wording
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm

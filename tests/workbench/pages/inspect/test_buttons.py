@@ -5,7 +5,9 @@ from itertools import product
 
 import pytest
 
-from workbench.pages.inspect.buttons import (
+from workbench.pages.inspect.features.plan import FeaturesFacts, features_buttons
+from workbench.pages.inspect.repeats.repeats import RepeatsFacts, repeats_buttons
+from workbench.pages.inspect.stage import (
     FacesFacts,
     PicksFacts,
     SurfaceFacts,
@@ -13,9 +15,7 @@ from workbench.pages.inspect.buttons import (
     picks_buttons,
     surface_buttons,
 )
-from workbench.pages.inspect.features.buttons import FeaturesFacts, features_buttons
-from workbench.pages.inspect.repeats.buttons import RepeatsFacts, repeats_buttons
-from workbench.pages.inspect.studies.buttons import StudiesFacts, studies_buttons
+from workbench.pages.inspect.studies.studies import StudiesFacts, studies_buttons
 
 BOOLS, WHY = (False, True), ("", "Why not.")
 

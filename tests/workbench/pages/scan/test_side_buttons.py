@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from workbench.pages.scan.side_buttons import CheckFacts, ProfilesFacts, check_buttons, why_not_profiles
+from workbench.pages.scan.stage import CheckFacts, ProfilesFacts, check_buttons, why_not_profiles
 
 BOOLS, WHY = (False, True), ("", "why not")
 CHECKS = [
