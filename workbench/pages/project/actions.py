@@ -28,10 +28,8 @@ from core.translations import languages
 from workbench.bench import Bench
 from workbench.language import spoken, text_of, tr
 from workbench.pages.project.audit import AuditWindow
-from workbench.pages.project.copying import ProjectCopy
+from workbench.pages.project.copies import PACKED, ProjectCopies
 from workbench.pages.project.import_dialog import ImportDialog
-from workbench.pages.project.next_part import NextPart
-from workbench.pages.project.packing import PACKED, ProjectPack
 from workbench.pages.project.sample import SampleProject
 from workbench.pages.project.states import StateChoice, choose_access, choose_state
 from workbench.pages.sources import put_source
@@ -54,9 +52,7 @@ class ProjectActions(QObject):
         super().__init__(window)
         self.bench, self.model, self._window = bench, bench.model, window
         self.sample = SampleProject(bench, self._open_at_result, self)
-        self.copy = ProjectCopy(bench, window, self.save, self.close_project, self._open, self)
-        self.next = NextPart(bench, window, self.save, self._open, self)
-        self.pack = ProjectPack(bench, window, self.save, self.open_project, self)
+        self.copies = ProjectCopies(bench, window, self.save, self.close_project, self.open_project, self._open)
         self._when_left: Callable[[], object] | None = None
         self._preparing: Task | None = None
         # Queued: a recording that ends is at its end then, and not in the midst of telling it.
@@ -114,7 +110,7 @@ class ProjectActions(QObject):
         if path.suffix == OPENER and not path.is_dir():
             path = path.parent
         if path.suffix.lower() == PACKED and path.is_file():
-            self.pack.unpack(path)
+            self.copies.unpack(path)
         elif is_project(path) or rescues(path):
             self.open_project(path)
         elif path.is_file() and path.parent.name == BACKUPS and is_project(path.parent.parent):
@@ -211,7 +207,7 @@ class ProjectActions(QObject):
 
     def begin_next_part(self) -> None:
         """The next part of the series, in a project of its own, at its scan."""
-        self.next.begin(lambda: self.go_to.emit("scan"))
+        self.copies.next_part(lambda: self.go_to.emit("scan"))
 
     def show_audit_trail(self) -> None:
         """Show who did what in the open project, and when; what is being changed is saved before."""
@@ -345,7 +341,7 @@ class ProjectActions(QObject):
                 return
             self.bench.settings.remember(folder)
             if not can_be_saved(folder):
-                self.copy.offer()
+                self.copies.offer_copy()
             if (refused := self.model.why_read_only()) is not None:
                 self.bench.notices.warning(text_of(refused))
             elif (unfinished := unfinished_recording(folder)) is not None:

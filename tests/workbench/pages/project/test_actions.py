@@ -309,7 +309,7 @@ def test_a_read_only_project_goes_on_in_a_copy_with_what_was_changed(
         patched.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path / "copies"))
         projects.open_project(folder)
         renamed(projects, "Changed")
-        projects.copy.save_copy()
+        projects.copies.save_copy()
         qtbot.waitUntil(lambda: projects.model.folder == tmp_path / "copies" / "Mine")
     assert projects.model.project.info.name == "Changed" and projects.model.is_modified
     assert projects.save() and read_project(tmp_path / "copies" / "Mine").project.info.name == "Changed"
@@ -336,7 +336,7 @@ def test_a_copy_of_a_project_that_can_be_saved_is_of_its_newest_state(
     monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: ("Mine", tmp_path))
     projects.open_project(folder)
     renamed(projects, "Changed")
-    projects.copy.save_copy()
+    projects.copies.save_copy()
     qtbot.waitUntil(lambda: projects.model.folder == tmp_path / "Mine")
     for place in (folder, tmp_path / "Mine"):
         assert read_project(place).project.info.name == "Changed"
@@ -348,7 +348,7 @@ def test_a_copy_waits_for_the_end_of_a_recording(
 ) -> None:
     projects.open_project(project(tmp_path / "block"))
     projects.model.recording_begins(projects)
-    projects.copy.save_copy()
+    projects.copies.save_copy()
     assert "Stop the recording first" in errors(projects)[0]
 
 
@@ -611,7 +611,7 @@ def test_a_project_is_packed_as_it_is_and_unpacked_and_opened_elsewhere(
     projects.open_project(project(tmp_path / "block"))
     renamed(projects, "As it is now")
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "sent")
-    projects.pack.pack()
+    projects.copies.pack()
     qtbot.waitUntil((tmp_path / "sent.trisectz").is_file)
     projects.close_project()
     monkeypatch.setattr(ask, "ask_name_and_folder", lambda _p, _t, name, _f: (name, tmp_path / "here"))
