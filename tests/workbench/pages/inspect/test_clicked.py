@@ -20,7 +20,6 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.form import CLICK
-from workbench.pages.inspect.page import InspectPage
 from workbench.pages.inspect.surface import PROPOSALS
 from workbench.views.scene.contents import Marks
 from workbench.work import jobs
@@ -43,7 +42,7 @@ def asked():
 
 
 @pytest.fixture
-def quick(hand_bench, asked):
+def quick(quick, asked):
     """Points below 300 are on a plane each, the others on a sphere; two planes are parallel if both are even."""
 
     def grow(folder, points, kind, pose):
@@ -51,16 +50,13 @@ def quick(hand_bench, asked):
         faces = tuple(face(one, kind or ("plane" if one < 300 else "sphere"), pose) for one in points)
         return ClickedFaces(faces, len(points) == 2 and not any(one % 2 for one in points))
 
-    lane = cast(HandLane, hand_bench.quick)
-    lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    lane.answers[jobs.CLICKED_FACES] = grow
-    return lane
+    quick.answers[jobs.CLICKED_FACES] = grow
+    return quick
 
 
 @pytest.fixture
-def presenter(hand_bench, quick, tmp_path, qtbot):
+def presenter(hand_bench, measuring, quick, tmp_path, qtbot):
     """A scan with its thickness is shown; the plan is empty."""
-    measuring = cast(HandLane, hand_bench.measuring)
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project.inspection)
     return cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot)
 
@@ -75,15 +71,10 @@ def shown_of(plan):
 
 
 @pytest.fixture
-def page(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = InspectPage(presenter)
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
+def page(presenter, show_page):
+    made = show_page(presenter)
     made.refreshing.at_once()
-    yield made
-    made.close()
+    return made
 
 
 def click(presenter, qtbot, cloud_number):

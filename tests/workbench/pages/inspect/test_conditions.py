@@ -1,7 +1,6 @@
 """Part coordinates, temperature and master, entered in the window: in the plan, undoable, with what still lacks."""
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -11,10 +10,8 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.uncertainty.causes import CAMERA, MASTER_MEASURED
 from core.messages import plain
-from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.features import conditions as fields
-from workbench.pages.inspect.page import InspectPage
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -31,9 +28,7 @@ MASTER = Master("Block 50 no. 7", 50.0, 0.0, 50.004, ((CAMERA, 0.003), (plain("o
 
 
 @pytest.fixture
-def presenter(hand_bench, tmp_path, qtbot):
-    quick = cast(HandLane, hand_bench.quick)
-    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+def presenter(hand_bench, quick, tmp_path, qtbot):
     quick.answers[jobs.MEASURED_MASTER] = lambda folder, certified, project: MASTER
     project = cases.project()
     info = replace(project.info, part_celsius=23.5)
@@ -46,16 +41,11 @@ def conditions(presenter):
 
 
 @pytest.fixture
-def page(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = InspectPage(presenter)
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
+def page(presenter, show_page, qtbot):
+    made = show_page(presenter)
     made.conditions_fold.expand(animate=False)
     qtbot.waitUntil(lambda: "master" in made.conditions.forms)
-    yield made
-    made.close()
+    return made
 
 
 def undo(presenter):

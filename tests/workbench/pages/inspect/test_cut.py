@@ -1,7 +1,5 @@
 """A plane laid through the surface by hand: seen at once, kept as one edit."""
 
-from typing import cast
-
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
@@ -9,9 +7,7 @@ from PySide6.QtCore import Qt
 
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.page import InspectPage
 from workbench.pages.inspect.surface import CUT
 from workbench.views.scene.contents import Patches
 from workbench.work import jobs
@@ -20,18 +16,11 @@ LEFT = Qt.MouseButton.LeftButton
 
 
 @pytest.fixture
-def page(hand_bench, tmp_path, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    cast(HandLane, hand_bench.measuring).held = {jobs.MEASURE_FEATURES}
-    quick = cast(HandLane, hand_bench.quick)
-    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    made = InspectPage(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
+def page(hand_bench, measuring, quick, show_page, tmp_path, qtbot):
+    measuring.held = {jobs.MEASURE_FEATURES}
+    made = show_page(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
     made.refreshing.at_once()
-    yield made
-    made.close()
+    return made
 
 
 def press(page, qtbot, button):

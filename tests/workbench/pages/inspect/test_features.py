@@ -24,7 +24,6 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
-from workbench.pages.inspect.page import InspectPage
 from workbench.pages.inspect.surface import TOGETHER
 from workbench.views import ask
 from workbench.views.scene.contents import Marks
@@ -60,18 +59,15 @@ def with_drawn(project, **drawn):
 
 
 @pytest.fixture
-def measuring(hand_bench):
-    lane = cast(HandLane, hand_bench.measuring)
-    lane.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project)
-    lane.answers[jobs.LOOK_AT_FEATURES] = lambda folder, project: shown_of(project)
-    return lane
+def measuring(measuring):
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project)
+    measuring.answers[jobs.LOOK_AT_FEATURES] = lambda folder, project: shown_of(project)
+    return measuring
 
 
 @pytest.fixture
-def presenter(hand_bench, measuring, tmp_path, qtbot):
+def presenter(hand_bench, measuring, quick, tmp_path, qtbot):
     """A scan with its thickness is shown; the plan is empty."""
-    quick = cast(HandLane, hand_bench.quick)
-    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
     quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: np.array(CORNERS)
     return cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot)
 
@@ -82,14 +78,8 @@ def features(presenter):
 
 
 @pytest.fixture
-def page(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = InspectPage(presenter)
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
-    yield made
-    made.close()
+def page(presenter, show_page):
+    return show_page(presenter)
 
 
 def measured(features, qtbot):

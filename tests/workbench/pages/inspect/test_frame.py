@@ -17,7 +17,6 @@ from core.inspect.shown.view_frame import FrameKind
 from core.model import Pose
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.page import InspectPage
 from workbench.settings import AppSettings
 from workbench.work import jobs
 
@@ -34,10 +33,9 @@ def shown_of(plan):
 
 
 @pytest.fixture
-def measuring(hand_bench):
-    lane = cast(HandLane, hand_bench.measuring)
-    lane.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project.inspection)
-    return lane
+def measuring(measuring):
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: shown_of(project.inspection)
+    return measuring
 
 
 @pytest.fixture
@@ -47,17 +45,11 @@ def measured():
 
 
 @pytest.fixture
-def page(hand_bench, measuring, measured, tmp_path, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    quick = cast(HandLane, hand_bench.quick)
+def page(hand_bench, measuring, quick, measured, show_page, tmp_path, qtbot):
     quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(*measured)
-    made = InspectPage(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
+    made = show_page(cases.entered(hand_bench, tmp_path / "project", cases.project(), qtbot))
     made.refreshing.at_once()
-    yield made
-    made.close()
+    return made
 
 
 def press(page, qtbot):

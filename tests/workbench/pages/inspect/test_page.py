@@ -1,7 +1,6 @@
 """The inspect page, clicked."""
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -11,9 +10,7 @@ from PySide6.QtWidgets import QAbstractButton, QComboBox, QDoubleSpinBox, QSlide
 
 from core.errors import InputError
 from core.messages import plain
-from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.page import InspectPage
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.work import jobs
@@ -23,32 +20,24 @@ OUTLINE = np.array([[10.0, 10.0], [30.0, 10.0], [20.0, 30.0]])
 
 
 @pytest.fixture
-def measuring(hand_bench):
-    lane = cast(HandLane, hand_bench.measuring)
-    lane.held = {jobs.MEASURE_GAUGE}
-    return lane
+def measuring(measuring):
+    measuring.held = {jobs.MEASURE_GAUGE}
+    return measuring
 
 
 @pytest.fixture
-def quick(hand_bench):
-    lane = cast(HandLane, hand_bench.quick)
-    lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: OUTLINE
-    return lane
+def quick(quick):
+    quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: OUTLINE
+    return quick
 
 
 @pytest.fixture
-def page(hand_bench, measuring, quick, tmp_path, qtbot, monkeypatch):
+def page(hand_bench, measuring, quick, show_page, tmp_path):
     """The page of an open project without a scan."""
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = InspectPage(InspectPresenter(hand_bench))
     hand_bench.model.create(tmp_path / "project", cases.project(nominal_mm=50.0, tolerance_mm=0.2))
-    qtbot.addWidget(made)
-    made.resize(1100, 700)
-    made.show()
+    made = show_page(InspectPresenter(hand_bench), 1100, 700)
     made.presenter.entered()
-    yield made
-    made.close()
+    return made
 
 
 def scan(page, qtbot, *, inspected=True):

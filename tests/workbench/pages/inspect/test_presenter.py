@@ -1,7 +1,6 @@
 """Decisions of the inspect page."""
 
 from dataclasses import replace
-from typing import cast
 
 import numpy as np
 import pytest
@@ -12,7 +11,6 @@ from core.files.project.data import Accepted
 from core.files.project.keys import finished
 from core.inspect.uncertainty.part import MATERIALS, Part
 from core.study.type1 import type1_study
-from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.part import MATERIAL_NAMES
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
@@ -24,18 +22,15 @@ TRIANGLE = np.array([[10.0, 10.0], [20.0, 10.0], [15.0, 20.0]])
 
 
 @pytest.fixture
-def measuring(hand_bench):
-    lane = cast(HandLane, hand_bench.measuring)
-    lane.held = {jobs.MEASURE_GAUGE}
-    return lane
+def measuring(measuring):
+    measuring.held = {jobs.MEASURE_GAUGE}
+    return measuring
 
 
 @pytest.fixture
-def quick(hand_bench):
-    lane = cast(HandLane, hand_bench.quick)
-    lane.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
-    lane.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: TRIANGLE
-    return lane
+def quick(quick):
+    quick.answers[jobs.OUTLINE_SELECTED] = lambda folder, numbers, face: TRIANGLE
+    return quick
 
 
 @pytest.fixture

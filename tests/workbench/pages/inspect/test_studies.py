@@ -13,7 +13,6 @@ from core.files.study.study_file import study_path
 from tests.study.grr_tables import AIAG
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.page import InspectPage
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -28,9 +27,7 @@ ROWS = "".join(
 
 
 @pytest.fixture
-def presenter(hand_bench, tmp_path, qtbot):
-    quick = cast(HandLane, hand_bench.quick)
-    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+def presenter(hand_bench, quick, tmp_path, qtbot):
     project = cases.project(nominal_mm=50.0, tolerance_mm=0.2)
     repeats = tuple(cases.repeat(number, 50 + 0.01 * number) for number in range(3))
     return cases.entered(hand_bench, tmp_path / "project", replace(project, repeats=repeats), qtbot)
@@ -42,15 +39,10 @@ def studies(presenter):
 
 
 @pytest.fixture
-def tab(presenter, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = InspectPage(presenter)
-    qtbot.addWidget(made)
-    made.resize(1280, 800)
-    made.show()
+def tab(presenter, show_page):
+    made = show_page(presenter)
     made.tabs.setCurrentIndex(STUDIES)
-    yield made.studies
-    made.close()
+    return made.studies
 
 
 def undo(presenter):
