@@ -26,10 +26,11 @@ _CUTS_FOR_SPECKLE = 3000  # cuts; more tell nothing new of the speckle
 _LARGEST_DISAGREEMENT_PX = 0.03
 """Between Steger's points and the likelihood's, on the whole: beyond, the section is no Gaussian (a halo of 8 % shows
 at once) and all points stay Steger's. Held by tests/image/stripes/likelihood/test_refinement.py (no Gaussian)."""
-_CHANCE, _MOST_BY_CHANCE_PX = 1e-3, 0.1
+_CHANCE, _MOST_BY_CHANCE_PX = 1e-5, 0.1
 """Probability above which that is chance, and how far chance goes. On pictures of one speckled stripe of 350 px one in
 four was taken for skewed without it, by some hundredths of a pixel, and its points were twice as far off as they could
-be. On photographs, 0.14 to 0.6 px, one of the two estimates is wrong, however few the points that say so."""
+be; with 1e-3 some still were. On photographs, 0.14 to 0.6 px, one of the two estimates is wrong, however few the points
+that say so."""
 _UNUSABLE_WEIGHT = 0.02
 """Of saturated points in the smooth curve, 1 for the others: enough to hold it where all are saturated. Set by rendered
 plates, where a curve without them swung up to 4 px astray; tests/image/test_rendered_lines.py holds it."""
