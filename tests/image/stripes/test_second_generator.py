@@ -1,10 +1,4 @@
-"""Centrelines on pictures of a second generator are near the bound, with and without speckle.
-
-Not yet at about 45° with speckle: there they are at 1.2 to 1.5 times the bound, and σ is 8 % too small (at 30° they are
-at up to 1.3 times). Rows (columns) cut a slanting stripe so that its two flanks, weighed together, lie up to ten pixels
-apart along it, on different grains; weights that keep to each pixel's own foot on the line reach the bound on such
-pictures.
-"""
+"""Centrelines on pictures of a second generator are near the bound, whichever way they run, speckled or not."""
 
 from __future__ import annotations
 
@@ -63,11 +57,10 @@ def rms(values: np.ndarray) -> float:
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize(("speckle", "most"), [(NO_SPECKLE, 1.05), (GRAINS, 1.20)], ids=["plain", "speckled"])
+@pytest.mark.parametrize(("speckle", "most"), [(NO_SPECKLE, 1.05), (GRAINS, 1.15)], ids=["plain", "speckled"])
 def test_means_along_a_stripe_are_near_the_bound(speckle: Speckle, most: float) -> None:
     """Each angle has few means, and is allowed three standard errors more; all together have many."""
-    angles = [angle for angle in ANGLES if speckle == NO_SPECKLE or angle != 45.0]
-    ratios = {angle: means(angle, speckle) for angle in angles}
+    ratios = {angle: means(angle, speckle) for angle in ANGLES}
     for angle, (over_bound, over_sigma) in ratios.items():
         print(f"{angle:3.0f}°: {rms(over_bound):.3f} × the bound, {rms(over_sigma):.3f} × σ, {len(over_bound)} means")
         assert rms(over_bound) < most + 3 / np.sqrt(2 * len(over_bound))

@@ -12,7 +12,7 @@ the curve by t = Σ ψ·(I − model) / Σ ψ·d, with d the derivative of the m
 whatever the background's offset and slope. Both sums are taken over a Gaussian window along the stripe, so points stay
 as smooth as the filter made them, but bends do not pull them: the curve's own bend is in x. A and s change along the
 stripe, and a pixel is held against those at its own foot on the curve, not where its row cuts it: where a slanting
-stripe fades, all rows are brighter on one side.
+stripe fades, all rows are brighter on one side. On slanting stripes it counts for the cut through its foot, too.
 
 Where pixels cannot be used (saturated, or other light far off the model), A is estimated together with t from those
 that are left, for then the two are no longer independent.

@@ -266,11 +266,12 @@ def test_rows_and_columns_cut_a_line_in_order_whichever_way_it_runs(angle_deg: i
 
 @pytest.mark.parametrize("degrees", [20.0, 44.0, 110.0, 140.0])
 @pytest.mark.parametrize("fade", [0.02, -0.02], ids=["fading", "brightening"])
-def test_a_slanting_stripe_that_fades_along_itself_is_not_pulled_aside(degrees, fade):
+@pytest.mark.parametrize("width", [1.5, 2.5])
+def test_a_slanting_stripe_that_fades_along_itself_is_not_pulled_aside(degrees, fade, width):
     truth = straight((100.0, 100.0), np.radians(degrees))
     along = straight((100.0, 100.0), np.radians(degrees + 90.0))
     v, u = np.mgrid[:200, :200].astype(float)
-    light = 100 * np.exp(-0.5 * (truth(u, v) / 1.5) ** 2 - fade * along(u, v))
-    (line,) = find(light, Stripe(1.5, 100.0), NOISE)
+    light = 100 * np.exp(-0.5 * (truth(u, v) / width) ** 2 - fade * along(u, v))
+    (line,) = find(light, Stripe(width, 100.0), NOISE)
     middle = np.abs(along(*line.uv.T)) < 40
-    assert np.abs(errors(line, truth)[middle]).max() < 0.003
+    assert np.abs(errors(line, truth)[middle]).max() < 0.002
