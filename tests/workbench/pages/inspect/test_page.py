@@ -34,8 +34,8 @@ def quick(quick):
 @pytest.fixture
 def page(hand_bench, measuring, quick, show_page, tmp_path):
     """The page of an open project without a scan."""
-    hand_bench.model.create(tmp_path / "project", cases.project(nominal_mm=50.0, tolerance_mm=0.2))
     made = show_page(InspectPresenter(hand_bench), 1100, 700)
+    hand_bench.model.create(tmp_path / "project", cases.project(nominal_mm=50.0, tolerance_mm=0.2))
     made.presenter.entered()
     return made
 
