@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
+from PySide6.QtGui import QKeySequence
 from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QWidget
 
 from workbench.language import tr
@@ -24,7 +26,7 @@ class ShortcutList(QDialog):
         half = (len(keys) + 1) // 2
         for place, (key, meaning) in enumerate(keys):
             row, column = place % half, 2 * (place // half)
-            name = QLabel(key)
+            name = QLabel(native(key))
             name.setObjectName("heading")
             grid.addWidget(name, row, column)
             what = QLabel(meaning)
@@ -34,3 +36,8 @@ class ShortcutList(QDialog):
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Close)
         buttons.rejected.connect(self.reject)
         in_column(grid, buttons, on=self, margins=(18, 16, 18, 12))
+
+
+def native(keys: str) -> str:
+    """Keys as menus call them, on this system and in the window's language: "Left, Ctrl+M" is "Links, Strg+M"."""
+    return re.sub(r"[^\s,…]+", lambda key: QKeySequence(key[0]).toString(QKeySequence.SequenceFormat.NativeText), keys)

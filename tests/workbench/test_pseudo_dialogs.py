@@ -1,0 +1,189 @@
+"""Menus and dialogs, each opened as a user opens it: no text past the catalogues, and none that is cut."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtGui import QContextMenuEvent, QKeySequence
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QDialog,
+    QDialogButtonBox,
+    QFileDialog,
+    QMenu,
+    QPushButton,
+    QTableView,
+    QToolButton,
+    QWidget,
+)
+
+from core.translations import PSEUDO
+from tests.translations import catalogue
+from tests.workbench.clipped import clipped
+from tests.workbench.test_fit import SCREEN, window_in
+from tests.workbench.test_pseudo import FOREIGN, english, told_past_the_catalogues
+from workbench.bench import Bench
+from workbench.main_window import MainWindow
+from workbench.steps import STEPS
+from workbench.views.image.view import ImageView
+from workbench.views.lists.shortcut_list import native
+from workbench.views.plots.base import Plot
+
+OPENED = (
+    "new", "open", "open set", "import", "next part", "copy", "pack", "unpack", "audit", "sign in", "quick card",
+    "keys", "double click", "about",
+)  # fmt: skip
+"""The entries of the menus that open a dialog."""
+ALIKE = (
+    "CSV", "PĎF", "All Files",  # kinds of files; the last one is Qt's, in Qt's own words
+    "Alt", "Left", "Right", "Return", "Space", "PgDown", "PgUp", "Esc",  # keys, which Qt translates into real languages
+)  # fmt: skip
+
+
+class Opened:
+    """Looks at each menu and dialog that is open, presses what opens another one in it, and closes it.
+
+    Parameters
+    ----------
+    foreign
+        What is called the same in every language.
+    """
+
+    def __init__(self, foreign: re.Pattern[str]) -> None:
+        self.seen: list[str] = []
+        self.past: dict[str, str] = {}
+        self.cut: dict[str, dict[str, str]] = {}
+        self._foreign, self._done, self._open = foreign, [], True
+        self._again()
+
+    def stop(self) -> None:
+        self._open = False
+
+    def menu(self, menu: QMenu) -> None:
+        """Look at a menu as it is when it opens."""
+        menu.aboutToShow.emit()
+        self._note(menu, f"menu {menu.title() or type(menu.parent()).__name__}")
+
+    def _again(self) -> None:
+        QTimer.singleShot(10, self._look)
+
+    def _look(self) -> None:
+        if not self._open:
+            return
+        self._again()  # first: what is pressed below may open a dialog, and comes back when that is closed
+        popup, dialog = QApplication.activePopupWidget(), QApplication.activeModalWidget()
+        if isinstance(popup, QMenu):
+            self._note(popup, f"menu of {type(popup.parent()).__name__}")
+            popup.close()
+        elif isinstance(dialog, QDialog) and dialog not in self._done:
+            self._done.append(dialog)
+            self._note(dialog, f"{type(dialog).__name__} {dialog.windowTitle()}")
+            for button in () if isinstance(dialog, QFileDialog) else opening_buttons(dialog):
+                button.click()
+            dialog.reject()
+
+    def _note(self, window: QDialog | QMenu, name: str) -> None:
+        self.seen.append(name)
+        if isinstance(window, QFileDialog):  # the rest of it is Qt's, or the system's
+            told = [window.windowTitle(), *(re.sub(r"\(\*[^)]*\)", "", kind) for kind in window.nameFilters())]
+            self.past |= {text: name for text in told if english(self._foreign.sub(" ", text))}
+            return
+        self.past |= {
+            text: f"{name}: {where}"
+            for text, where in told_past_the_catalogues(window, self._foreign).items()
+            if text.replace("&", "") not in of_qt(window)
+        }
+        if isinstance(window, QMenu):
+            if window.sizeHint().height() > SCREEN.height() or window.sizeHint().width() > SCREEN.width():
+                self.cut[name] = {window.title(): f"needs {window.sizeHint().toTuple()}"}
+        elif cut := clipped(window):
+            self.cut[name] = cut
+
+
+def of_qt(window: QWidget) -> set[str]:
+    """What the standard buttons of a dialog say, which Qt translates itself, into real languages only."""
+    boxes = window.findChildren(QDialogButtonBox)
+    return {
+        button.text().replace("&", "")
+        for box in boxes
+        for button in box.buttons()
+        if box.standardButton(button) is not QDialogButtonBox.StandardButton.NoButton
+    }
+
+
+def opening_buttons(window: QWidget) -> Iterator[QAbstractButton]:
+    """Buttons that are seen, can be pressed, and open a dialog: an ellipsis says so."""
+    for button in window.findChildren(QAbstractButton):
+        if button.isVisible() and button.isEnabled() and "…" in button.text():
+            yield button
+
+
+def ask_for_its_menu(widget: QWidget) -> None:
+    """What the right button of the mouse does on a widget."""
+    where = widget.rect().center()
+    if isinstance(widget, QTableView):
+        widget.customContextMenuRequested.emit(where)
+    else:
+        event = QContextMenuEvent(QContextMenuEvent.Reason.Mouse, where, widget.mapToGlobal(where))
+        widget.contextMenuEvent(event)
+
+
+def open_all(window: MainWindow, opened: Opened, bench: Bench, qtbot: Any) -> None:
+    """Everything of a window that opens."""
+    for menu in window.findChildren(QMenu):
+        opened.menu(menu)
+    for name in OPENED:
+        assert window.menus.actions[name].isEnabled(), name
+        window.menus.actions[name].trigger()
+    for step in STEPS:
+        window.go_to(step.name)
+        page: Any = window.pages[step.name]
+        tabs: Any = getattr(page, "tabs", None)
+        for tab in range(tabs.count()) if tabs is not None else (0,):
+            if tabs is not None:
+                tabs.setCurrentIndex(tab)
+            qtbot.wait(50)
+            qtbot.waitUntil(lambda: not bench.quick.busy, timeout=60_000)
+            for button in list(opening_buttons(page)):
+                button.click()
+            for widget in (one for kind in (ImageView, Plot, QTableView) for one in page.findChildren(kind)):
+                if widget.isVisible():
+                    ask_for_its_menu(widget)
+            for button in (one for kind in (QPushButton, QToolButton) for one in page.findChildren(kind)):
+                if button.menu() is not None:
+                    opened.menu(button.menu())
+
+
+@pytest.mark.parametrize("name", ["de", "zh_CN", PSEUDO])
+def test_no_text_of_a_menu_or_dialog_is_past_the_catalogues_or_cut(
+    bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, name: str
+) -> None:
+    with window_in(name, bench, qapp, qtbot) as window:
+        window.resize(1280, 800)
+        bench.model.open(measured_project)
+        info = bench.model.project.info
+        own = [re.escape(one) for one in (info.name, info.part, info.operator, measured_project.name) if one]
+        opened = Opened(re.compile("|".join(rf"\b{one}\b" for one in (*own, *FOREIGN, *ALIKE))))
+        open_all(window, opened, bench, qtbot)
+        opened.stop()
+    assert len(set(opened.seen)) > 35
+    assert opened.cut == {}
+    if name == PSEUDO:
+        assert opened.past == {}
+
+
+@pytest.mark.parametrize("name", ["de", "zh_CN"])
+def test_keys_are_called_in_texts_as_in_menus(bench: Bench, qapp: QApplication, qtbot: Any, name: str) -> None:
+    with window_in(name, bench, qapp, qtbot) as window:
+        shown = window.menus.actions["next part"].shortcut().toString(QKeySequence.SequenceFormat.NativeText)
+        assert native("PgUp, Ctrl+Shift+N … ?").endswith(f", {shown} … ?")
+        texts = [text for text in catalogue(name) if isinstance(text.id, str)]
+        keys = [(key, text) for text in texts for key in re.findall(r"(?:(?:Ctrl|Shift|Alt)\+)+(?:\w+|\.)", text.id)]
+        assert len(keys) > 10
+        assert [(key, text.string) for key, text in keys if native(key) not in text.string] == []
