@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from core.acquire.settings import Capabilities, Region, SourceSettings
 from core.errors import InputError
+from core.messages import Message
 
 __all__ = [
     "Capabilities",
@@ -65,11 +66,14 @@ class SourceChoice:
 
 @dataclass(frozen=True, slots=True)
 class SourceInfo:
-    """One source that can be chosen, as a list shows it: its name, and what else is known of it."""
+    """One source that can be chosen, as a list shows it: its name, and what else is known of it.
+
+    Texts are what the device calls itself, messages what we call it.
+    """
 
     choice: SourceChoice
-    name: str
-    detail: str = ""
+    name: Message | str
+    detail: Message | str = ""
 
 
 @dataclass(frozen=True, eq=False, slots=True)

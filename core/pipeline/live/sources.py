@@ -22,7 +22,7 @@ from core.errors import InputError
 from core.files.pictures import read_picture
 from core.files.recording.replay_pictures import ReplayPictures
 from core.files.recording.rig import Rig
-from core.messages import Message, label
+from core.messages import Message
 from core.simulate.scenario import Scenario
 
 
@@ -138,12 +138,13 @@ def _list_simulated() -> tuple[SourceInfo, ...]:
     from core.simulate.recording import scenario_rig
     from core.simulate.sample import sample_scenario
 
-    size = "{} × {} pixels".format(*scenario_rig(sample_scenario()).camera.image_size)
+    width, height = scenario_rig(sample_scenario()).camera.image_size
+    size = Message("source.picture_size", "{width} × {height} pixels", width=width, height=height)
     things = {
-        "": label("Gauge block of 50 mm"),
-        'object = "steps"': label("Block with steps of 40 to 70 mm"),
-        'object = "sphere"': label("Ball of 50 mm"),
-        'object = "mask"': label("Mask of a face"),
+        "": Message("source.gauge_block", "Gauge block of 50 mm"),
+        'object = "steps"': Message("source.steps", "Block with steps of 40 to 70 mm"),
+        'object = "sphere"': Message("source.ball", "Ball of 50 mm"),
+        'object = "mask"': Message("source.mask", "Mask of a face"),
     }
     return tuple(SourceInfo(SourceChoice("simulated", text), thing, size) for text, thing in things.items())
 

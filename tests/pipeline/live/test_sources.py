@@ -35,7 +35,7 @@ def test_the_simulated_rig_is_never_missing_and_offers_several_objects():
     assert SOURCES["simulated"].missing is None
     offered = list_sources("simulated")
     assert offered[0].choice == SourceChoice("simulated", "")
-    assert offered[0].detail == "1920 × 1374 pixels"
+    assert str(offered[0].detail) == "1920 × 1374 pixels"
     for info in offered:
         scenario_of(info.choice.id)
 

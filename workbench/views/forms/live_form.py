@@ -62,11 +62,11 @@ class DeviceField(QWidget):
         self._is_folder = kind.is_folder
         self.box.blockSignals(True)
         self.box.clear()
-        names = [device.name for device in devices]
-        for place, device in enumerate(devices):
-            alike = device.detail and names.count(device.name) > 1
-            self.box.addItem(f"{device.name} – {device.detail}" if alike else device.name, device.choice.id)
-            self.box.setItemData(place, device.detail, Qt.ItemDataRole.ToolTipRole)
+        names = [text_of(device.name) for device in devices]
+        for place, (name, device) in enumerate(zip(names, devices, strict=True)):
+            detail = text_of(device.detail)
+            self.box.addItem(f"{name} – {detail}" if detail and names.count(name) > 1 else name, device.choice.id)
+            self.box.setItemData(place, detail, Qt.ItemDataRole.ToolTipRole)
         place = self.box.findData(chosen)
         if place >= 0:
             self.box.setCurrentIndex(place)
