@@ -56,7 +56,7 @@ def write_ridges(
         return None
     return Message(
         "fan.ridges_written",
-        "where no stripe was found, {n} pictures in {folder} show how strongly each place looks like one",
+        "where no stripe was found, a picture in {folder} shows how strongly each place looks like one ({n} in all)",
         n=len(shown),
         folder=f"{RIDGES}/",
     )

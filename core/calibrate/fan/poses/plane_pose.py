@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from core.calibrate.fan.poses.plate import Plate, without_clutter
-from core.calibrate.fan.poses.pose_features import PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
 from core.image.stripes.noise import (
@@ -127,7 +127,13 @@ def measure_plane_pose(
     carrier = Plate(target, view, camera, margin_mm)
     centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, colour.compression)
     if not centrelines:
-        return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
+        seen = None
+        if settings is not None:
+            chosen = _stripes(on, off, view, carrier.outside(on.shape), None, colour.compression)
+            seen = usual_stripe([PoseFeatures(name, view, chosen)])
+        if settings is None or seen is None:
+            return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
+        return PoseFeatures(name, view, (), _other_stripes(settings, seen))
     level = DARK * _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
     centrelines = without_clutter(centrelines, camera)
@@ -146,6 +152,19 @@ def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) 
     """How strongly each pixel (H, W) of the laser's light looks like such a stripe, in grey levels of its height."""
     light = on.astype(np.float32)
     return ridge_strength(light if off is None else light - off.astype(np.float32), settings)
+
+
+def _other_stripes(told: StripeSettings, seen: StripeSettings) -> Message:
+    """Why no stripe was found as they were `told` to be, where there are some."""
+    return Message(
+        "fan.other_stripes",
+        "no stripe was found {width_px:.0f} px wide and about {grey:.0f} grey levels high, as stated; those on the "
+        "target are {seen_px:.0f} px wide and {seen_grey:.0f} high: state that, or let both be chosen",
+        width_px=told.width_px,
+        grey=told.contrast,
+        seen_px=seen.width_px,
+        seen_grey=seen.contrast,
+    )
 
 
 def _no_stripe(on: Picture, off: Picture | None, view: TargetView, settings: StripeSettings) -> Message:

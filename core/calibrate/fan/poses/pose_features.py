@@ -12,8 +12,8 @@ from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeS
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 
-NO_STRIPE = "fan.no_stripe"
-"""Code of the reason that no stripe was found."""
+NO_STRIPE, OTHER_STRIPES = "fan.no_stripe", "fan.other_stripes"
+"""Codes of the reasons that no stripe was found, and none as they were said to be."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
