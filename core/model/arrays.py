@@ -42,3 +42,9 @@ def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) ->
 def set_field(instance: object, name: str, value: Any) -> None:
     """Set a field of a frozen dataclass from its own ``__post_init__``."""
     object.__setattr__(instance, name, value)
+
+
+def runs_of(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
+    """First index, and one past the last, of every unbroken run of True in `chosen` (N,)."""
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
+    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -16,9 +16,9 @@ from core.image.targets import BlackSquare, Target
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Pose
-from core.model.arrays import Array
+from core.model.arrays import Array, runs_of
 from core.plan.design import Design
-from core.plan.light_lines import FlatFace, LitLine, lit_lines, runs
+from core.plan.light_lines import FlatFace, LitLine, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent
 from core.simulate.calibration import PLANE_GREY
@@ -177,7 +177,7 @@ def _on_plate(lines: tuple[LitLine, ...], plate: Pattern, pose: Pose) -> list[Li
     kept = []
     for line in lines:
         margin = int(np.ceil(EDGE_IN_WIDTHS * float(np.median(line.width))))
-        for first, last in runs(_light(plate, pose.inverse().apply(line.points)[:, :2])):
+        for first, last in runs_of(_light(plate, pose.inverse().apply(line.points)[:, :2])):
             start, end = first + margin * (first > 0), last - margin * (last < len(line))
             if end - start > 2 * margin:
                 kept.append(line.select(slice(start, end)))

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from core.image.stripes.runs import arc_length
 from core.image.stripes.stripe import PIXEL_VARIANCE
 from core.model import Camera, Pose
-from core.model.arrays import Array
+from core.model.arrays import Array, runs_of
 from core.simulate.scene.laser import Sheet
 from core.simulate.scene.scene import Scene, Sphere
 
@@ -122,7 +122,7 @@ def lit_lines(
         line, lit = _followed(sheet, face, number, ends, occluders, camera, blur_px)
         if line is None:
             continue
-        for first, last in runs(lit):
+        for first, last in runs_of(lit):
             end = round(END_IN_FILTERS * filter_px)
             if last - first - 2 * end >= SHORTEST_IN_FILTERS * filter_px:
                 lines.append(line.select(slice(first + end, last - end)))
@@ -147,7 +147,7 @@ def lit_ball(sheet: Sheet, ball: Sphere, number: int, camera: Camera, blur_px: f
         np.roll(a, -shift, axis=0) for a in (points, outwards, towards, cosine, lit)
     )
     lines = []
-    for first, last in runs(lit):
+    for first, last in runs_of(lit):
         arc = arc_length(camera.project(points[first:last]))
         at = first + np.unique(
             np.round(np.interp(np.arange(0.0, arc[-1]), arc, np.arange(last - first))).astype(np.intp)
@@ -165,12 +165,6 @@ def lit_ball(sheet: Sheet, ball: Sphere, number: int, camera: Camera, blur_px: f
         height, width = _section(sheet, towards[at], cosine[at] * ball.albedo, gap, blur_px)
         lines.append(LitLine(uv, normal, height, width, points[at], number))
     return tuple(lines)
-
-
-def runs(keep: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First and one past the last index of every unbroken run of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(np.int8)))
-    return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]
 
 
 def _followed(

@@ -102,9 +102,8 @@ class CalibrationPictures:
             return
         index = list(self.plane_poses).index(name)
         pose = self.plane_poses[name]
-        on, off = plane_pictures(self._context, self._plane_plate, pose, PLANE_GREY, self._seed, index)
-        yield f"planes/{name}.png", on
-        yield f"planes/{name}_off.png", off
+        pictures = plane_pictures(self._context, self._plane_plate, pose, PLANE_GREY, self._seed, index)
+        yield from ((f"planes/{name}{ending}.png", picture) for ending, picture in pictures.items())
 
     def _view(self, name: str, pose: Pose) -> Picture:
         rng = generator(self._seed, "camera", list(self.camera_poses).index(name))
@@ -136,6 +135,5 @@ class CheckPictures:
     def render(self, name: str) -> Iterator[tuple[str, Picture]]:
         """Render the pictures of one pose, each with its path within the set."""
         index = CHECK_SEEDS + list(self.poses).index(name)
-        on, off = plane_pictures(self._context, self._plate, self.poses[name], PLANE_GREY, self._seed, index)
-        yield f"check/{name}.png", on
-        yield f"check/{name}_off.png", off
+        pictures = plane_pictures(self._context, self._plate, self.poses[name], PLANE_GREY, self._seed, index)
+        yield from ((f"check/{name}{ending}.png", picture) for ending, picture in pictures.items())

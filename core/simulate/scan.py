@@ -100,14 +100,30 @@ class ScanStage:
 
     def reference(self) -> Picture:
         """The picture with the hand-held laser off: room light and fan."""
-        return self._taken(self._still, -1, generator(self.seed, "reference"))
+        return self._taken(self._still, -1, generator(self.seed, "reference"), self.sensor)
 
     def frame(self, index: int, *sheets: Sheet) -> Picture:
         """Frame number `index`, the hand-held laser at one sheet, or at several in the course of the exposure."""
         rng = generator(self.seed, "frame", index)
-        return self._taken(self.lit_by(*sheets, rng=rng), index, rng)
+        return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor)
 
-    def _taken(self, light: Map, index: int, rng: np.random.Generator) -> Picture:
+    def second_reference(self) -> Picture:
+        """As `reference`, exposed shorter; ValueError if the sensor takes no second pictures."""
+        return self._taken(self._still, -1, generator(self.seed, "second reference"), self._second)
+
+    def second_frame(self, index: int, *sheets: Sheet) -> Picture:
+        """As `frame`, of the same light but exposed shorter; ValueError if the sensor takes no second pictures."""
+        light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))
+        return self._taken(light, index, generator(self.seed, "second frame", index), self._second)
+
+    @property
+    def _second(self) -> Sensor:
+        sensor = self.sensor.second
+        if sensor is None:
+            raise ValueError("the sensor takes no second pictures")
+        return sensor
+
+    def _taken(self, light: Map, index: int, rng: np.random.Generator, sensor: Sensor) -> Picture:
         """The picture of frame `index` (−1: the reference) of the `light` (h, w) before anything has changed."""
         effects, room, over = self.effects, self._room_light, self.effects.over(index)
         if effects.warming.scan_urad and over:
@@ -121,7 +137,7 @@ class ScanStage:
         if added is not None:
             light, room = light + added * room, (1 + added) * room
         light, room = (effects.warming.at(over, each, self.rig.camera) for each in (light, room))
-        return self.sensor.expose(light, rng, room)
+        return sensor.expose(light, rng, room)
 
     @property
     def room_light(self) -> Map:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from core.files.atomic import cannot_write
 from core.files.linking import link
-from core.files.recording.set_listing import pictures_in
+from core.files.recording.set_listing import pictures_in, second_exposures
 from core.progress import Progress, silent
 
 _OFF = "_off"
@@ -31,8 +31,10 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
         new = _renamed(pictures_in(recorded), taken)
         for path, name in new.items():
             path.rename(path.with_name(name))
+        seconds = second_exposures(before)
         for number, path in enumerate(old, start=1):
-            link(path, recorded / path.name)
+            for one in filter(None, (path, seconds.get(path))):
+                link(one, recorded / one.name)
             progress("adding pictures", number, len(old))
     except OSError as error:
         raise cannot_write(recorded, error) from error

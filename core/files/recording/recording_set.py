@@ -9,6 +9,8 @@ The layout is fixed, so that any program can write one::
     SET/scan/*              frames, in the order of their names
     SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
 
+Of pictures in planes, scan and check NAME@2.png is a second exposure, shorter: it shows what is saturated in the first.
+
 A project measures from folders that may lie anywhere; they are gathered into the same set, with the same names.
 """
 
@@ -28,7 +30,14 @@ from core.files.pictures import Picture, decode_colours, decode_picture, read_pi
 from core.files.reading import file_hash, read_bytes, resolved
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
-from core.files.recording.set_listing import PlanePair, check_sizes, pictures_in, plane_pairs, scan_frames
+from core.files.recording.set_listing import (
+    PlanePair,
+    check_sizes,
+    pictures_in,
+    plane_pairs,
+    scan_frames,
+    second_exposures,
+)
 from core.messages import Message
 from core.stage_times import StageTimes, stage
 
@@ -37,6 +46,8 @@ PARTS = ("camera", "planes", "scan")
 CHECK = "check"
 """The folder of the interim check, beside the parts: a set need not have one."""
 RIG = "rig.toml"
+_BRACKETED = ("planes", "scan", CHECK)
+"""Folders whose pictures may have second exposures."""
 
 _LOOKED_AT = 3
 """Pictures that decide on the channel of a part."""
@@ -52,6 +63,8 @@ class RecordingSet:
         What the set is called; its part is called so, too, if nobody says otherwise.
     folders
         By part: the folder it lies in, whatever that is called. A part that is not there may have none.
+    seconds
+        The second exposure of each picture that has one.
     hashes
         Fills up with the SHA-256 of every file as it is read, by its name within the set.
     chosen
@@ -66,6 +79,7 @@ class RecordingSet:
     reference: Path | None
     frames: tuple[Path, ...]
     check: tuple[PlanePair, ...] = ()
+    seconds: Mapping[Path, Path] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
     chosen: dict[str, LaserChannel] = field(default_factory=dict)
 
@@ -88,6 +102,15 @@ class RecordingSet:
         if part not in self.folders or not file:
             raise InputError(Message("set.no_such_picture", "there is no such picture in the set"), where=name)
         return self.folders[part] / file
+
+    def with_seconds(self, paths: Iterable[Path]) -> list[Path]:
+        """Each of some pictures and, behind it, its second exposure if it has one."""
+        return [one for path in paths for one in (path, self.seconds.get(path)) if one is not None]
+
+    def read_second(self, path: Path) -> Picture | None:
+        """As `read` the second exposure of a picture; None if there is none."""
+        second = self.seconds.get(path)
+        return None if second is None else self.read(second)
 
     def where(self, part: str) -> Path | str:
         """The folder of a part, or its name if it has none: what a complaint about it begins with."""
@@ -321,7 +344,8 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
     reference, frames = scan_frames(folders.get("scan"))
     check = plane_pairs(folders.get(CHECK))
-    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, {RIG: rig_hash})
+    seconds = {first: second for part in _BRACKETED for first, second in second_exposures(folders.get(part)).items()}
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, seconds, {RIG: rig_hash})
 
 
 def _paths(found: RecordingSet, part: str) -> list[Path]:
@@ -329,9 +353,9 @@ def _paths(found: RecordingSet, part: str) -> list[Path]:
     if part == "camera":
         return list(found.camera)
     if part == "scan":
-        return [*([found.reference] if found.reference else []), *found.frames]
+        return found.with_seconds([*([found.reference] if found.reference else []), *found.frames])
     pairs = found.check if part == CHECK else found.planes
-    return [path for pair in pairs for path in (pair.on, pair.off) if path is not None]
+    return found.with_seconds(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
 
 def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.acquire.source import Lasers, Step
-from core.files.pictures import is_picture
+from core.files.recording.set_listing import pictures_in
 
 _PARTS: tuple[Step, ...] = ("camera", "planes", "scan", "check")
 
@@ -27,7 +27,7 @@ class ReplayPictures:
 
     def __call__(self, step: Step, lasers: Lasers) -> tuple[Path, ...]:
         """The pictures of a step taken under these lasers, in the order of their names; empty if there are none."""
-        pictures = self._all(self.folder / step if self.is_set else self.folder)
+        pictures = pictures_in(self.folder / step if self.is_set else self.folder)
         if step in ("planes", "check"):
             off = {path.stem.removesuffix("_off"): path for path in pictures if path.stem.endswith("_off")}
             shown = [path for path in pictures if path not in off.values()]
@@ -37,8 +37,3 @@ class ReplayPictures:
         if step == "scan":
             return tuple(path for path in pictures if (path.stem.lower() != "reference") == lasers.hand)
         return pictures
-
-    def _all(self, folder: Path) -> tuple[Path, ...]:
-        if not folder.is_dir():
-            return ()
-        return tuple(sorted((path for path in folder.iterdir() if is_picture(path)), key=lambda path: path.name))

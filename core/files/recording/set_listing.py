@@ -19,6 +19,7 @@ from core.files.pictures import is_picture
 from core.messages import Message
 
 _OFF = "_off"
+_SECOND = "@2"
 _REFERENCE = "reference"
 
 
@@ -31,8 +32,39 @@ class PlanePair:
     off: Path | None
 
 
+def is_second(path: Path) -> bool:
+    """Whether a picture's name is that of a second, shorter exposure of another one: NAME@2.png of NAME.png."""
+    return path.stem.endswith(_SECOND)
+
+
 def pictures_in(folder: Path | None) -> tuple[Path, ...]:
-    """The pictures in a folder; nothing if there is no such folder, InputError if it cannot be listed."""
+    """The pictures in a folder but for second exposures, in the order of their names.
+
+    Nothing if there is no such folder, InputError if it cannot be listed.
+    """
+    return tuple(path for path in _all_in(folder) if not is_second(path))
+
+
+def second_exposures(folder: Path | None) -> dict[Path, Path]:
+    """Pictures in a folder, each with its second exposure; one without its first is an error."""
+    every = _all_in(folder)
+    firsts = {path.stem: path for path in every if not is_second(path)}
+    found = {}
+    for path in every:
+        if not is_second(path):
+            continue
+        name = path.stem.removesuffix(_SECOND)
+        if name not in firsts:
+            raise InputError(
+                Message("set.no_first_exposure", "there is no picture {wanted} beside it", wanted=name + path.suffix),
+                where=path,
+                todo=Message("advice.add_first_exposure", "add it: NAME@2 is a second, shorter exposure of NAME"),
+            )
+        found[firsts[name]] = path
+    return found
+
+
+def _all_in(folder: Path | None) -> tuple[Path, ...]:
     if folder is None or not folder.is_dir():
         return ()
     try:

@@ -8,7 +8,7 @@ from functools import partial
 
 from core.acquire.grey import is_difference
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
@@ -137,7 +137,7 @@ def _pose_features(
         with stage(progress, "decoding"):
             on = found.read(pair.on)
             off = found.read(pair.off) if pair.off is not None else None
-            colour = _colour(found, pair)
+            beside = _beside(found, pair)
     except InputError as error:
         return PoseFeatures(pair.name, None, (), error.reason)
     check_size(pair.on, on.shape, camera)
@@ -146,17 +146,18 @@ def _pose_features(
         return PoseFeatures(pair.name, None, (), reason)
     rig = found.rig
     with stage(progress, "plane poses"):
-        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, colour)
+        return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, beside)
 
 
-def _colour(found: RecordingSet, pair: PlanePair) -> Colour:
-    """What the pictures of a pose are of."""
+def _beside(found: RecordingSet, pair: PlanePair) -> Beside:
+    """What there is of a pose beside its two pictures."""
     channel = found.laser_channel(found.part_of(pair.on)).channel
-    compression = compression_of(pair.on, channel)
+    compression, second = compression_of(pair.on, channel), found.read_second(pair.on)
+    bracket = None if second is None else (second, found.read_second(pair.off) if pair.off is not None else None)
     if not is_difference(channel):
-        return Colour(compression=compression)
+        return Beside(None, compression, bracket)
     unlit = found.read_target(pair.off) if pair.off is not None else None
-    return Colour((found.read_target(pair.on), unlit), compression)
+    return Beside((found.read_target(pair.on), unlit), compression, bracket)
 
 
 def solve_planes(

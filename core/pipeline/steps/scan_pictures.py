@@ -6,25 +6,32 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+import numpy as np
+
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
+from core.image.stripes.bracket import bracketed
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.steps.workspace import check_size
 from core.progress import Progress, silent, steps
 from core.scan.features.extraction import (
+    LOOK_AHEAD,
     FeatureOptions,
     Frame,
     FrameFeatures,
     ReferenceFeatures,
+    SecondExposures,
     SeenLines,
+    choose_sweep_stripe,
     extract_lines,
     read_reference,
+    saturated_pixels,
 )
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of
@@ -84,17 +91,52 @@ def look_at_scan(
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
     reference = read_reference(picture, looking)
+    second = _second_exposures(found, options, looking, reference)
+    factor = 1.0
+    if second is not None:
+        fan, exposures = bracketed(reference.fan, second.reference.fan, saturated_pixels(picture))
+        reference, factor = replace(reference, fan=fan), float(np.fmax(exposures.factor, 1.0))
     progress("reference", 1, 1)
     frames, total = stream_frames(found, options, times), len(found.frames)
     show = watching(reference) if watching else None
-    lines = extract_lines(reference, frames, total, looking, progress, show, times)
+    lines = extract_lines(reference, frames, total, looking, progress, show, times, second)
     averaged = lines.averaged(progress, times)
     of_width = told_width_notes(options.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
-    shine = notes_on_shine(lines.fan, sweeps, reference.full_scale)
+    shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
+
+
+def _second_exposures(
+    found: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures
+) -> SecondExposures | None:
+    """The second exposures of the frames; None if there are none, or no picture of the fan alone to go with them.
+
+    That one is made of them where it is not there, as the first one's would be.
+    """
+    shots = {found.name_of(path): path for path in taken_frames(found, options) if path in found.seconds}
+    if not shots:
+        return None
+    seconds = [found.seconds[path] for path in shots.values()]
+    sample = list(found.stream([seconds[i] for i in sample_indices(len(seconds))]))
+    pictures = [picture for _, picture in sample if not isinstance(picture, Message)]
+    base = None if found.reference is None else found.read_second(found.reference)
+    if base is None:
+        if len(pictures) < FEWEST_FOR_QUANTILE:
+            return None
+        base = quantile_reference(pictures)
+    reference = read_reference(base, replace(looking, fan_stripe=None), first)
+    stripe = choose_sweep_stripe(sample[:LOOK_AHEAD], reference)
+
+    def read(name: str) -> Picture | None:
+        try:
+            return found.read_second(shots[name]) if name in shots else None
+        except InputError:
+            return None  # damaged: the first exposure is there
+
+    return SecondExposures(reference, stripe, read)
 
 
 def feature_options(options: Options) -> FeatureOptions:

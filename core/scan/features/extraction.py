@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
+from core.image.stripes.bracket import bracketed
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.lines.smoothing import smooth
@@ -43,6 +44,7 @@ __all__ = [
     "FrameReader",
     "ReferenceFeatures",
     "ScanFeatures",
+    "SecondExposures",
     "SeenLines",
     "choose_sweep_stripe",
     "crossed",
@@ -51,6 +53,7 @@ __all__ = [
     "gather",
     "read_reference",
     "refined",
+    "saturated_pixels",
 ]
 
 Frame = tuple[str, Picture | Message]
@@ -120,6 +123,7 @@ def extract_lines(
     progress: Progress = silent,
     watch: Callable[[FrameFeatures], None] | None = None,
     times: StageTimes | None = None,
+    second: SecondExposures | None = None,
 ) -> SeenLines:
     """Reduce a scan to centrelines as they are.
 
@@ -135,6 +139,8 @@ def extract_lines(
         Shown the features of each frame as they come, in the order of the recording, on the calling thread.
     times
         Learns what the stages cost.
+    second
+        Second exposures of frames.
 
     Raises
     ------
@@ -152,7 +158,7 @@ def extract_lines(
         sweep_stripe: StripeSettings | None = _told_sweep_stripe(ahead, seen, options.sweep_stripe)
     else:
         sweep_stripe = choose_sweep_stripe(ahead, seen, told.within_step)
-    reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times)
+    reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times, second)
     found: list[FrameFeatures] = []
     numbered = enumerate(_handed_on(ahead, stream))
     for features in ordered_map(reader, numbered, idle=lambda: told.within_step("frames", 0, total)):
@@ -278,6 +284,28 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class SecondExposures:
+    """The second, shorter exposures of a scan.
+
+    `reference` is what the one of the fan alone shows, `stripe` the sweeps' in them, None if none shows any; `read`
+    gives the one of a frame by that frame's name, None if it has none.
+    """
+
+    reference: ReferenceFeatures
+    stripe: StripeSettings | None
+    read: Callable[[str], Picture | None]
+
+    def lines_of(self, name: str) -> tuple[Centreline, ...] | None:
+        """The centrelines of the sweep in the second exposure of a frame; None if there is none, or not of its size."""
+        picture = self.read(name)
+        if picture is None or self.stripe is None or picture.shape != self.reference.base.shape:
+            return None
+        difference = self.reference.of_lasers(picture)[0]
+        saturated = saturated_pixels(picture)
+        return extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class FrameReader:
     """A frame and its number to features, against one reference; called from several threads."""
 
@@ -285,6 +313,7 @@ class FrameReader:
     stripe: StripeSettings | None
     move_limit_px: float = FeatureOptions().move_limit_px
     times: StageTimes | None = None
+    second: SecondExposures | None = None
 
     def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
         index, (name, picture) = item
@@ -308,8 +337,12 @@ class FrameReader:
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
             pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+            shorter = None if self.second is None else self.second.lines_of(name)
+        exposures = None
+        if shorter is not None:
+            pieces, exposures = bracketed(pieces, shorter, saturated)
         reason = None if pieces else NO_STRIPE
-        return FrameFeatures(index, name, pieces, reason, check.shift_px, light, check.shifts_px)
+        return FrameFeatures(index, name, pieces, reason, check.shift_px, light, check.shifts_px, exposures)
 
 
 def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:

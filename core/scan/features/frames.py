@@ -5,12 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import IntEnum
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model.arrays import Array
+
+if TYPE_CHECKING:  # a window that holds these loads no search trees
+    from core.image.stripes.bracket import Exposures
 
 NO_REASON = Message("scan.no_reason", "no reason recorded")
 MOVED = Message(
@@ -39,7 +43,8 @@ class FrameFeatures:
 
     Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
     (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
-    share of it, 0 where it is too small to tell.
+    share of it, 0 where it is too small to tell. `exposures` tells how a second exposure goes with it; None: it has
+    none.
     """
 
     index: int
@@ -49,6 +54,7 @@ class FrameFeatures:
     shift_px: float = 0.0
     light_change: float = 0.0
     fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
+    exposures: Exposures | None = None
 
 
 class CrossingUse(IntEnum):
@@ -123,8 +129,43 @@ class FrameRecord:
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What all frames of a scan tell the technician: that something moved, or that the room's light changed."""
-    return _moved_notes(frames) + _light_notes(frames)
+    """What all frames of a scan tell the technician: of second exposures, movements, and the room's light."""
+    return _moved_notes(frames) + _light_notes(frames) + _exposure_notes(frames)
+
+
+def _exposure_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
+    """How much second exposures gave, and which were of no use."""
+    twice = [(frame, frame.exposures) for frame in frames if frame.exposures is not None]
+    factors = [seen.factor for _, seen in twice if np.isfinite(seen.factor)]
+    moved = [(frame, seen) for frame, seen in twice if seen.moved]
+    notes = []
+    if factors:
+        points = sum(sum(map(len, frame.centrelines)) for frame, _ in twice)
+        notes.append(
+            Message(
+                "scan.second_exposures",
+                "{n} of {all} frames have a second exposure, {stops:.1f} f-stops shorter: {percent:.1f} % of the "
+                "points on their stripes are from it, where the first one is saturated.",
+                n=len(twice),
+                all=len(frames),
+                stops=float(np.log2(np.median(factors))),
+                percent=100 * sum(seen.points for _, seen in twice) / max(points, 1),
+            )
+        )
+    if moved:
+        notes.append(
+            Message(
+                "scan.second_exposures_moved",
+                "Between the two exposures of {n} of {all} frames, the first {name}, the hand-held laser moved: the "
+                "stripe lies {shift_px:.1f} px aside, and the second exposure is not used there. Hold the laser still "
+                "for both.",
+                n=len(moved),
+                all=len(twice),
+                name=moved[0][0].name,
+                shift_px=moved[0][1].shift_px,
+            )
+        )
+    return tuple(notes)
 
 
 def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:

@@ -227,19 +227,26 @@ class ReferenceFeatures:
         return grey / background
 
 
-def read_reference(picture: Picture, options: FeatureOptions | None = None) -> ReferenceFeatures:
-    """The fan's centrelines in the picture with the fan alone.
+def read_reference(
+    picture: Picture, options: FeatureOptions | None = None, first: ReferenceFeatures | None = None
+) -> ReferenceFeatures:
+    """The fan's centrelines in the picture with the fan alone; with what its `first` exposure shows, in a second one.
 
     Raises
     ------
     InputError
-        If it shows no fan line.
+        If it shows no fan line; a second exposure may show none, where the first one is not saturated.
     """
     options = options or FeatureOptions()
     full_scale = float(np.iinfo(picture.dtype).max)
     base = picture.astype(np.float32)
     noise = replace(estimate_noise(base), compression=options.compression)
-    stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    try:
+        stripe, fan = _fan_centrelines(base, full_scale, noise, options)
+    except InputError:
+        if first is None:
+            raise
+        stripe, fan = first.stripe, ()
     return ReferenceFeatures(
         picture,
         full_scale,

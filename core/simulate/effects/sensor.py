@@ -38,6 +38,8 @@ class SensorEffects:
         Of the pixels that have a large dark current, by up to half of full scale: 1e-5 to 1e-3 in warm sensors.
     colour
         A Bayer mosaic, red at its first site, demosaiced bilinearly: pictures of three colours. The lasers are red.
+    second_exposure
+        Every picture but those of the camera's target is taken a second time, exposed so many times shorter; 0: none.
     jpeg_quality
         Pictures are JPEG files of this quality with colours at half the size both ways (4:2:0); 0: lossless.
 
@@ -53,6 +55,7 @@ class SensorEffects:
     hot_share: float = 0.0
     colour: bool = False
     jpeg_quality: int = 0
+    second_exposure: float = 0.0
 
     def __post_init__(self) -> None:
         require_ranges(
@@ -63,6 +66,7 @@ class SensorEffects:
                 ("smear", 0.0, 0.1),
                 ("hot_share", 0.0, 0.1),
                 ("jpeg_quality", 0, 100),
+                ("second_exposure", 0.0, 1000.0),
             ),
         )
 

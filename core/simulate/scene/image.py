@@ -6,7 +6,7 @@ Light is counted in 8-bit grey levels throughout; 16-bit pictures are the same t
 from __future__ import annotations
 
 import zlib
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,12 +86,15 @@ class Sensor:
         Of that light, `room` (height, width) is white; the rest is the lasers'. The picture is (height, width, 3) where
         the sensor sees colours.
         """
+        if self.exposure != 1:
+            light = np.float32(self.exposure) * light
+            room = None if room is None else np.float32(self.exposure) * room
         if self.effects != IDEAL_SENSOR:
             light = self.effects.collected(light, room, self.optics.black_level_grey)
             light = self.effects.with_hot_pixels(light, generator(self.seed, "hot pixels"))
         picture: Picture = np.empty(light.shape, np.uint16 if self.bits == 16 else np.uint8)
         figures = (
-            self.exposure * self.gain,
+            self.gain,
             self.optics.electrons_per_grey / self.gain,
             (self.optics.read_noise_grey * self.gain) ** 2,
             self.noise,
@@ -101,6 +104,12 @@ class Sensor:
         )
         _expose(light, self._noise(light.shape, rng), np.array(figures, np.float32), picture)
         return self.effects.developed(picture)
+
+    @property
+    def second(self) -> Sensor | None:
+        """The same, exposed shorter for the second picture of each; None if there is none."""
+        factor = self.effects.second_exposure
+        return replace(self, exposure=self.exposure / factor) if factor else None
 
     def _noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Map:
         if self.noise <= 0:

@@ -67,16 +67,25 @@ def camera_picture(
 
 def plane_pictures(
     context: RenderContext, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
-) -> tuple[Picture, Picture]:
-    """The two pictures of pose `index` of the plane target: with the fan on, and off."""
+) -> dict[str, Picture]:
+    """The pictures of pose `index` of the plane target by the ending of their names: with the fan on, "", and "_off".
+
+    A sensor that takes second pictures adds those, "@2" and "_off@2".
+    """
     rig, rays, sensor = context[:3]
     points, light = room_light(pattern, pose, rays, grey)
     light = context.image(light, points)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
     fan = context.image(bare_fan_light(rig, points, albedo, pose), points)
     fan = speckled(fan, rig, generator(seed, "plane speckle", index))
-    on = sensor.expose(light + fan, generator(seed, "plane on", index), light)
-    return on, sensor.expose(light, generator(seed, "plane off", index), light)
+    pictures = {
+        "": sensor.expose(light + fan, generator(seed, "plane on", index), light),
+        "_off": sensor.expose(light, generator(seed, "plane off", index), light),
+    }
+    if (second := sensor.second) is not None:
+        pictures["@2"] = second.expose(light + fan, generator(seed, "second plane on", index), light)
+        pictures["_off@2"] = second.expose(light, generator(seed, "second plane off", index), light)
+    return pictures
 
 
 def fan_light(rig: Rig, points: Map, albedo: Map, pose: Pose) -> Map:

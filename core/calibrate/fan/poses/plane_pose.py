@@ -20,6 +20,7 @@ from scipy.ndimage import map_coordinates
 
 from core.calibrate.fan.poses.plate import Plate, without_clutter
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
+from core.image.stripes.bracket import bracketed
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
 from core.image.stripes.noise import (
@@ -36,7 +37,7 @@ from core.image.targets import CircleGrid, Target, TargetNotFound, camera_shift,
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
-from core.model.arrays import Array
+from core.model.arrays import Array, runs_of
 
 Picture = NDArray[Any]
 """(H, W) grey levels, uint8 or uint16."""
@@ -59,18 +60,19 @@ SHORTEST = 12
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Colour:
-    """What the grey values of a pose's pictures are of.
+class Beside:
+    """What there is of a pose beside its pictures with the fan on and off.
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
-    theirs; `compression` is that of each picture.
+    theirs; `compression` is that of each picture; `second` are second, shorter exposures of them, if there are any.
     """
 
     target: tuple[Picture, Picture | None] | None = None
     compression: Compression = UNCOMPRESSED
+    second: tuple[Picture, Picture | None] | None = None
 
 
-GREY: Final = Colour()
+NOTHING: Final = Beside()
 
 
 def measure_plane_pose(
@@ -81,7 +83,7 @@ def measure_plane_pose(
     camera: Camera | None = None,
     settings: StripeSettings | None = None,
     margin_mm: float | None = None,
-    colour: Colour = GREY,
+    beside: Beside = NOTHING,
 ) -> PoseFeatures:
     """Find the target and the stripes of one pose. A pose that cannot be used says so in its `reason`.
 
@@ -100,8 +102,8 @@ def measure_plane_pose(
         gives way to the measured one.
     margin_mm
         How far the plate goes on beyond what is printed on it; None: not known.
-    colour
-        What the grey values are of.
+    beside
+        What there is beside these pictures.
 
     Raises
     ------
@@ -110,7 +112,7 @@ def measure_plane_pose(
     """
     if off is not None and (on.shape != off.shape or on.dtype != off.dtype):
         raise ValueError(f"the pictures of {name} differ: {on.shape} {on.dtype} and {off.shape} {off.dtype}")
-    lit, unlit = colour.target or (on, off)
+    lit, unlit = beside.target or (on, off)
     plate = lit if unlit is None else unlit
     try:
         view = detect(target, plate, name, camera, plane_only=True)
@@ -125,11 +127,15 @@ def measure_plane_pose(
         )
         return PoseFeatures(name, view, (), reason)
     carrier = Plate(target, view, camera, margin_mm)
-    centrelines = _stripes(on, off, view, carrier.outside(on.shape), settings, colour.compression)
+    outside = carrier.outside(on.shape)
+    centrelines = _stripes(on, off, view, outside, settings, beside.compression)
+    if beside.second is not None:
+        shorter = _stripes(*beside.second, view, outside, settings, beside.compression)
+        centrelines, _ = bracketed(centrelines, shorter, on >= np.iinfo(on.dtype).max)
     if not centrelines:
         seen = None
         if settings is not None:
-            chosen = _stripes(on, off, view, carrier.outside(on.shape), None, colour.compression)
+            chosen = _stripes(on, off, view, outside, None, beside.compression)
             seen = usual_stripe([PoseFeatures(name, view, chosen)])
         if settings is None or seen is None:
             return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
@@ -276,5 +282,4 @@ def _sample(picture: NDArray[np.float32], uv: Array) -> Array:
 
 def _runs(line: Centreline, keep: NDArray[np.bool_]) -> list[Centreline]:
     """The unbroken runs of kept points that are long enough."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], keep, [False]]).astype(np.int8)))
-    return [line.select(slice(a, b)) for a, b in edges.reshape(-1, 2) if b - a >= SHORTEST]
+    return [line.select(slice(a, b)) for a, b in runs_of(keep) if b - a >= SHORTEST]

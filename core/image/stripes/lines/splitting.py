@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from core.compiled import compiled, inlined
 from core.image.stripes.runs import correlation_length
-from core.model.arrays import Array
+from core.model.arrays import Array, runs_of
 from core.model.small_arrays import invert, mean_of, new_row, row_of, zero_table
 
 # What counts as a break of a smooth line; also used where lines are joined. Held by
@@ -42,19 +42,13 @@ def split_at_breaks(
     gap, arm = _BREAK_GAP * filter_px, _BREAK_ARM * filter_px
     score, misfit = _break_scores(judged, arc, sigma_px, gap, arm, correlation_length(filter_px))
     parts, start, broken = [], 0, score > 1
-    for first, last in _stretches(broken) if broken.any() else ():
+    for first, last in runs_of(broken) if broken.any() else ():
         # a fit beside the break is spoilt by it too: the break is where the broken curve fits best
         at = float(arc[first + int(np.argmin(misfit[first:last]))])
         parts.append(slice(start, int(np.searchsorted(whole, at - gap))))
         start = int(np.searchsorted(whole, at + gap))
     parts.append(slice(start, len(run)))
     return [part for part in parts if part.stop - part.start > 1]
-
-
-def _stretches(flags: NDArray[np.bool_]) -> NDArray[np.int64]:
-    """First and past-the-last index (K, 2) of each unbroken stretch of True."""
-    edges = np.flatnonzero(np.diff(np.concatenate([[False], flags, [False]]).astype(np.int8)))
-    return edges.reshape(-1, 2)
 
 
 @compiled()

@@ -9,7 +9,7 @@ from scipy.special import expit
 from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses import plane_pose
-from core.calibrate.fan.poses.plane_pose import Colour, measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import NO_STRIPE, OTHER_STRIPES, PoseFeatures, usual_stripe
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, CircleGrid, TargetNotFound, detect
@@ -120,7 +120,7 @@ def test_the_fan_is_seen_in_its_colour_and_the_target_in_grey(pair, with_off):
     on, off = in_colour(pair)
     grey = to_grey(on), to_grey(off) if with_off else None
     light = to_grey(on, "red-green"), to_grey(off, "red-green") if with_off else None
-    features = measure_plane_pose("p", *light, TARGET, CAMERA, colour=Colour(grey))
+    features = measure_plane_pose("p", *light, TARGET, CAMERA, beside=Beside(grey))
     assert features.reason is None
     misses = misses_px(features)
     assert len(misses) > 600
