@@ -26,6 +26,9 @@ _MOVED_BY_FLANKS_PX = 0.3
 """The same where the long one is saturated all along, and its stripes are known by their flanks alone."""
 _ENOUGH = 20
 """Points, unsaturated in both, from which on these alone tell of a movement; and the shortest stretch that is taken."""
+_HARDLY_ANY = 0.1
+"""Share of the long exposure's points that are not saturated below which the short one alone is as good: then nothing
+is mixed, and neither a movement nor what blooming does to the flanks matters."""
 _SAME_WIDTHS = 2.0
 """Stripe σ, at least two px, between the two exposures' points of one stripe: beside a plateau the ridge is unsure."""
 _SAME_COSINE = 0.9
@@ -65,9 +68,13 @@ def bracketed(
     if not short:
         return tuple(long), Exposures()
     both = _compared(long, short)
+    scale = both.factor if np.isfinite(both.factor) else 1.0
+    clear = sum(int(np.count_nonzero(~line.saturated)) for line in long)
+    if clear < _HARDLY_ANY * sum(map(len, long)):
+        alone = tuple(replace(one, strength=scale * one.strength) for one in short)
+        return alone, Exposures(both.factor, 0.0, sum(map(len, alone)))
     if both.moved:
         return tuple(long), both
-    scale = both.factor if np.isfinite(both.factor) else 1.0
     # what is left of a movement is in the points' σ
     scaled = [replace(one, strength=scale * one.strength, sigma=np.hypot(one.sigma, both.shift_px)) for one in short]
     mended = [_mended(line, scaled) for line in long]

@@ -130,6 +130,16 @@ def test_a_movement_of_a_fifth_of_a_pixel_is_one(shiny):
         assert (mended[0].uv[-1] != line.uv[-1]).any() is np.bool_(not moved)
 
 
+def test_where_the_first_exposure_is_saturated_all_over_the_second_one_alone_counts(shiny):
+    line = max(shiny.alone[0].centrelines, key=len)
+    lost = replace(line, uv=line.uv + 0.8 * line.normal, saturated=np.ones(len(line), np.bool_))
+    dim = replace(line, strength=line.strength / 8, saturated=np.zeros(len(line), np.bool_))
+    (mended,), both = bracketed([lost], [dim], np.ones((2000, 2000), np.bool_))
+    assert np.array_equal(mended.uv, dim.uv)
+    assert (both.moved, both.points, both.shift_px) == (False, len(line), 0.0)
+    assert mended.strength == pytest.approx(line.strength)
+
+
 def test_the_notes_tell_of_second_exposures_and_of_those_that_are_of_no_use(shiny):
     (note,) = (one for one in notes_on(shiny.twice) if one.code == "scan.second_exposures")
     assert "3 of 3 frames have a second exposure, 3.0 f-stops shorter" in str(note)
