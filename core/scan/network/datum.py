@@ -134,13 +134,14 @@ def _relief(rays: Array, inverse_depths: Array) -> float:
 def main_plane(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
     """Find the plane π (3,) that holds most points at `inverse_depths` (M,) on `rays` (M, 3), and the points on it.
 
-    The best of many through three of the points, then fitted to all within `MAIN_PLANE_MM` of depth.
+    The best of many through three of the points, then fitted to all within `MAIN_PLANE_MM` of depth. Of all planes
+    through fewer points the one that leans least.
     """
     rng = np.random.default_rng(0)
     tolerance = MAIN_PLANE_MM * inverse_depths**2
     best = np.zeros(len(rays), dtype=np.bool_)
     for _ in range(_TRIALS):
-        chosen = rng.choice(len(rays), 3, replace=False)
+        chosen = rng.choice(len(rays), min(3, len(rays)), replace=False)
         plane = np.linalg.lstsq(rays[chosen], inverse_depths[chosen], rcond=None)[0]
         near = np.abs(rays @ plane - inverse_depths) < tolerance
         if np.count_nonzero(near) > np.count_nonzero(best):

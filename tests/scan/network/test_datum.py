@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from core.scan.network.datum import datum_of
+from core.scan.network.datum import datum_of, main_plane
 from core.scan.reconstruct import reconstruct
 from core.scan.sweeps.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario
@@ -79,3 +79,12 @@ def test_the_stated_scale_is_that_of_repeated_scans():
         found.append((means[0] - means[1]) / 50 - 1)
         stated.append(datum.scale)
     assert np.sqrt(np.mean(np.square(found))) == pytest.approx(np.mean(stated), rel=0.25)
+
+
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_plane_goes_through_fewer_points_than_three(count):
+    rays = np.array([[0.1, 0.2, 1.0], [-0.2, 0.1, 1.0]])[:count]
+    inverse_depths = np.array([0.002, 0.0021])[:count]
+    plane, on_it = main_plane(rays, inverse_depths)
+    assert rays @ plane == pytest.approx(inverse_depths)
+    assert on_it.all()
