@@ -11,10 +11,15 @@ from core.calibrate.fan.poses.pose_stages import NOT_SEEN
 from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
+from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.results.scan_file import read_scan
 from core.pipeline.project.details import recall_poses, show_frame, show_pose
 from core.pipeline.project.frame_stages import frame_stages
+from core.pipeline.steps.scan_pictures import look_at_scan
+from core.simulate.effects.sensor import SensorEffects
+from core.simulate.recording import simulate_set
+from core.simulate.scenario import Scenario
 from tests.simulated import copy_of
 
 
@@ -31,6 +36,19 @@ def test_a_frame_shows_the_centrelines_and_lines_that_were_measured(done):
         assert [len(piece) for piece in stages.sweep] == [len(piece) for piece in measured.centrelines]
         assert stages.fan_line == scan.fan_line
         assert len(stages.fan) == len(scan.fan_line)
+
+
+def test_a_raw_frame_shows_the_centrelines_that_its_sites_of_the_lasers_colour_showed(tmp_path):
+    sensor = SensorEffects(colour=True, raw=True)
+    scenario = Scenario(scale=0.25, frames=4, camera_views=1, plane_poses=1, speckle=0.0, sensor=sensor)
+    simulate_set(scenario, tmp_path / "set")
+    found = open_set(tmp_path / "set")
+    measured = look_at_scan((found, Options())).lines
+    for frame in measured.frames:
+        stages = frame_stages(found, frame.name)
+        assert stages.picture.shape == measured.image_size[::-1]
+        assert [piece.uv.tolist() for piece in stages.sweep] == [piece.uv.tolist() for piece in frame.centrelines]
+        assert [piece.uv.tolist() for piece in stages.fan] == [piece.uv.tolist() for piece in measured.fan]
 
 
 def test_every_crossing_of_a_frame_is_good_weak_or_left_out_with_a_sentence(done):

@@ -7,7 +7,8 @@ from scipy.spatial import cKDTree
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.stripe import StripeSettings
-from core.plan.light_lines import faces_of, lit_lines, runs
+from core.model.arrays import runs_of
+from core.plan.light_lines import faces_of, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.simulate.blur import blurred
 from core.simulate.scene.laser import laser_light
@@ -106,5 +107,5 @@ def test_a_longer_lens_sees_only_what_is_in_its_picture():
 
 
 def test_runs_are_the_unbroken_stretches():
-    assert runs(np.array([1, 1, 0, 1, 0, 0, 1, 1, 1], bool)) == [(0, 2), (3, 4), (6, 9)]
-    assert runs(np.zeros(4, bool)) == []
+    assert runs_of(np.array([1, 1, 0, 1, 0, 0, 1, 1, 1], bool)) == [(0, 2), (3, 4), (6, 9)]
+    assert runs_of(np.zeros(4, bool)) == []

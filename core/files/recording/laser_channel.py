@@ -84,18 +84,22 @@ class LaserChannel:
         )
 
 
-def laser_channel(pictures: Sequence[LitPicture]) -> LaserChannel:
-    """The channel in which the light stands out farthest from all the rest, if clearly farther than in grey."""
+def laser_channel(pictures: Sequence[LitPicture], *, raw: bool = False) -> LaserChannel:
+    """The channel in which the light stands out farthest from all the rest, if clearly farther than in grey.
+
+    Of `raw` pictures the plain one that does in any case: all others are made of pixels that nobody measured.
+    """
     if not pictures:
         return LaserChannel()
     grey = _separation(pictures, None)
-    found = {channel: _separation(pictures, channel) for channel in CHANNELS}
+    among = PLAIN_CHANNELS if raw else CHANNELS
+    found = {channel: _separation(pictures, channel) for channel in among}
     plain: Channel = max(PLAIN_CHANNELS, key=lambda channel: found[channel])
-    best: Channel = max(CHANNELS, key=lambda channel: found[channel])
+    best: Channel = max(among, key=lambda channel: found[channel])
     if found[best] < CLEARLY * max(grey, found[plain]):
         best = plain
     times = found[best] / grey if grey > 0 else 0.0
-    return LaserChannel(best, times) if times >= CLEARLY else LaserChannel()
+    return LaserChannel(best, times) if raw or times >= CLEARLY else LaserChannel()
 
 
 def _separation(pictures: Sequence[LitPicture], channel: Channel | None) -> float:

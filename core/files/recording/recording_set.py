@@ -22,11 +22,14 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
+from typing import Any
+
+from numpy.typing import NDArray
 
 from core.acquire.folder import read_ahead
-from core.acquire.grey import Channel, is_difference
+from core.acquire.grey import Channel, is_difference, to_grey
 from core.errors import InputError
-from core.files.pictures import Picture, decode_colours, decode_picture, read_picture
+from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes, resolved
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
@@ -38,6 +41,7 @@ from core.files.recording.set_listing import (
     scan_frames,
     second_exposures,
 )
+from core.image.mosaic import ALL_SITES, Sites, colours_of, even_grey, sites_of
 from core.messages import Message
 from core.stage_times import StageTimes, stage
 
@@ -136,15 +140,42 @@ class RecordingSet:
         """
         data = read_bytes(path)
         self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
-        return decode_picture(data, path, self.laser_channel(self.part_of(path)).channel)
+        part = self.part_of(path)
+        if part == "camera":
+            return self._decoded_target(data, path, self.rig.channel_of("camera"))
+        return to_grey(self._colours(data, path), self.laser_channel(part).channel)
 
     def read_target(self, path: Path) -> Picture:
         """Read one picture of the set in the channel in which a target is looked for, else as `read`.
 
-        That is the laser's, unless targets cannot be seen in it; then it is the camera's.
+        That is the laser's, unless targets cannot be seen in it; then it is the camera's. In a raw picture all sites
+        show it.
         """
         laser = self.laser_channel(self.part_of(path)).channel
-        return read_picture(path, self.rig.channel_of("camera") if is_difference(laser) else laser)
+        seen = self.rig.channel_of("camera") if is_difference(laser) else laser
+        return self._decoded_target(read_bytes(path), path, seen)
+
+    def read_board(self, path: Path) -> Picture:
+        """Read a picture of targets alone, wherever it lies, as those of the camera's target."""
+        return self._decoded_target(read_bytes(path), path, self.rig.channel_of("camera"))
+
+    def _decoded_target(self, data: bytes, path: Path, channel: Channel | None) -> Picture:
+        picture = decode_colours(data, path)
+        if self.rig.mosaic is not None and picture.ndim == 2:
+            return even_grey(picture)
+        return to_grey(picture, channel)
+
+    def _colours(self, data: bytes, path: Path) -> NDArray[Any]:
+        """All channels of a picture, of a raw one as well."""
+        picture = decode_colours(data, path)
+        return picture if self.rig.mosaic is None or picture.ndim > 2 else colours_of(picture, self.rig.mosaic)
+
+    def sites(self, part: str) -> Sites:
+        """The sites that see the laser: all, unless pictures are raw and looked at in one colour."""
+        channel = self.laser_channel(part).channel
+        if self.rig.mosaic is None or channel is None or is_difference(channel):
+            return ALL_SITES
+        return sites_of(self.rig.mosaic, channel)
 
     def seen_in(self, channel: Channel | None) -> RecordingSet:
         """The set with this channel for the laser, in all parts; as it is for None."""
@@ -181,15 +212,15 @@ class RecordingSet:
         for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
             try:
                 data = read_bytes(on)
-                lit = decode_colours(data, on)
-                dark = None if off is None else decode_colours(read_bytes(off), off)
+                lit = self._colours(data, on)
+                dark = None if off is None else self._colours(read_bytes(off), off)
             except InputError:
                 continue  # told when it is measured
             if lit.ndim < 3 or lit.shape[2] < 3:
                 return LaserChannel()
             same = dark is not None and dark.shape == lit.shape
             pictures.append(LitPicture(lit, dark if same else None, data))
-        return laser_channel(pictures)
+        return laser_channel(pictures, raw=self.rig.mosaic is not None)
 
     def id_of(self, paths: Iterable[Path]) -> str:
         """Twelve hex digits that name some pictures by what is in them, as far as they have been read."""

@@ -18,6 +18,7 @@ from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
 from core.files.toml_text import toml_text
+from core.image.mosaic import Pattern
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.uncertainty.part import MATERIALS, Part
 from core.messages import Message, label
@@ -35,6 +36,7 @@ _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(mi
 _Polygon = Annotated[list[_Vertex], Field(min_length=3)]
 _A_PLAIN_CHANNEL = '"red", "green" or "blue"'
 _A_CHANNEL = label('"red", "green", "blue", or a laser\'s colour: "red-green", "green-red" or "blue-red"')
+_A_MOSAIC = label('"RGGB", "BGGR", "GRBG" or "GBRG"')
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
 
 
@@ -328,6 +330,7 @@ class RigTables(Table):
     gauge: GaugeTable | None = Field(None, description="a table [gauge]")
     camera: _Camera | None = Field(None, description="a table [camera] with row_time_us")
     channel: Channel | None = Field(None, description=_A_CHANNEL)
+    mosaic: Pattern | None = Field(None, description=_A_MOSAIC)
     channels: _Channels | None = Field(None, description="a table [channels] with camera, planes or scan")
     plan: PlanTable | None = Field(None, description="a table [plan]")
     stability: _Stability | None = Field(
@@ -421,6 +424,8 @@ class Rig:
     row_time_us: float | None = None
     """Time from one row of a picture to the next of a rolling shutter, 0 for a global one; None: not stated."""
     channels: Channels = Channels()
+    mosaic: Pattern | None = None
+    """The colour mosaic of raw pictures; None: pictures are no raw ones."""
     part: Part = field(default_factory=Part)
     """What is measured."""
     readjust: bool = False
@@ -520,6 +525,7 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         rig,
         gauge=_gauge(tables.gauge) if tables.gauge else None,
         channel=tables.channel,
+        mosaic=tables.mosaic,
         unstated=unstated,
         name=tables.name or "",
         **stated,
@@ -531,6 +537,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
     tables = {
         "name": rig.name or None,
         "channel": rig.channel,
+        "mosaic": rig.mosaic,
         "channels": _present(asdict(rig.channels)) or None,
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
         "plane_target": _target_table(rig.plane_target)

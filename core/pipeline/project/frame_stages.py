@@ -12,11 +12,12 @@ from core.errors import InputError
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
+from core.image.mosaic import Sites
 from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
-from core.pipeline.steps.scan_pictures import feature_options, reference_picture, taken_frames
+from core.pipeline.steps.scan_pictures import at_sites, feature_options, of_whole, reference_picture, taken_frames
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.extraction import (
     LOOK_AHEAD,
@@ -72,7 +73,7 @@ def frame_stages(
     index = found.frames.index(path)
     common = _common(_Recording.of(found, options, settled, progress))
     picture = found.read(path)
-    base = common.reference.base
+    base, sites = common.shown.base, common.sites
     if picture.shape != base.shape:
         raise InputError(
             Message(
@@ -85,9 +86,10 @@ def frame_stages(
             ),
             where=path,
         )
-    reader = FrameReader(common.reference, common.stripe)
-    features = reader((index, (name, picture)))
-    stripe = common.stripe or common.reference.stripe
+    move_limit_px = at_sites(feature_options(options), sites).move_limit_px
+    reader = FrameReader(common.reference, common.stripe, move_limit_px)
+    features = reader((index, (name, sites.of(picture)))).brought_back(sites)
+    stripe = sites.stripe_back(common.stripe or common.reference.stripe)
     brighter = STRIPE_AT / stripe.contrast
     difference = picture.astype(np.float32) - base
     lines = _lines(common, camera, fan, settled)
@@ -99,11 +101,9 @@ def frame_stages(
         ridge=in_8_bit(ridge_strength(difference, stripe), 255 / brighter),
         brighter=brighter,
         sweep=features.centrelines,
-        fan=common.reference.fan,
-        fan_line=lines.line if lines else (UNASSIGNED,) * len(common.reference.fan),
-        seen=Preview(common.reference, camera, fan, PreviewOptions(thin=1), lines)(features)
-        if camera and fan
-        else None,
+        fan=common.shown.fan,
+        fan_line=lines.line if lines else (UNASSIGNED,) * len(common.shown.fan),
+        seen=Preview(common.shown, camera, fan, PreviewOptions(thin=1), lines)(features) if camera and fan else None,
         shift_px=features.shift_px,
         left_out=name in options.excluded,
         reason=features.reason,
@@ -113,10 +113,16 @@ def frame_stages(
 
 @dataclass(frozen=True, slots=True)
 class _Common:
-    """What all frames of a recording have in common; `brightest` is white in their pictures."""
+    """What all frames of a recording have in common; `brightest` is white in their pictures.
+
+    `reference` and `stripe` are in px of the `sites` that are looked at, `shown` is the reference in px of the whole
+    picture.
+    """
 
     reference: ReferenceFeatures
     stripe: StripeSettings | None
+    shown: ReferenceFeatures
+    sites: Sites
     brightest: float
 
 
@@ -128,6 +134,7 @@ class _Recording:
     written_ns: int
     taken: tuple[Path, ...]
     channel: str | None
+    sites: Sites
     stripe: StripeSettings | None
     settled: SettledScan | None
     found: RecordingSet = field(compare=False)
@@ -145,6 +152,7 @@ class _Recording:
             written,
             seen,
             found.laser_channel("scan").channel,
+            found.sites("scan"),
             options.stripe,
             settled,
             found,
@@ -155,27 +163,27 @@ class _Recording:
 
 @lru_cache(maxsize=2)
 def _common(recording: _Recording) -> _Common:
-    found, options, settled = recording.found, recording.options, recording.settled
+    found, options, settled, sites = recording.found, recording.options, recording.settled, recording.sites
     told = StepProgress(recording.progress)
     told("reference", 0, 2)
     picture, _ = reference_picture(found, None, options, told.within_step)
     looking = feature_options(options)
     if settled:
         looking = feature_options(Options(stripe=settled.fan_stripe))
-    reference = read_reference(picture, looking)
+    reference = read_reference(sites.of(picture), at_sites(looking, sites))
     told("reference", 1, 2)
-    stripe = settled.sweep_stripe if settled else options.stripe
+    stripe = sites.stripe_of(settled.sweep_stripe if settled else options.stripe)
     if stripe is None:
         stream = found.stream(recording.taken[:LOOK_AHEAD])
-        ahead = [(name, picture) for name, picture in stream if not isinstance(picture, Message)]
+        ahead = [(name, sites.of(picture)) for name, picture in stream if not isinstance(picture, Message)]
         stripe = choose_sweep_stripe(ahead, reference, told.within_step)
     told("reference", 2, 2)
-    return _Common(reference, stripe, white_level(picture))
+    return _Common(reference, stripe, of_whole(reference, sites, picture), sites, white_level(picture))
 
 
 def _lines(common: _Common, camera: Camera | None, fan: Fan | None, settled: SettledScan | None) -> FanLines | None:
     """The numbers of the fan's centrelines: the settled ones if they are of these very pieces, else the likeliest."""
-    pieces = common.reference.fan
+    pieces = common.shown.fan
     if settled and len(settled.fan_line) == len(pieces):
         return FanLines.settled_as(settled.fan_line)
     return possible_fan_lines(pieces, camera, fan)[0] if camera and fan else None

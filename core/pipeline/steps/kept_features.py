@@ -65,6 +65,7 @@ def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
     rests_on = {
         "program": program_text(_SCAN_ROOMS),
         "channel": found.laser_channel("scan").channel,
+        "mosaic": found.rig.mosaic,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [found.name_of(path) for path in found.frames],
@@ -155,6 +156,7 @@ def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Pa
         "program": program_text(_CALIBRATION_ROOMS),
         "target": rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"],
         "channel": found.laser_channel(step).channel,
+        "mosaic": found.rig.mosaic,
         "camera": camera,
         "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
     }

@@ -21,6 +21,7 @@ from core.files.recording.rig import Rig
 from core.files.recording.set_listing import PlanePair
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.image.mosaic import ALL_SITES
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
@@ -154,10 +155,11 @@ def _beside(found: RecordingSet, pair: PlanePair) -> Beside:
     channel = found.laser_channel(found.part_of(pair.on)).channel
     compression, second = compression_of(pair.on, channel), found.read_second(pair.on)
     bracket = None if second is None else (second, found.read_second(pair.off) if pair.off is not None else None)
-    if not is_difference(channel):
+    sites = found.sites(found.part_of(pair.on))
+    if not is_difference(channel) and sites == ALL_SITES:
         return Beside(None, compression, bracket)
     unlit = found.read_target(pair.off) if pair.off is not None else None
-    return Beside((found.read_target(pair.on), unlit), compression, bracket)
+    return Beside((found.read_target(pair.on), unlit), compression, bracket, sites)
 
 
 def solve_planes(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -14,6 +14,7 @@ from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
+from core.image.mosaic import Sites
 from core.image.stripes.bracket import bracketed
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Message
@@ -90,16 +91,21 @@ def look_at_scan(
     looking = replace(feature_options(options), compression=compression_of(found.frames[0], channel.channel))
     progress("reference", 0, 1)
     picture, note = reference_picture(found, camera, options, progress)
-    reference = read_reference(picture, looking)
+    sites = found.sites("scan")
+    looking = at_sites(looking, sites)
+    reference = read_reference(sites.of(picture), looking)
     second = _second_exposures(found, options, looking, reference)
     factor = 1.0
     if second is not None:
-        fan, exposures = bracketed(reference.fan, second.reference.fan, saturated_pixels(picture))
+        fan, exposures = bracketed(reference.fan, second.reference.fan, saturated_pixels(reference.base))
         reference, factor = replace(reference, fan=fan), float(np.fmax(exposures.factor, 1.0))
     progress("reference", 1, 1)
     frames, total = stream_frames(found, options, times), len(found.frames)
-    show = watching(reference) if watching else None
-    lines = extract_lines(reference, frames, total, looking, progress, show, times, second)
+    shown = of_whole(reference, sites, picture)
+    show = watching(shown) if watching else None
+    watch = None if show is None else lambda features: show(features.brought_back(sites))
+    lines = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, second)
+    lines = lines.brought_back(sites, shown.image_size)
     averaged = lines.averaged(progress, times)
     of_width = told_width_notes(options.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
@@ -107,6 +113,26 @@ def look_at_scan(
     notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
     path = found.reference or taken_frames(found, options)[0]
     return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
+
+
+def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
+    """The options for pictures of these sites, in px of them."""
+    return replace(
+        looking,
+        sweep_stripe=sites.stripe_of(looking.sweep_stripe),
+        fan_stripe=sites.stripe_of(looking.fan_stripe),
+        move_limit_px=looking.move_limit_px / sites.period,
+    )
+
+
+def of_whole(reference: ReferenceFeatures, sites: Sites, picture: Picture) -> ReferenceFeatures:
+    """What these sites of a whole picture with the fan alone show, in its px."""
+    return replace(reference, base=picture, fan=sites.brought_back(reference.fan))
+
+
+def _seen_at(sites: Sites, frames: Iterable[Frame]) -> Iterator[Frame]:
+    """The frames at these sites alone."""
+    return ((name, each if isinstance(each, Message) else sites.of(each)) for name, each in frames)
 
 
 def _second_exposures(
@@ -127,14 +153,16 @@ def _second_exposures(
         if len(pictures) < FEWEST_FOR_QUANTILE:
             return None
         base = quantile_reference(pictures)
-    reference = read_reference(base, replace(looking, fan_stripe=None), first)
-    stripe = choose_sweep_stripe(sample[:LOOK_AHEAD], reference)
+    sites = found.sites("scan")
+    reference = read_reference(sites.of(base), replace(looking, fan_stripe=None), first)
+    stripe = choose_sweep_stripe(list(_seen_at(sites, sample[:LOOK_AHEAD])), reference)
 
     def read(name: str) -> Picture | None:
         try:
-            return found.read_second(shots[name]) if name in shots else None
+            picture = found.read_second(shots[name]) if name in shots else None
         except InputError:
             return None  # damaged: the first exposure is there
+        return None if picture is None else sites.of(picture)
 
     return SecondExposures(reference, stripe, read)
 

@@ -11,7 +11,6 @@ import numpy as np
 from core.calibrate.board_shape import LARGEST_SCALE_SD, SIZE_ASSUMED
 from core.calibrate.results import FanCalibration
 from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
-from core.files.pictures import read_picture
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.set_listing import pictures_in
@@ -43,7 +42,7 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     shown: list[tuple[TargetView, TargetView]] = []
     notes: list[Message] = []
     for path in paths:
-        picture = read_picture(path, rig.channel_of("camera"))
+        picture = found.read_board(path)
         found.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
         check_size(path, picture.shape, camera)
         name = f"{TARGETS}/{path.stem}"

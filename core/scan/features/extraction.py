@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
+from core.image.mosaic import Sites
 from core.image.stripes.bracket import bracketed
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -87,6 +88,13 @@ class SeenLines:
     fan: tuple[Centreline, ...]
     frames: tuple[FrameFeatures, ...]
     stripes: tuple[StripeSettings, StripeSettings | None]
+
+    def brought_back(self, sites: Sites, image_size: tuple[int, int]) -> SeenLines:
+        """The same in px of the whole picture, of `image_size`, where its `sites` were looked at."""
+        of_fan, of_sweeps = self.stripes
+        stripes = (sites.stripe_back(of_fan), sites.stripe_back(of_sweeps))
+        frames = tuple(frame.brought_back(sites) for frame in self.frames)
+        return SeenLines(image_size, sites.brought_back(self.fan), frames, stripes)
 
     def averaged(self, progress: Progress = silent, times: StageTimes | None = None) -> SeenLines:
         """The same, with the centrelines averaged along themselves, several at a time."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING
 
@@ -14,6 +14,7 @@ from core.messages import Message
 from core.model.arrays import Array
 
 if TYPE_CHECKING:  # a window that holds these loads no search trees
+    from core.image.mosaic import Sites
     from core.image.stripes.bracket import Exposures
 
 NO_REASON = Message("scan.no_reason", "no reason recorded")
@@ -55,6 +56,15 @@ class FrameFeatures:
     light_change: float = 0.0
     fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
     exposures: Exposures | None = None
+
+    def brought_back(self, sites: Sites) -> FrameFeatures:
+        """The same in px of the whole picture, where its `sites` were looked at."""
+        return replace(
+            self,
+            centrelines=sites.brought_back(self.centrelines),
+            shift_px=sites.period * self.shift_px,
+            fan_shifts_px=sites.period * self.fan_shifts_px,
+        )
 
 
 class CrossingUse(IntEnum):

@@ -38,6 +38,8 @@ class SensorEffects:
         Of the pixels that have a large dark current, by up to half of full scale: 1e-5 to 1e-3 in warm sensors.
     colour
         A Bayer mosaic, red at its first site, demosaiced bilinearly: pictures of three colours. The lasers are red.
+    raw
+        With `colour`: the mosaic as it was read, not demosaiced; rig.toml says so.
     second_exposure
         Every picture but those of the camera's target is taken a second time, exposed so many times shorter; 0: none.
     jpeg_quality
@@ -54,6 +56,7 @@ class SensorEffects:
     smear: float = 0.0
     hot_share: float = 0.0
     colour: bool = False
+    raw: bool = False
     jpeg_quality: int = 0
     second_exposure: float = 0.0
 
@@ -94,7 +97,7 @@ class SensorEffects:
 
     def developed(self, picture: NDArray[np.uint8] | NDArray[np.uint16]) -> NDArray[np.uint8] | NDArray[np.uint16]:
         """The picture (h, w) as it is kept: (h, w, 3) blue, green, red from a mosaic."""
-        if not self.colour:
+        if not self.colour or self.raw:
             return picture
         return np.asarray(cv2.cvtColor(picture, cv2.COLOR_BayerRGGB2BGR), dtype=picture.dtype)  # type: ignore[return-value]
 

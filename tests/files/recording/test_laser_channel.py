@@ -1,5 +1,7 @@
 """Colour pictures of which nobody says which channel to look at."""
 
+from dataclasses import replace
+
 import cv2
 import numpy as np
 import pytest
@@ -92,6 +94,13 @@ def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):
     chosen = features_key(found, Options(), camera)
     assert chosen == features_key(found.seen_in("red"), Options(), camera)
     assert chosen != features_key(found.seen_in("red-green"), Options(), camera)
+    assert chosen != features_key(replace(found, rig=replace(found.rig, mosaic="RGGB")), Options(), camera)
+
+
+def test_of_raw_pictures_the_channel_that_shows_the_laser_best_is_looked_at_in_any_case():
+    pictures = [LitPicture(lit(WHITE, seed), lit(WHITE, 10 + seed, light=False)) for seed in range(3)]
+    assert laser_channel(pictures, raw=True).channel in ("red", "green", "blue")
+    assert laser_channel([LitPicture(textured((2, 8, 90), 1))], raw=True).channel == "red"
 
 
 def test_a_channel_that_is_saturated_is_not_chosen():

@@ -1,4 +1,5 @@
 import hashlib
+from dataclasses import replace
 
 import cv2
 import numpy as np
@@ -7,7 +8,8 @@ import pytest
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
-from core.files.recording.rig import default_rig, rig_to_toml
+from core.files.recording.rig import Channels, default_rig, rig_to_toml
+from core.image.mosaic import ALL_SITES, Sites
 from core.messages import Message
 
 RIG = rig_to_toml(default_rig())
@@ -186,3 +188,64 @@ def test_a_second_exposure_of_another_size_is_refused(folder):
     with pytest.raises(InputError) as refused:
         open_set(folder)
     assert refused.value.code == "set.size_differs"
+
+
+def raw_set(folder, **rig):
+    """The set with raw pictures of a red light along a line, seen by sites of RGGB, and on a board in white light."""
+    (folder / "rig.toml").write_text(rig_to_toml(replace(default_rig(), **rig)))
+    rng = np.random.default_rng(1)
+    for path in sorted(folder.glob("*/*.png")):
+        raw = rng.normal(20, 1, (60, 80))
+        if path.parent.name == "camera":
+            raw[:, 40:] *= 8
+        elif not path.stem.endswith(("_off", "reference")):
+            raw[20:24] += np.tile([150, 18], 40) * np.array([1, 0, 1, 0])[:, None]
+        write_picture(path, raw.round().clip(0, 255).astype(np.uint8))
+    return open_set(folder)
+
+
+def test_a_laser_in_raw_pictures_is_measured_at_the_sites_that_see_it(folder):
+    found = raw_set(folder, mosaic="RGGB")
+    for part in ("planes", "scan"):
+        assert found.sites(part) == Sites(0, 0)
+        assert found.laser_channel(part).channel == "red"
+    frame = found.frames[0]
+    raw = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)
+    assert found.read(frame).shape == raw.shape
+    assert np.array_equal(found.sites("scan").of(found.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
+
+
+def test_colours_interpolated_from_a_mosaic_that_is_stated_are_measured_where_they_were(folder):
+    found = raw_set(folder, mosaic="RGGB")
+    frame = found.frames[0]
+    raw = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)
+    for path in (frame, *(path for pair in found.planes for path in (pair.on, pair.off) if path)):
+        cv2.imwrite(str(path), cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), cv2.COLOR_BayerRGGB2BGR))
+    found = open_set(folder)
+    assert found.sites("planes") == Sites(0, 0)
+    assert np.array_equal(found.sites("planes").of(found.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
+    assert found.read_target(found.planes[0].on).shape == raw.shape
+
+
+def test_the_stated_colour_of_a_laser_chooses_the_sites(folder):
+    assert raw_set(folder, mosaic="GBRG", channel="red").sites("scan") == Sites(0, 1)
+    assert raw_set(folder, mosaic="RGGB", channel="red-green").sites("scan") == ALL_SITES
+
+
+def test_pictures_of_no_mosaic_are_looked_at_whole(folder):
+    found = raw_set(folder)
+    assert found.sites("scan") == ALL_SITES
+    assert found.read(found.frames[0]).dtype == np.uint8
+
+
+def test_a_target_is_looked_for_in_all_sites_of_a_raw_picture(folder):
+    found = raw_set(folder, mosaic="RGGB")
+    for board in (found.read(found.camera[0]), found.read_board(found.camera[0])):
+        assert board.shape == (60, 80)
+        assert board.dtype == np.uint16
+    assert found.read_target(found.planes[0].on).dtype == np.uint16
+
+
+def test_a_set_of_grey_pictures_whose_targets_are_stated_in_red_reads_them_as_they_are(folder):
+    found = raw_set(folder, channels=Channels(camera="red"))
+    assert np.array_equal(found.read_target(found.planes[0].on), found.read(found.planes[0].on))

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Any, Final
 
 import cv2
@@ -20,6 +21,7 @@ from scipy.ndimage import map_coordinates
 
 from core.calibrate.fan.poses.plate import Plate, without_clutter
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
+from core.image.mosaic import ALL_SITES, Sites
 from core.image.stripes.bracket import bracketed
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
@@ -65,11 +67,13 @@ class Beside:
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
     theirs; `compression` is that of each picture; `second` are second, shorter exposures of them, if there are any.
+    `sites` are those of raw pictures that see the laser.
     """
 
     target: tuple[Picture, Picture | None] | None = None
     compression: Compression = UNCOMPRESSED
     second: tuple[Picture, Picture | None] | None = None
+    sites: Sites = ALL_SITES
 
 
 NOTHING: Final = Beside()
@@ -128,14 +132,11 @@ def measure_plane_pose(
         return PoseFeatures(name, view, (), reason)
     carrier = Plate(target, view, camera, margin_mm)
     outside = carrier.outside(on.shape)
-    centrelines = _stripes(on, off, view, outside, settings, beside.compression)
-    if beside.second is not None:
-        shorter = _stripes(*beside.second, view, outside, settings, beside.compression)
-        centrelines, _ = bracketed(centrelines, shorter, on >= np.iinfo(on.dtype).max)
+    centrelines = _stripes_at_sites(on, off, view, outside, settings, beside)
     if not centrelines:
         seen = None
         if settings is not None:
-            chosen = _stripes(on, off, view, outside, None, beside.compression)
+            chosen = _stripes_at_sites(on, off, view, outside, None, beside)
             seen = usual_stripe([PoseFeatures(name, view, chosen)])
         if settings is None or seen is None:
             return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
@@ -183,6 +184,33 @@ def _no_stripe(on: Picture, off: Picture | None, view: TargetView, settings: Str
         width_px=settings.width_px,
         grey=float(np.quantile(strength, STRONGEST)),
     )
+
+
+def _stripes_at_sites(
+    on: Picture,
+    off: Picture | None,
+    view: TargetView,
+    outside: NDArray[np.bool_],
+    settings: StripeSettings | None,
+    beside: Beside,
+) -> tuple[Centreline, ...]:
+    """Centrelines as `_stripes` finds them, of both exposures, by the sites alone that see the laser."""
+    sites = beside.sites
+    there = replace(view, uv=sites.places_of(view.uv))
+    look = partial(
+        _stripes,
+        view=there,
+        outside=sites.of(outside),
+        settings=sites.stripe_of(settings),
+        compression=beside.compression,
+    )
+    lit = sites.of(on)
+    found = look(lit, None if off is None else sites.of(off))
+    if beside.second is not None:
+        on_second, off_second = beside.second
+        shorter = look(sites.of(on_second), None if off_second is None else sites.of(off_second))
+        found, _ = bracketed(found, shorter, lit >= np.iinfo(lit.dtype).max)
+    return sites.brought_back(found)
 
 
 def _stripes(
