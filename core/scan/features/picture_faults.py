@@ -22,13 +22,18 @@ from core.scan.features.frames import LIGHT_CHANGED
 from core.scan.features.overexposure import SHINES
 from core.scan.features.reference import ReferenceFeatures
 
-COMPRESSED, MOSAIC, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.speckled"
-FAULTS = frozenset({COMPRESSED, MOSAIC, SPECKLED, SHINES, LIGHT_CHANGED})
+COMPRESSED, MOSAIC, RAW, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.raw_mosaic", "scan.speckled"
+FAULTS = frozenset({COMPRESSED, MOSAIC, RAW, SPECKLED, SHINES, LIGHT_CHANGED})
 """Codes of the notes on faults."""
 
 SPECKLED_SHARE = 0.08
 """Scatter of the brightness along the fan's lines, as a share of it, from which on it is told: between what fine
 stripes (σ 1.1 px) have at a contrast of 0.18 (0.054, ± 0.004 between seeds) and of 0.35 (0.108 ± 0.006)."""
+_UNEVEN = 2.5
+"""Times the laser's light at one place of a mosaic's tile over another's from which on it is one. Sites of another
+colour see less than a sixth of a laser's light; a stripe of σ 0.5 px, half a px aside, gives 1.6 at most."""
+_ENOUGH = 30
+"""Points at each place of the tile that are wanted for that."""
 _OUTLYING = 0.02
 """Share of the largest differences that are passed by: edges, marks, where another stripe crosses."""
 _CLEAR = 10.0
@@ -37,7 +42,8 @@ _CLEAR = 10.0
 
 def faults_of(reference: ReferenceFeatures) -> tuple[Message, ...]:
     """Notes on the faults that the picture with the fan alone shows."""
-    return (*notes_on_compression(reference.noise), *_notes_on_mosaic(reference), *_notes_on_speckle(reference))
+    mosaic = (*_notes_on_mosaic(reference), *_notes_on_raw_mosaic(reference))
+    return (*notes_on_compression(reference.noise), *mosaic, *_notes_on_speckle(reference))
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
@@ -65,9 +71,34 @@ def _notes_on_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
         Message(
             "scan.colour_mosaic",
             "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are finer than its "
-            "tiles and may be off by more than their σ. Use a grey camera, or stripes of σ {tile} px or more.",
+            "tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), or "
+            "stripes of σ {tile} px or more.",
             width_px=width,
             tile=PERIOD_PX,
+        ),
+    )
+
+
+def _notes_on_raw_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
+    """A note on a picture whose sites see the fan's light by their place in tiles of 2 × 2."""
+    uv = np.vstack([piece.uv[~piece.saturated] for piece in reference.fan])
+    u, v = np.rint(uv).astype(int).T
+    height, width = reference.base.shape
+    u, v = np.clip(u, 0, width - 1), np.clip(v, 0, height - 1)
+    light = reference.base[v, u].astype(np.float64) - float(np.median(reference.base[::16, ::16]))
+    place = PERIOD_PX * (v % PERIOD_PX) + u % PERIOD_PX
+    seen = [light[place == at] for at in range(PERIOD_PX**2)]
+    if min(map(len, seen)) < _ENOUGH:
+        return ()
+    medians = [float(np.median(each)) for each in seen]
+    if max(medians) <= _UNEVEN * max(min(medians), 0.0):
+        return ()
+    return (
+        Message(
+            "scan.raw_mosaic",
+            "The pictures look like the raw ones of a colour camera: the laser is seen {times:.1f} times as bright at "
+            "some pixels of each 2 × 2 as at others. State mosaic in rig.toml.",
+            times=max(medians) / max(min(medians), reference.noise.read_grey),
         ),
     )
 

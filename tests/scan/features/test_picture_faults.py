@@ -7,11 +7,13 @@ import pytest
 
 from core.acquire.grey import to_grey
 from core.errors import InputError
+from core.image.mosaic import sites_of
 from core.image.stripes.noise import Compression, NoiseModel
 from core.messages import Message
 from core.scan.features.picture_faults import (
     COMPRESSED,
     MOSAIC,
+    RAW,
     SPECKLED,
     faults_first,
     faults_of,
@@ -53,6 +55,16 @@ def test_lines_without_light_have_no_speckle():
     dark = tuple(replace(piece, strength=np.zeros(len(piece))) for piece in seen.fan)
     assert faults_of(replace(seen, fan=dark)) == ()
     assert faults_of(replace(seen, fan=(seen.fan[0].select(slice(0, 1)),))) == ()
+
+
+@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("scale", [0.25, 0.5])
+def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
+    raw = replace(RIG, scale=scale, seed=seed, sensor=SensorEffects(colour=True, raw=True))
+    assert RAW in told_of(raw)
+    assert RAW not in told_of(replace(raw, sensor=SensorEffects()))
+    picture = scan_of(raw)[0].reference()
+    assert RAW not in [note.code for note in faults_of(read_reference(sites_of("RGGB", "red").of(picture)))]
 
 
 def test_stripes_finer_than_the_mosaic_they_are_interpolated_from_are_told():
