@@ -19,13 +19,18 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
+from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
+from core.files.results.comparison_file import ALIGNED, ComparisonFile
 from core.files.results.export_list import EXPORTS
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
+from core.inspect.comparison import ComparisonScales
 from core.inspect.evaluate import Inspection
 from core.messages import Message, label, visible
+from core.pipeline.project.comparison import compare_project
 from core.pipeline.project.export import export_results, import_camera, with_template
+from core.pipeline.steps.compare_step import compare_step
 from core.pipeline.steps.inspect_step import inspect_step
 from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step, with_studies
@@ -96,6 +101,54 @@ def _cells(row: Characteristic) -> tuple[str, ...]:
         text(row.deviation, signed=True),
         tr(DECISIONS[row.verdict]),
     )
+
+
+def run_compare(
+    results: Path,
+    other: Path,
+    align: str,
+    asked: tuple[float, float, float | None],
+    to: Path | None,
+    progress: Progress,
+) -> Shown:
+    """Compare, write, and return what to say; asked: diameter (0: chosen), reach and registration (None: found)."""
+    diameter, reach, registration = asked
+    for name, value, least in (
+        ("--diameter", diameter, 0.0),
+        ("--reach", reach, 1e-6),
+        ("--registration", registration, 0.0),
+    ):
+        if value is not None and not least <= value < math.inf:
+            raise InputError(Message("comparison.length", "must be a length in mm"), where=name)
+    scales = ComparisonScales(diameter, reach, registration)
+    if to is None and is_project(results):
+        made, written = compare_project(results, other, align, scales, progress)
+    else:
+        with alone_in(results) if results.is_dir() else nullcontext():
+            made, written = compare_step(results, other, align, scales, to, progress)
+    return Shown(_compared_rows(made.summary), made.summary.values(), files=written)
+
+
+def _compared_rows(found: ComparisonFile) -> output.Rows:
+    """What a comparison came to, for people."""
+    words = output.words()
+    rows = [
+        (tr("compared with"), f"{found.other} ({told(ALIGNED[found.alignment])})"),
+        (tr("places"), tr("{n:,}, each over {diameter:g} mm", n=found.core_points, diameter=found.diameter_mm)),
+    ]
+    for name, part in ((tr("less material"), found.lower), (tr("more material"), found.higher)):
+        said = tr("nowhere significant")
+        if part.share:
+            said = tr(
+                "{share:.1f} % of the places, mean {mean} mm, at most {extreme} mm",
+                share=100 * part.share,
+                mean=words.fixed(part.mean_mm, 3, signed=True),
+                extreme=words.fixed(part.extreme_mm, 3, signed=True),
+            )
+        rows.append((name, said))
+    rows.append((tr("detectable"), tr("from {lod:.3f} mm on (95 %, median)", lod=found.lod95_mm)))
+    rows.append((tr("registration"), tr("{registration:.3f} mm", registration=found.registration_mm)))
+    return rows
 
 
 def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:

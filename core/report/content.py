@@ -196,6 +196,8 @@ class ReportContent:
         By a feature's name, its profile: (M, 2) position along it and height, in mm.
     deviations
         Comparisons with nominal surfaces.
+    compared
+        What a comparison with another scan or surface came to; None where none was made.
     studies
         As study.json has them.
     calibrations
@@ -254,6 +256,7 @@ class ReportContent:
     seen_at: Mapping[str, str] = field(default_factory=dict)
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
+    compared: Message | None = None
     studies: tuple[Mapping[str, Any], ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
@@ -352,6 +355,7 @@ class ReportContent:
             "language": "" if self.language == "en" else self.language,
             "template": self.template.words,
             "studies": self.studies,
+            "compared": None if self.compared is None else str(self.compared),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]

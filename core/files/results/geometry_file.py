@@ -45,6 +45,9 @@ class _Pose(ResultFile):
     rotation: list[Row3] = Field(min_length=3, max_length=3)
     translation_mm: Row3
 
+    def pose(self) -> Pose:
+        return Pose(np.array(self.rotation), np.array(self.translation_mm))
+
 
 class _GeometryFile(ResultFile):
     features: list[_Feature] = Field(default_factory=list)
@@ -93,10 +96,23 @@ def read_geometry(inspection: Path, points: Array) -> Geometry:
             Message("file.nothing_to_draw", "holds no plane, sphere, cylinder or section that could be drawn"),
             where=inspection,
         )
-    if (pose := tables.pose_camera_part) is None:
+    if tables.pose_camera_part is None:
         return Geometry(tuple(drawn), of_part=False)
-    to_part = Pose(np.array(pose.rotation), np.array(pose.translation_mm)).inverse()
-    return Geometry(tuple(moved(drawn, to_part)), of_part=True)
+    return Geometry(tuple(moved(drawn, tables.pose_camera_part.pose().inverse())), of_part=True)
+
+
+def read_part_frame(inspection: Path) -> Pose | None:
+    """The part coordinates into the camera frame that inspection.json holds; None without it, or without any.
+
+    Raises
+    ------
+    InputError
+        If it is damaged.
+    """
+    if not inspection.is_file():
+        return None
+    found = checked(_GeometryFile, read_json(inspection, todo=AGAIN), inspection).pose_camera_part
+    return None if found is None else found.pose()
 
 
 def _shape(name: str, shape: _Shape, used: Array) -> list[Drawn]:

@@ -40,7 +40,9 @@ FIRST_CUT, NARROWER = 0.04, 0.85
 """Points off by more than this share of the part's size have no weight at first, and ever closer ones then: small sides
 that alone fix a direction must not lose theirs before they have moved the part."""
 HELD = 0.02
-"""A fit holds if the median distance left is less than this share of the part's size."""
+"""A fit holds if the median distance left is less than this share of the part's size,"""
+HELD_AT_ONCE = 0.002
+"""and one from a start that was given, if it is less than this."""
 
 
 def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
@@ -92,7 +94,9 @@ class Aligned:
     left_mm: float
 
 
-def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress = silent) -> Aligned:
+def best_fit(
+    points: Array, up: Array, query: ProximityQuery, progress: Progress = silent, near: Pose | None = None
+) -> Aligned:
     """Lay a nominal surface on measured points.
 
     Parameters
@@ -105,6 +109,9 @@ def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress
         The surface, made ready to be asked.
     progress
         Called with how far it is.
+    near
+        A pose of the nominal surface near the one looked for, of a part that lies about as before: where it leads to a
+        good fit no other is tried, so that a part with alike sides is not turned.
 
     Raises
     ------
@@ -113,6 +120,10 @@ def best_fit(points: Array, up: Array, query: ProximityQuery, progress: Progress
     """
     rng = np.random.default_rng(0)
     shuffled = points[rng.permutation(len(points))]
+    if near is not None:
+        pose, left = _fitted(shuffled[: STAGES[-1][0]], near.inverse(), query, STAGES[-1][1])
+        if left <= HELD_AT_ONCE * query.size_mm:
+            return Aligned(pose.inverse(), left)
     poses = _starts(shuffled[: STAGES[0][0]], up, query.surface)
     done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)
     for count, rounds, kept in STAGES:

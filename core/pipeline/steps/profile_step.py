@@ -27,7 +27,7 @@ from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import CHANGED, PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
-from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
+from core.pipeline.steps.workspace import OF_CLOUD, Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
 from core.scan.features.frames import FrameRecord
@@ -38,7 +38,7 @@ from core.scan.surface.triangulate import join
 STAGE_SD = float(np.radians(0.1))
 """Standard uncertainty in rad of a stage's normal that a plate lying on it shows: thickness of its paper, burrs under
 it; its pose itself is known ten times better."""
-_REPLACED = ("cloud", "scan", "mesh", "gauge", "faces", "inspection", "inspected", "report")
+_REPLACED = ("cloud", "scan", "mesh", "report", *OF_CLOUD)
 """Results of a scan, which would not be of the part that these profiles are of."""
 
 

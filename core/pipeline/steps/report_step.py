@@ -20,6 +20,7 @@ from core.files.reading import file_hash, read_json
 from core.files.recording.recording_set import RIG, RecordingSet
 from core.files.recording.rig import Rig, rig_to_toml
 from core.files.results.camera_file import camera_id
+from core.files.results.comparison_file import read_comparison
 from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_gauge
 from core.files.results.inspection_file import MEMBERS, NAME, InspectionFile, read_inspection
@@ -160,7 +161,13 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         timestamp=record.measured_at,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
-    return with_inspection(content, out)
+    return replace(with_inspection(content, out), compared=_compared(out))
+
+
+def _compared(out: Path) -> Message | None:
+    """What the comparison among the results came to, in words; None where there is none."""
+    path = out / FILES["comparison"]
+    return read_comparison(path).in_words if path.exists() else None
 
 
 def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:

@@ -45,13 +45,17 @@ FILES = {
     "faces": "gauge.npz",
     "inspection": "inspection.json",
     "inspected": "inspection.npz",
+    "comparison": "comparison.json",
+    "compared": "comparison.ply",
+    "comparison_table": "comparison.csv",
     "report": "report.pdf",
     "run": "run.json",
 }
 """Fixed names of the results."""
 
 CLEARED = (
-    *("report", "gauge", "faces", "inspection", "inspected", "profile", "profile_table", "profiles"),
+    *("report", "gauge", "faces", "inspection", "inspected"),
+    *("comparison", "compared", "comparison_table", "profile", "profile_table", "profiles"),
     *("mesh", "cloud", "scan", "check", "calibrated", "planes", "poses", "camera", "run"),
 )
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
@@ -63,12 +67,13 @@ RIDGES = "planes"
 of the recording set alone: no result rests on it, nor it on any, and it is there where no planes came of the search."""
 
 _OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
-_OF_CLOUD = ("gauge", "faces", "inspection", "inspected")
+OF_CLOUD = ("gauge", "faces", "inspection", "inspected", "comparison", "compared", "comparison_table")
+"""What is measured on the points of a scan."""
 _REST_ON: Mapping[str, tuple[str, ...]] = {
-    "camera": ("planes", "poses", "calibrated", "check", *_OF_SURFACE, *_OF_CLOUD),
-    "planes": ("calibrated", "check", *_OF_SURFACE, *_OF_CLOUD),
-    "cloud": _OF_CLOUD,
-    "profiles": _OF_CLOUD,
+    "camera": ("planes", "poses", "calibrated", "check", *_OF_SURFACE, *OF_CLOUD),
+    "planes": ("calibrated", "check", *_OF_SURFACE, *OF_CLOUD),
+    "cloud": OF_CLOUD,
+    "profiles": OF_CLOUD,
 }
 """What no longer holds once one of these is another. The report stays: it is whole, and says what it is of."""
 READJUST = "readjust"

@@ -68,6 +68,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         Bookmark("result", look.words("Result")),
         result_box(look, content, TEXT_WIDTH),
         *_results(look, content, limits),
+        *_compared(look, content),
         *_not_covered(look, content),
         *([Figures(drawn)] if drawn else []),
         *chosen,
@@ -81,6 +82,13 @@ def _results(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
         return []
     budgets = () if "budget" in content.hidden else _with_budget(content)[: limits.budgets]
     return [Spacer(0, 3 * mm), result_table(look, content, budgets)]
+
+
+def _compared(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """What a comparison with another surface came to."""
+    if content.compared is None:
+        return []
+    return [Spacer(0, 3 * mm), look.say("Comparison", "label"), look.text(look.words(content.compared))]
 
 
 def _with_budget(content: ReportContent) -> tuple[int, ...]:

@@ -1,0 +1,203 @@
+"""comparison.json: what a comparison of two surfaces came to; comparison.ply and .csv beside it: every core point."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from core import __version__
+from core.files.atomic import write_bytes
+from core.files.complaints import checked_json
+from core.files.json_text import write_json
+from core.files.reading import read_json
+from core.files.results.ply_format import Ply, ply_bytes
+from core.files.tables import RESULT, Finite, OrNan, Probability
+from core.inspect.comparison import Comparison
+from core.inspect.shown.shown_comparison import Changed
+from core.messages import Command, Message
+
+NAME = "comparison.json"
+"""Among the results of a scan."""
+SCHEMA = 1
+"""Version of the file's layout."""
+Alignment = Literal["as measured", "frame", "best fit"]
+ALIGNED: Mapping[Alignment, Message] = {
+    "as measured": Message("comparison.as_measured", "as measured"),
+    "frame": Message("comparison.by_frame", "by part coordinates"),
+    "best fit": Message("comparison.best_fit", "best fit"),
+}
+"""How both were aligned, in words."""
+_TODO = Message("advice.compare_first", "compare the scan first{command}", command=Command("trisect compare OTHER DIR"))
+_POINT = [
+    *[(axis, "f8") for axis in "xyz"],
+    *[(axis, "f4") for axis in ("nx", "ny", "nz")],
+    *[("deviation", "f4"), ("sigma", "f4"), ("lod95", "f4"), ("significant", "u1")],
+    *[("points", "i4"), ("points_other", "i4")],
+]
+_COLUMNS = {
+    **dict.fromkeys(("x_mm", "y_mm", "z_mm", "nx", "ny", "nz"), "%.6f"),
+    **dict.fromkeys(("deviation_mm", "u_mm", "lod95_mm"), "%.6f"),
+    **dict.fromkeys(("significant", "points", "points_other"), "%d"),
+}
+
+
+@dataclass(frozen=True, slots=True)
+class ChangedPart:
+    """A part of what was compared: its share of all core points, mean and most extreme deviation in mm."""
+
+    share: Probability
+    mean_mm: OrNan
+    extreme_mm: OrNan
+    __pydantic_config__ = RESULT
+
+    @classmethod
+    def of(cls, changed: Changed) -> ChangedPart:
+        """As it is written."""
+        return cls(changed.share, changed.mean_mm, changed.extreme_mm)
+
+    @property
+    def in_words(self) -> Message:
+        """As a part of a sentence."""
+        if not self.share:
+            return Message("comparison.nowhere", "nowhere")
+        return Message(
+            "comparison.changed_part",
+            "at {percent:.1f} % of them, {mean_mm:+.3f} mm on average, {extreme_mm:+.3f} mm at most",
+            percent=100 * self.share,
+            mean_mm=self.mean_mm,
+            extreme_mm=self.extreme_mm,
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class ComparisonFile:
+    """What comparison.json says.
+
+    Parameters
+    ----------
+    other
+        Name of the surface compared with.
+    alignment
+        "as measured", "frame" or "best fit".
+    core_points
+        How many places were compared.
+    lower, higher
+        Where material is missing, and where there is more, significantly.
+    lod95_mm
+        Median of the level of detection.
+    diameter_mm, reach_mm, registration_mm
+        As they were used.
+    calibration_id
+        Of the scan.
+    """
+
+    other: str
+    alignment: Alignment
+    core_points: int
+    lower: ChangedPart
+    higher: ChangedPart
+    lod95_mm: Finite
+    diameter_mm: Finite
+    reach_mm: Finite
+    registration_mm: Finite
+    calibration_id: str = ""
+    __pydantic_config__ = RESULT
+
+    @classmethod
+    def of(cls, comparison: Comparison, other: str, alignment: Alignment, calibration_id: str) -> ComparisonFile:
+        """What a comparison comes to."""
+        return cls(
+            other,
+            alignment,
+            len(comparison),
+            ChangedPart.of(comparison.lower),
+            ChangedPart.of(comparison.higher),
+            float(np.median(comparison.detectable)),
+            comparison.diameter_mm,
+            comparison.reach_mm,
+            comparison.registration_mm,
+            calibration_id,
+        )
+
+    @property
+    def in_words(self) -> Message:
+        """All of it in a sentence or two, for a report."""
+        return Message(
+            "comparison.in_words",
+            "Compared with {other} ({alignment}) at {n:,} places, each over {diameter_mm:g} mm: less material {lower}, "
+            "more material {higher}. Deviations from {lod95_mm:.3f} mm on (median) are significant at 95 %; "
+            "registration {registration_mm:.3f} mm.",
+            other=self.other,
+            alignment=ALIGNED[self.alignment],
+            n=self.core_points,
+            diameter_mm=self.diameter_mm,
+            lower=self.lower.in_words,
+            higher=self.higher.in_words,
+            lod95_mm=self.lod95_mm,
+            registration_mm=self.registration_mm,
+        )
+
+    def values(self) -> dict[str, Any]:
+        """As it is written, and printed for machines."""
+        numbers = {name: getattr(self, name) for name in self.__slots__ if name not in ("lower", "higher")}
+        parts = {
+            name: {key: getattr(part, key) for key in ("share", "mean_mm", "extreme_mm")}
+            for name, part in (("lower", self.lower), ("higher", self.higher))
+        }
+        return {"schema_version": SCHEMA, **numbers, **parts, "version": __version__}
+
+
+def write_comparison(path: Path, file: ComparisonFile) -> None:
+    """Write comparison.json; InputError if it cannot be written."""
+    write_json(path, file.values())
+
+
+def read_comparison(path: Path) -> ComparisonFile:
+    """Read comparison.json; InputError if it is missing, no JSON, or a value is wrong."""
+    return checked_json(ComparisonFile, read_json(path, todo=_TODO), path)
+
+
+def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None:
+    """Write every core point: place, normal, deviation, σ of it, level of detection, whether it is significant.
+
+    Raises
+    ------
+    InputError
+        If it cannot be written.
+    """
+    rows = np.empty(len(comparison), dtype=_POINT)
+    for (name, _), column in zip(_POINT, _columns(comparison).T, strict=True):
+        rows[name] = column
+    comments = (
+        f"Trisect {__version__}",
+        "unit mm",
+        "frame of reference: the camera, z forward, y down",
+        f"deviation: from {other} along the normal, in mm; positive where there is more material",
+        "sigma: standard uncertainty of the deviation, registration and all; lod95: 1.96 of it; "
+        "significant: 1 where the deviation is beyond it",
+    )
+    write_bytes(path, ply_bytes(Ply({"vertex": rows}, comments)))
+
+
+def write_comparison_csv(path: Path, comparison: Comparison) -> None:
+    """Write the same as a table, a line to each core point; InputError if it cannot be written."""
+    text = io.StringIO()
+    text.write(",".join(_COLUMNS) + "\n")
+    np.savetxt(text, _columns(comparison), fmt=list(_COLUMNS.values()), delimiter=",")
+    write_bytes(path, text.getvalue().encode())
+
+
+def _columns(comparison: Comparison) -> np.ndarray[Any, np.dtype[np.float64]]:
+    detectable, counts = comparison.detectable, comparison.counts.astype(np.float64)
+    significant = comparison.significant.astype(np.float64)
+    return np.column_stack(
+        [
+            *[comparison.points, comparison.normals, comparison.deviation, comparison.sigma, detectable],
+            *[significant, counts],
+        ]
+    )

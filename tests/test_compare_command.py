@@ -1,0 +1,77 @@
+"""`trisect compare`: a scan against another, worn where the truth is known; exit codes, files, and the report's row."""
+
+import csv
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.files.results.comparison_file import read_comparison
+from core.files.results.ply import read_cloud, write_cloud
+from core.files.results.ply_format import parse_ply
+from core.pipeline.steps.report_step import results_content
+from tests.simulated import copy_of, trisect
+
+WEAR_MM = 0.4
+"""The small set is noisy."""
+
+
+@pytest.fixture
+def results(measured, tmp_path):
+    return copy_of(measured, tmp_path / "out")
+
+
+@pytest.fixture
+def before(results, tmp_path):
+    """The same scan, its upper part higher by WEAR_MM: what it was before it wore."""
+    file = read_cloud(results / "cloud.ply")
+    cloud = file.cloud
+    worn = cloud.points[:, 2] < np.quantile(cloud.points[:, 2], 0.2)
+    towards = cloud.points / np.linalg.norm(cloud.points, axis=1)[:, None]
+    points = cloud.points - WEAR_MM * worn[:, None] * towards
+    path = tmp_path / "before.ply"
+    write_cloud(path, replace(cloud, points=points), file.calibration_id)
+    return path
+
+
+def test_a_scan_compared_with_itself_has_not_changed(results, tmp_path):
+    said = trisect("compare", results, results, "--to", tmp_path / "to")
+    assert said.code == 0, said.err
+    assert said.out.count("nowhere significant") == 2
+    assert not (results / "comparison.json").exists()
+
+
+def test_wear_is_told_written_and_reported(results, before):
+    said = trisect("compare", before, results, "--json")
+    assert said.code == 0, said.err
+    told = json.loads(said.out)
+    assert told["other"] == "before.ply"
+    assert told["lower"]["mean_mm"] == pytest.approx(-WEAR_MM, abs=0.15)
+    assert told["lower"]["share"] > told["higher"]["share"]
+    rows = list(csv.DictReader((results / "comparison.csv").read_text().splitlines()))
+    points = parse_ply((results / "comparison.ply").read_bytes()).elements["vertex"]
+    assert len(rows) == len(points) == told["core_points"]
+    significant = np.array([row["significant"] == "1" for row in rows])
+    beyond = np.array([abs(float(row["deviation_mm"])) > float(row["lod95_mm"]) for row in rows])
+    assert np.array_equal(significant, beyond)
+    assert np.array_equal(points["significant"].astype(bool), significant)
+    content = results_content(results)
+    assert content.compared is not None
+    assert "before.ply" in str(content.compared)
+    assert read_comparison(results / "comparison.json").alignment == "as measured"
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["--align", "upside down"], "no alignment"),
+        (["--align", "frame"], "no part coordinates"),
+        (["--diameter", "-1"], "length in mm"),
+        (["--reach", "0"], "length in mm"),
+    ],
+)
+def test_what_cannot_be_asked_is_refused_in_one_sentence(results, arguments, said):
+    refused = trisect("compare", results, results, *arguments)
+    assert refused.code == 2
+    assert said in refused.err
