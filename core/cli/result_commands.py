@@ -156,7 +156,8 @@ def export(
             "-f",
             metavar="NAMES",
             help="Of clouds: cloud, e57, csv; of surfaces: mesh, stl, obj, 3mf; of results: table, xlsx, results, dfq, "
-            "qif, dcc, dxf, json; of the camera: opencv, opencv-json, ros; or pdf. Several with commas.",
+            "qif, dcc, dxf, json; of a comparison: compared, compared-csv; of the camera: opencv, opencv-json, ros; "
+            "or pdf. Several with commas.",
         ),
     ],
     to: Annotated[Path | None, typer.Option("--to", metavar="FOLDER", help="Write there instead of into DIR.")] = None,

@@ -21,12 +21,13 @@ from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
 from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
-from core.files.results.comparison_file import ALIGNED, ComparisonFile
+from core.files.results.comparison_file import ComparisonFile
 from core.files.results.export_list import EXPORTS
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
 from core.inspect.comparison import ComparisonScales
 from core.inspect.evaluate import Inspection
+from core.inspect.shown.shown_comparison import ALIGNED
 from core.messages import Message, label, visible
 from core.pipeline.project.comparison import compare_project
 from core.pipeline.project.export import export_results, import_camera, with_template

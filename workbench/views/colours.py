@@ -54,6 +54,9 @@ FEATURE = "#E66AD2"
 PROPOSED = "#FF6D00"
 """Points of a face that was clicked and is not taken yet; no scale of values has this colour."""
 
+OTHER_SURFACE = "#9A7BD0"
+"""Points of the surface that the scan is compared with, beside it."""
+
 DEVIATIONS = ("#08306B", "#2166AC", "#5B9FD0", "#A6CDE6", "#C9CDD2", "#F4B79A", "#E08259", "#C4403C", "#7A0221")
 """Classes of deviations from a nominal surface, from the farthest inwards to the farthest outwards; marks tell more."""
 

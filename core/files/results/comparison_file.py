@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -18,20 +17,13 @@ from core.files.reading import read_json
 from core.files.results.ply_format import Ply, ply_bytes
 from core.files.tables import RESULT, Finite, OrNan, Probability
 from core.inspect.comparison import Comparison
-from core.inspect.shown.shown_comparison import Changed
+from core.inspect.shown.shown_comparison import ALIGNED, Alignment, Changed
 from core.messages import Command, Message
 
 NAME = "comparison.json"
 """Among the results of a scan."""
 SCHEMA = 1
 """Version of the file's layout."""
-Alignment = Literal["as measured", "frame", "best fit"]
-ALIGNED: Mapping[Alignment, Message] = {
-    "as measured": Message("comparison.as_measured", "as measured"),
-    "frame": Message("comparison.by_frame", "by part coordinates"),
-    "best fit": Message("comparison.best_fit", "best fit"),
-}
-"""How both were aligned, in words."""
 _TODO = Message("advice.compare_first", "compare the scan first{command}", command=Command("trisect compare OTHER DIR"))
 _POINT = [
     *[(axis, "f8") for axis in "xyz"],

@@ -64,6 +64,8 @@ _ALL = (
         "dcc", label("Digital calibration certificate (DCC 3.3)"), "result.xml", "inspect", label("certificate")
     ),
     ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "inspect", label("geometry")),
+    ExportKind("compared", label("Comparison, point by point (PLY)"), "comparison.ply", "scan", label("comparison")),
+    ExportKind("compared-csv", label("Comparison as a table (CSV)"), "comparison.csv", "scan", label("comparison")),
     ExportKind("json", label("Thickness (JSON)"), "gauge.json", "inspect", label("thickness")),
     ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),
     ExportKind("opencv-json", label("Camera (OpenCV JSON)"), "camera_opencv.json", "camera", label("camera")),

@@ -2,12 +2,25 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.shown.shown_scan import Values
+from core.messages import Message
+
+Alignment = Literal["as measured", "frame", "best fit"]
+ALIGNED: Mapping[Alignment, Message] = {
+    "as measured": Message("comparison.as_measured", "as measured"),
+    "frame": Message("comparison.by_frame", "by part coordinates"),
+    "best fit": Message("comparison.best_fit", "best fit"),
+}
+"""How both were aligned, in words."""
+AUTOMATIC = "auto"
+"""By the part's frame if both have one, else as measured."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,6 +50,8 @@ class ShownComparison:
         (N,) in mm at the points of cloud.ply in their order; NaN where nothing was compared.
     significant
         (N,) whether it is beyond the level of detection.
+    mesh_deviation, mesh_significant
+        (V,) the same at the vertices of mesh.ply; empty where there is none.
     range_mm
         The end of the colour bar, to either side.
     other_points
@@ -44,7 +59,7 @@ class ShownComparison:
     """
 
     other: str
-    alignment: str
+    alignment: Alignment
     places: int
     lower: Changed
     higher: Changed
@@ -53,5 +68,17 @@ class ShownComparison:
     registration_mm: float
     deviation: Values
     significant: NDArray[np.bool_]
+    mesh_deviation: Values
+    mesh_significant: NDArray[np.bool_]
     range_mm: float
     other_points: NDArray[np.float32]
+
+    def coloured(self, order: NDArray[np.int32], *, significant_only: bool) -> Values:
+        """Deviations of the points of these numbers, NaN where they are not significant if only such are wanted."""
+        values = self.deviation[order]
+        return np.where(self.significant[order], values, np.float32(np.nan)) if significant_only else values
+
+    def coloured_mesh(self, *, significant_only: bool) -> Values:
+        """The same of the mesh."""
+        values = self.mesh_deviation
+        return np.where(self.mesh_significant, values, np.float32(np.nan)) if significant_only else values

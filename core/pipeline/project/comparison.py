@@ -6,8 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
+from core.files.atomic import remove
 from core.files.project.folder import results_folder
-from core.files.results.ply import read_cloud
+from core.files.results.ply import read_cloud, read_mesh
 from core.inspect.comparison import ComparisonScales
 from core.inspect.shown.shown_comparison import ShownComparison
 from core.pipeline.project.verify import noting_results
@@ -29,32 +30,48 @@ def compare_project(
 
 
 def show_comparison(
-    folder: Path, other: Path, align: str, scales: ComparisonScales, progress: Progress = silent
+    folder: Path, other: Path, align: str, diameter_mm: float = 0.0, progress: Progress = silent
 ) -> ShownComparison:
-    """Compare the scan of a project, write it there, and return what is drawn.
+    """Compare the scan of a project over circles of that diameter (0: chosen), write it there, return what is drawn.
 
     Raises
     ------
     InputError
         If one of them cannot be read, they cannot be aligned so, have nothing in common, or nothing can be written.
     """
-    made, _ = compare_project(folder, other, align, scales, progress)
-    points = read_cloud(results_folder(folder) / FILES["cloud"]).cloud.points
-    deviation, significant = made.comparison.at(points)
-    known = deviation[np.isfinite(deviation)]
-    widest = float(np.quantile(np.abs(known), 0.99)) if len(known) else 1.0
-    step = max(1, -(-len(made.other) // MOST_DRAWN))
+    made, _ = compare_project(folder, other, align, ComparisonScales(diameter_mm), progress)
+    found, summary, results = made.comparison, made.summary, results_folder(folder)
+    deviation, significant = found.at(read_cloud(results / FILES["cloud"]).cloud.points)
+    mesh = results / FILES["mesh"]
+    of_mesh = found.at(read_mesh(mesh).vertices if mesh.is_file() else np.zeros((0, 3)))
+    widest = float(np.nanquantile(np.abs(found.deviation), 0.99))
     return ShownComparison(
-        made.summary.other,
-        made.summary.alignment,
-        made.summary.core_points,
-        made.comparison.lower,
-        made.comparison.higher,
-        made.summary.lod95_mm,
-        made.comparison.diameter_mm,
-        made.comparison.registration_mm,
-        deviation.astype(np.float32),
-        significant,
-        max(widest, made.summary.lod95_mm),
-        made.other.points[::step].astype(np.float32),
+        other=summary.other,
+        alignment=summary.alignment,
+        places=len(found),
+        lower=found.lower,
+        higher=found.higher,
+        lod95_mm=summary.lod95_mm,
+        diameter_mm=found.diameter_mm,
+        registration_mm=found.registration_mm,
+        deviation=deviation.astype(np.float32),
+        significant=significant,
+        mesh_deviation=of_mesh[0].astype(np.float32),
+        mesh_significant=of_mesh[1],
+        range_mm=max(widest, summary.lod95_mm),
+        other_points=made.other.points[:: max(1, -(-len(made.other) // MOST_DRAWN))].astype(np.float32),
     )
+
+
+def forget_comparison(folder: Path, progress: Progress = silent) -> None:
+    """Take the comparison out of the results of a project, and so out of its report.
+
+    Raises
+    ------
+    InputError
+        If a file cannot be removed.
+    """
+    progress("results", 0, 1)
+    with noting_results(folder):
+        for name in ("comparison", "compared", "comparison_table"):
+            remove(results_folder(folder) / FILES[name])

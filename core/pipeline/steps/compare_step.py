@@ -14,8 +14,6 @@ from core.files.atomic import make_folder, remove
 from core.files.exchange.surface_file import OtherSurface, read_surface
 from core.files.project.folder import is_project, results_folder
 from core.files.results.comparison_file import (
-    ALIGNED,
-    Alignment,
     ComparisonFile,
     write_comparison,
     write_comparison_csv,
@@ -25,6 +23,7 @@ from core.files.results.geometry_file import read_part_frame
 from core.inspect.comparison import Comparison, ComparisonScales, SurfacePoints, compare, sampled_surface
 from core.inspect.fit.plane_search import above_table, search_tolerance
 from core.inspect.plan.alignment import best_fit
+from core.inspect.shown.shown_comparison import ALIGNED, AUTOMATIC, Alignment
 from core.messages import Message
 from core.model import Pose
 from core.pipeline.steps.inspect_step import InspectedScan, open_scan
@@ -33,8 +32,6 @@ from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangles import ProximityQuery, Triangles
 
-AUTOMATIC = "auto"
-"""By the part's frame if both have one, else as measured."""
 ALIGNMENTS = (AUTOMATIC, *ALIGNED)
 USUAL = ComparisonScales()
 """Scales that nothing is asked of."""

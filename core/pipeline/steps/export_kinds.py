@@ -151,6 +151,8 @@ WRITERS: Mapping[str, Write] = {
     "qif": _of_content(write_qif),
     "dcc": _of_content(write_dcc),
     "dxf": _dxf,
+    "compared": _copy("compared"),
+    "compared-csv": _copy("comparison_table"),
     "json": _copy("gauge"),
     "opencv": _opencv,
     "opencv-json": _opencv,

@@ -61,12 +61,16 @@ class SurfaceChoices(QWidget):
 
     @property
     def colour(self) -> str:
-        """What colours it: "faces", "sigma", "height", "deviation", "frame", "plain"."""
+        """What colours it: "faces", "sigma", "height", "deviation", "compared", "frame", "plain"."""
         return str(self.colours.currentData())
 
     def choose_colour(self, name: str) -> None:
         """Colour by something else."""
         self.colours.setCurrentIndex(self.colours.findData(name))
+
+    def show_compared(self, why_not: str) -> None:
+        """Whether the deviation from another surface can be chosen, and why not."""
+        self._offer("compared", why_not)
 
     def show_view(self, view: InspectionView | None, can: SurfaceButtons, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
@@ -108,6 +112,7 @@ class SurfaceChoices(QWidget):
             ("height", tr("height")),
             ("sigma", tr("σ of the points")),
             ("deviation", tr("deviation from face")),
+            ("compared", tr("deviation from other surface")),
             ("frame", tr("frame")),
             ("plain", tr("nothing (plain)")),
         ):
@@ -145,15 +150,16 @@ class SurfaceChoices(QWidget):
         """Without a lower face heights are depths, and there is nothing to colour by faces."""
         place = self.colours.findData("height")
         self.colours.setItemText(place, tr("depth") if view.height_is == DEPTH else tr("height"))
-        model: Any = self.colours.model()
         for name in ("faces", "deviation"):
-            place, why_not = (
-                self.colours.findData(name),
-                "" if view.gauge is not None else tr("Measure the thickness first."),
-            )
-            model.item(place).setEnabled(not why_not)
-            self.colours.setItemData(place, why_not, Qt.ItemDataRole.ToolTipRole)
-        if view.gauge is None and self.colour in ("faces", "deviation"):
+            self._offer(name, "" if view.gauge is not None else tr("Measure the thickness first."))
+
+    def _offer(self, name: str, why_not: str) -> None:
+        """Offer a colour, or say why it cannot be chosen; then height is, if it was."""
+        model: Any = self.colours.model()
+        place = self.colours.findData(name)
+        model.item(place).setEnabled(not why_not)
+        self.colours.setItemData(place, why_not, Qt.ItemDataRole.ToolTipRole)
+        if why_not and self.colour == name:
             self.choose_colour("height")
 
     def _show_limit(self, view: InspectionView, clip_mm: float | None) -> None:

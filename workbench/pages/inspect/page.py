@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QWidget
 
 from workbench.language import tr
 from workbench.pages.inspect import words
+from workbench.pages.inspect.comparison_panel import ComparisonPanel
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
 from workbench.pages.inspect.features.form import CLICK
 from workbench.pages.inspect.features.panel import FeaturesPanel
@@ -70,6 +71,10 @@ class InspectPage(StepPage):
         self.conditions_fold = self.add_panel(
             tr("Conditions and frame"), self.conditions, collapsed=True, kept="conditions"
         )
+        self.comparison = ComparisonPanel(presenter)
+        self.comparison_fold = self.add_panel(
+            tr("Comparison with another surface"), self.comparison, collapsed=True, kept="comparison"
+        )
         self.picks = PicksPanel(presenter)
         self.add_panel(tr("Points and distances"), self.picks, kept="points")
         self.tabs.currentChanged.connect(self._tab_changed)
@@ -91,7 +96,7 @@ class InspectPage(StepPage):
         self.conditions_fold.setText(
             tr("Conditions and frame ({said})", said=said) if said else tr("Conditions and frame")
         )
-        for panel in (self.result, self.faces, self.features, self.part, self.conditions, self.picks):
+        for panel in (self.result, self.faces, self.features, self.part, self.conditions, self.comparison, self.picks):
             panel.refresh()
         count = len(p.repeats.all)
         self.tabs.setTabText(REPEATS, tr("Repeats ({count})", count=count) if count else tr("Repeats"))

@@ -17,6 +17,7 @@ from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.clicked import InspectClicked, Target
 from workbench.pages.inspect.clicked import Mode as ClickMode
+from workbench.pages.inspect.comparison import InspectComparison
 from workbench.pages.inspect.cut import InspectCut
 from workbench.pages.inspect.faces import FACES, InspectFaces
 from workbench.pages.inspect.features.conditions import InspectConditions
@@ -69,8 +70,9 @@ class InspectPresenter(StepPresenter):
         self.feature = InspectFeatureEdit(self.features, self.scan)
         self.clicked = InspectClicked(self.features, self.scan)
         self.cut = InspectCut(self.features, self.scan, lambda: self.frame)
+        self.comparison = InspectComparison(bench, self.scan)
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
-        for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked):
+        for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked, self.comparison):
             part.changed.connect(self.changed)
         self.scan.changed.connect(self._scan_changed)
         self.model.results_changed.connect(self._look_at_scan)
@@ -331,6 +333,7 @@ class InspectPresenter(StepPresenter):
             self.picks.clear()
             self.clicked.stop()
             self.cut.show(False)
+            self.comparison.forget()
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
         if self.scan.view is None or self.picture not in (RELIEF, *self.scan.view.pictures):

@@ -22,12 +22,13 @@ from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.refresh import Refresh
-from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, PROPOSED, to_rgba
+from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, OTHER_SURFACE, PROPOSED, to_rgba
 from workbench.views.layouts import enable, in_column
 from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
     from core.inspect.shown.clicked_faces import ClickedFaces
+    from core.inspect.shown.shown_comparison import ShownComparison
     from core.inspect.shown.shown_features import ShownFeature
     from core.inspect.shown.shown_scan import InspectionView, ShownMesh
 
@@ -39,6 +40,9 @@ MOST_MARKED = 100_000
 
 CUT = "cut"
 """Name of the plane that is laid through the surface."""
+
+OTHER = "other surface"
+"""Name of its points."""
 
 CUT_OPACITY = 0.15
 """The surface behind it stays to be seen."""
@@ -71,6 +75,7 @@ class SurfaceTab(QWidget):
         self._mesh: tuple[object, ...] = ()
         self._cut: tuple[object, ...] = ()
         self._proposal: ClickedFaces | None = None
+        self._other: ShownComparison | None = None
         self._picking = ""
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -110,6 +115,11 @@ class SurfaceTab(QWidget):
         presenter.cut.changed.connect(Refresh(self._show_cut, self).soon)
         self.frame = FrameTool(self.scene, presenter.bench.settings)
         presenter.measured.connect(self._show_faces)
+        presenter.comparison.made.connect(self._show_compared)
+
+    def _show_compared(self) -> None:
+        self.choices.show_compared("")
+        self.choices.choose_colour("compared")
 
     def _show_faces(self) -> None:
         self.choices.choose_colour("faces")
@@ -118,6 +128,7 @@ class SurfaceTab(QWidget):
         """Show what the presenter says now."""
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
+        self.choices.show_compared("" if p.comparison.shown is not None else p.comparison.buttons.look)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
         enable(self.cutting, p.scan.buttons.use, self._cutting_tip)
@@ -125,12 +136,13 @@ class SurfaceTab(QWidget):
         if view is None:
             self._clear()
             return
-        if (p.scan.serial, self.shape, self.colour, p.points_shown()) != self._drawn:
+        if self._wanted() != self._drawn:
             if self._drawn[:1] != (p.scan.serial,):
                 self._draw()  # the first picture at once
             else:
                 self._later.start()
         self._show_feature()
+        self._show_other()
         self._show_proposal()
         self._show_picks()
         self._show_tool()
@@ -180,7 +192,7 @@ class SurfaceTab(QWidget):
         self.cut.hide()
         self.scene.set_handle(None)
         self._marked, self._feature, self._highlights = [], None, []
-        self._proposal = None
+        self._proposal = self._other = None
         self.frame.show(None)
         self.scene.clear(message)
         self.line.setText("")
@@ -193,22 +205,35 @@ class SurfaceTab(QWidget):
             return
         self._later.stop()
         count, seen = p.points_shown(), self.shape != "mesh"
-        before, self._drawn = self._drawn, (p.scan.serial, self.shape, self.colour, count)
+        before, self._drawn = self._drawn, self._wanted()
         self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
-        cloud = (p.scan.serial, count, self.colour if seen else "plain")
+        colour = self.colour if seen else "plain"
+        cloud = (p.scan.serial, count, colour, self._compared_look(colour))
         if cloud != self._cloud:
             self._cloud = cloud
-            self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, cloud[2]))
-        mesh = (p.scan.serial, p.triangles_shown(), self.colour)
+            self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, colour))
+        mesh = (p.scan.serial, p.triangles_shown(), self.colour, self._compared_look(self.colour))
         if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
             self._mesh = mesh
             self._draw_mesh(view, view.mesh)
         self._mark_used(view, count)
 
+    def _wanted(self) -> tuple[object, ...]:
+        """What the picture of cloud and mesh hangs on."""
+        p = self._presenter
+        return p.scan.serial, self.shape, self.colour, p.points_shown(), self._compared_look(self.colour)
+
+    def _compared_look(self, colour: str) -> tuple[object, ...]:
+        return self._presenter.comparison.look if colour == "compared" else ()
+
     def _draw_mesh(self, view: InspectionView, mesh: ShownMesh) -> None:
-        name = self.colour
+        name, comparison = self.colour, self._presenter.comparison
         look: dict[str, Any] = {"colour": PLAIN}
+        if name == "compared" and comparison.shown is not None:
+            values = comparison.shown.coloured_mesh(significant_only=comparison.significant_only)
+            if len(values) == len(mesh.vertices):
+                look = {"values": values, "colouring": self._compared_colouring(comparison.shown)}
         if name in ("sigma", "height", "deviation"):
             look = {"values": getattr(mesh, name), "colouring": self._colouring(view, name)}
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
@@ -216,10 +241,19 @@ class SurfaceTab(QWidget):
     def _look(self, view: InspectionView, count: int, name: str) -> dict[str, Any]:
         if name == "plain":
             return {"colours": PLAIN}
+        comparison = self._presenter.comparison
+        if name == "compared" and comparison.shown is not None:
+            only, number = comparison.significant_only, view.number[:count]
+            values = comparison.shown.coloured(number, significant_only=only)
+            return {"values": values, "colouring": self._compared_colouring(comparison.shown)}
         if name == "faces":
             table = np.array([to_rgba(colour)[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8)
             return {"colours": table[view.face[:count]]}
         return {"values": getattr(view, name)[:count], "colouring": self._colouring(view, name)}
+
+    def _compared_colouring(self, shown: ShownComparison) -> Colouring:
+        ends = -shown.range_mm, shown.range_mm
+        return Colouring(tr("deviation from {other}", other=shown.other), "mm", ends, "deviation")
 
     def _colouring(self, view: InspectionView, name: str) -> Colouring:
         titles = {
@@ -264,6 +298,18 @@ class SurfaceTab(QWidget):
             return
         for one in result.deviations.classes:
             self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
+
+    def _show_other(self) -> None:
+        """The surface the scan is compared with, beside it."""
+        comparison = self._presenter.comparison
+        shown = comparison.shown if comparison.beside else None
+        if shown is self._other:
+            return
+        self._other = shown
+        if shown is None:
+            self.scene.remove_highlight(OTHER)
+        else:
+            self.scene.set_highlight(OTHER, shown.other_points, OTHER_SURFACE)
 
     def _show_proposal(self) -> None:
         """The faces that were clicked and are not taken yet."""

@@ -50,6 +50,16 @@ def export_words(kind: str) -> tuple[str, str, str]:
             tr("Planes, spheres, cylinders and sections in part coordinates, for CAD"),
             "mdi6.vector-polyline",
         ),
+        "compared": (
+            tr("Comparison (PLY)"),
+            tr("Deviation from the other surface, its σ and significance at every place"),
+            "mdi6.compare",
+        ),
+        "compared-csv": (
+            tr("Comparison (CSV)"),
+            tr("Deviation from the other surface, its σ and significance at every place"),
+            "mdi6.table",
+        ),
         "json": (
             tr("Thickness (JSON)"),
             tr("The thickness with U, flatness, parallelism and verdict, for other programs"),
