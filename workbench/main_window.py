@@ -31,6 +31,9 @@ from workbench.pages.presenter import StepPresenter
 from workbench.pages.project.actions import ProjectActions
 from workbench.pages.project.audit import ask_reason
 from workbench.pages.project.double_click import choose_double_click
+from workbench.pages.project.operator import OperatorMode
+from workbench.pages.project.operator_page import OperatorPage
+from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.project.welcome_page import WelcomePage
 from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
@@ -98,6 +101,9 @@ class MainWindow(QMainWindow):
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
         self.manual = ManualWindow(self)
+        self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
+        self.operator = OperatorPage(self.operator_mode, self.model)
+        self._stack.addWidget(self.operator)
         self.menus = Menus(self, bench.settings, self.model.undo_stack, self._commands(), self.projects.open_project)
         self._connect()
         self.back.setIcon(icon("mdi6.chevron-left"))
@@ -134,6 +140,19 @@ class MainWindow(QMainWindow):
         place = names.index(self._current) + by
         if 0 <= place < len(names) and (by < 0 or not self.presenters[self._current].blocker()):
             self.go_to(names[place])
+
+    def enter_operator_mode(self) -> None:
+        """From now on there are four buttons; what is being changed is saved before."""
+        if self.model.is_open and not self.operator_mode.on and (self.model.is_read_only or self.projects.save()):
+            self.messages.hide()
+            self.operator_mode.turn(True)
+            self._show_mode()
+
+    def leave_operator_mode(self) -> None:
+        """Back to all pages; where people have roles, for those who may change something."""
+        if self.operator_mode.on and self.projects.may_leave_operator_mode():
+            self.operator_mode.turn(False)
+            self._show_mode()
 
     def presenter_action(self, name: str, page: str = "") -> None:
         """Call what a shortcut means ("run", "accept", "live", "capture") on a page, the current one by default."""
@@ -210,7 +229,7 @@ class MainWindow(QMainWindow):
 
     def dropEvent(self, event: QDropEvent) -> None:
         path = _dropped(event)
-        if path is not None:
+        if path is not None and not self._operator_seen:
             self.projects.open_dropped(path)
 
     def _wizard(self) -> QWidget:
@@ -268,6 +287,7 @@ class MainWindow(QMainWindow):
             "manual": self._open_manual,
             "first measurement": projects.begin_first_measurement,
             "quick card": self._print_quick_card,
+            "operator mode": self.enter_operator_mode,
             "double click": partial(choose_double_click, self, self.bench.notices),
             "log": self._open_log,
         }
@@ -312,18 +332,38 @@ class MainWindow(QMainWindow):
         lane.task_started.connect(self._task_started)
         lane.task_ended.connect(self._task_ended)
         self.task_bar.cancel_pressed.connect(self.cancel_task)
+        self.operator.stop.connect(self.cancel_task)
+        self.operator.next_part.connect(self.projects.begin_next_part)
+        self.operator.leave.connect(self.leave_operator_mode)
         self.task_bar.tick.connect(self._show_progress)
         self.projects.go_to.connect(self.go_to)
         self.projects.first_measurement_begun.connect(self._begin_instructions)
         self.instructions.left.connect(self._leave_instructions)
         self.instructions.show_me.connect(self._show_where)
 
+    @property
+    def _operator_seen(self) -> bool:
+        """Whether the operator's page is shown: not while the next part's project is not open yet."""
+        return self.operator_mode.on and self.model.is_open
+
+    def _project_presenter(self) -> ProjectPresenter:
+        presenter = self.presenters["project"]
+        assert isinstance(presenter, ProjectPresenter)
+        return presenter
+
+    def _show_mode(self) -> None:
+        """The operator's page, or that of the step."""
+        self.operator.refresh()
+        _turn(self._stack, self.operator if self.operator_mode.on else self._steps)
+        self._refresh()
+
     def _project_opened(self) -> None:
         self.banner.hide()
+        self.operator.banner.hide()
         if self.model.is_open:
-            _turn(self._stack, self._steps)
             self._current = ""
             self.go_to("project")
+            self._show_mode()
         else:
             self._current = ""
             _turn(self._stack, self._start)
@@ -380,7 +420,7 @@ class MainWindow(QMainWindow):
     def _menu_facts(self) -> MenuFacts:
         page = self.presenters.get(self._current)
         does = frozenset(name for name in OF_A_PAGE if hasattr(page, f"do_{name}"))
-        return MenuFacts(self._current, does, job=self._task is not None)
+        return MenuFacts(self._current, does, job=self._task is not None, operator=self._operator_seen)
 
     def _toggle_messages(self) -> None:
         self.messages.setVisible(not self.messages.isVisible())
@@ -412,7 +452,8 @@ class MainWindow(QMainWindow):
     def _on_notice(self, notice: Notice) -> None:
         self.notice_list.add(str(notice.level), notice.text, notice.details, notice.at.strftime("%H:%M:%S"))
         if notice.level != "info":
-            (self.banner if self.model.is_open else self.welcome.banner).show_notice(
+            open_banner = self.operator.banner if self._operator_seen else self.banner
+            (open_banner if self.model.is_open else self.welcome.banner).show_notice(
                 str(notice.level), notice.text, notice.details
             )
         else:
@@ -440,6 +481,7 @@ class MainWindow(QMainWindow):
         left = self._remaining.left
         words = tr("about {time} left", time=in_words(left)) if left is not None else ""
         self.task_bar.progress(self._task.label, tr(self._stage), self._remaining.share, words)
+        self.operator.show_progress(tr(self._stage), self._remaining.share, words)
 
     def _task_done(self, _: Any) -> None:
         if self._task is not None:

@@ -42,6 +42,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("messages", "Ctrl+M", label("Show or hide the messages")),
     ("theme", "Ctrl+T", label("Light or dark theme")),
     ("full", "F11", label("Full screen")),
+    ("operator mode", "F10", label("Operator mode: four buttons in big type; the plan cannot be changed")),
     ("manual", "F1", label("The manual, at the page of this step")),
     ("keys", "?", label("This list")),
     ("fit", "F", label("Picture: show the whole picture")),
@@ -57,6 +58,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
 
 KEYS = {name: key for name, key, _ in SHORTCUTS}
 
+UNDOING = ("undo", "redo")
 OF_A_PAGE = ("run", "accept", "live", "capture")
 """Entries that mean something on some pages only."""
 
@@ -67,12 +69,17 @@ NEED_A_PROJECT = (
     "pack",
     "audit",
     "sign in",
+    "operator mode",
     "close",
     "back",
     "next",
     "whole",
     *OF_A_PAGE,
 )
+
+
+OPERATOR_MAY = ("next part", "cancel", "quit", "messages", "theme", "full", "manual", "keys", "log", "about")
+"""Entries that operators have: none changes the plan, the settings or the project that is open."""
 
 
 class MenuFacts(NamedTuple):
@@ -84,10 +91,14 @@ class MenuFacts(NamedTuple):
     """Those of OF_A_PAGE that mean something on it."""
     job: bool
     """A long job runs."""
+    operator: bool = False
+    """The operator mode is on: nothing but the part is to be changed."""
 
 
 def why_not(name: str, facts: MenuFacts) -> str:
     """Why an entry, by its name, cannot be chosen now: a sentence, or ""."""
+    if facts.operator and name not in OPERATOR_MAY:
+        return tr("Leave operator mode first.")
     if name == "cancel":
         return "" if facts.job else tr("No job is running.")
     if name not in NEED_A_PROJECT and not name.startswith("step "):
@@ -136,8 +147,13 @@ class Menus(QObject):
 
     def refresh(self, facts: MenuFacts) -> None:
         """Grey what makes no sense now; its tip says why."""
-        for name in ("cancel", *NEED_A_PROJECT, *(f"step {step.name}" for step in STEPS)):
-            enable(self.actions[name], why_not(name, facts), self._tips.get(name, ""))
+        for name, action in self.actions.items():
+            if name in UNDOING:  # greyed by the stack; hidden, its key means nothing
+                action.setVisible(not facts.operator)
+            else:
+                enable(action, why_not(name, facts), self._tips.get(name, ""))
+        self._recent.setEnabled(not facts.operator and not self._recent.isEmpty())
+        self._window.menuBar().setVisible(not facts.operator)
 
     def _fill(self, undo_stack: QUndoStack) -> None:
         bar = self._window.menuBar()
@@ -188,6 +204,7 @@ class Menus(QObject):
         self._add(view, "messages", tr("&Messages"))
         self._add(view, "theme", tr("Light or dark &theme"), self._next_theme)
         self._add(view, "full", tr("&Full screen"), self._full_screen)
+        self._add(view, "operator mode", tr("&Operator mode"))
         view.addMenu(self._languages())
 
         help_menu = bar.addMenu(tr("&Help"))

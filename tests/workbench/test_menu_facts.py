@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication
 
 from core.files.project.data import new_project
 from workbench.main_window import MainWindow
-from workbench.menus import NEED_A_PROJECT, OF_A_PAGE, MenuFacts, why_not
+from workbench.menus import NEED_A_PROJECT, OF_A_PAGE, OPERATOR_MAY, MenuFacts, why_not
 from workbench.step_state import ORDER
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -37,6 +37,12 @@ def test_what_can_be_chosen_in_every_state() -> None:
         else:
             end = {"back": ORDER[0], "next": ORDER[-1]}.get(name)
             assert bool(why) == (facts.page == end), known
+
+
+def test_an_operator_has_what_changes_nothing() -> None:
+    for facts, name in product(STATES, (*ENTRIES, "full")):
+        why = why_not(name, facts._replace(operator=True))
+        assert why == (why_not(name, facts) if name in OPERATOR_MAY else "Leave operator mode first."), (facts, name)
 
 
 def test_on_every_page_the_entries_do_something_or_say_why_not(window: MainWindow, tmp_path: Path) -> None:

@@ -106,7 +106,13 @@ class _NextPart(QDialog):
         form.addRow(self.buttons)
         for field in (self.serial, self.operator):
             field.textChanged.connect(self._check)
+        self.serial.returnPressed.connect(self._go_on)
         self._check()
+
+    def _go_on(self) -> None:
+        """Return after the number, as a scanner sends it: to the operator, if nobody is named yet."""
+        if not self.operator.text().strip():
+            self.operator.setFocus()
 
     def answer(self) -> tuple[str, str, Path]:
         """Serial number, operator and the project's folder."""

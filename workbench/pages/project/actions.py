@@ -231,15 +231,33 @@ class ProjectActions(QObject):
             self.model.sign_out()
             self.bench.notices.info(tr("Signed out."))
             return
+        self._sign_in()
+
+    def may_leave_operator_mode(self) -> bool:
+        """Ask for a name and PIN of somebody who may change more than operators; nobody is asked without roles."""
+        if not self.model.rules.people:
+            return True
+        if not self._sign_in():
+            return False
+        person = self.model.signed_in
+        if person is None or person.role == "operator":
+            self.bench.notices.warning(tr("Only an inspector or administrator may leave operator mode."))
+            return False
+        return True
+
+    def _sign_in(self) -> bool:
+        """Ask for name and PIN; False if they are not given, or do not belong together."""
+        names = [one.name for one in self.model.rules.people]
         given = ask.ask_name_and_pin(self._window, tr("Sign in"), names)
         if given is None:
-            return
+            return False
         try:
             self.model.sign_in(*given)
         except InputError as error:
             self.bench.notices.failed(error)
-            return
+            return False
         self.bench.notices.info(tr("{name} has signed in.", name=given[0]))
+        return True
 
     def save(self) -> bool:
         """Save, with what is being typed; False if it could not be."""

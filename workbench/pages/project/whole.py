@@ -64,6 +64,8 @@ class MeasuringAll(QObject):
         super().__init__(parent)
         self._bench, self._model = bench, bench.model
         self._task: Task | None = None
+        self.why_stopped = ""
+        """Why the last one ended before the report, or ""."""
 
     @property
     def running(self) -> bool:
@@ -95,16 +97,17 @@ class MeasuringAll(QObject):
             self._model.file,
             label=tr("Measure everything"),
             on_done=lambda whole: self._over(task, folder, whole),
-            on_failed=lambda _: self._over(task, folder, None),
-            on_cancelled=lambda: self._over(task, folder, None),
+            on_failed=lambda problem: self._over(task, folder, None, text_of(problem)),
+            on_cancelled=lambda: self._over(task, folder, None, tr("Stopped. What was finished stays.")),
             offers={"progress": "progress", "watch": "watch"},
         )
-        self._task = task
+        self._task, self.why_stopped = task, ""
         task.reported.connect(lambda file: self._step_done(task, folder, file))
         self.changed.emit()
 
     def opened(self) -> None:
         """Another project: stop."""
+        self.why_stopped = ""
         if self._task is not None:
             self._task.cancel()
             self._task = None
@@ -124,10 +127,12 @@ class MeasuringAll(QObject):
         if new:
             self._model.record_all(new)
 
-    def _over(self, task: Task, folder: Path, whole: Any) -> None:
+    def _over(self, task: Task, folder: Path, whole: Any, why: str = "") -> None:
         if task is not self._task:
             return
-        self._task = None
+        self._task, self.why_stopped = None, why
+        if whole is not None and whole.stop is not None:
+            self.why_stopped = text_of(whole.stop.why)
         self.changed.emit()
         if whole is None or folder != self._model.folder:
             return

@@ -108,6 +108,20 @@ def test_a_scanner_types_the_number_and_presses_return(qtbot: Any, tmp_path: Pat
     assert dialog.answer() == ("17", "Ada", tmp_path / "Block 17")
 
 
+def test_after_the_scanners_return_the_missing_operator_is_asked_for(qtbot: Any, tmp_path: Path) -> None:
+    dialog = _NextPart(None, "Block", "", tmp_path)
+    qtbot.addWidget(dialog)
+    dialog.show()
+    dialog.serial.setFocus()
+    qtbot.keyClicks(dialog.serial, "17")
+    qtbot.keyClick(dialog.serial, Qt.Key.Key_Return)
+    assert dialog.isVisible() and dialog.focusWidget() is dialog.operator
+    qtbot.keyClicks(dialog.operator, "Ada")
+    qtbot.keyClick(dialog.operator, Qt.Key.Key_Return)
+    assert dialog.result() == dialog.DialogCode.Accepted
+    assert dialog.answer()[:2] == ("17", "Ada")
+
+
 @pytest.mark.parametrize(("serial", "operator", "why"), [("17", " ", "who measures"), ("1", "Ada", "measured before")])
 def test_what_is_missing_or_there_already_is_said(
     qtbot: Any, tmp_path: Path, serial: str, operator: str, why: str

@@ -1,0 +1,30 @@
+"""What a project's results come to, in short: for whoever only wants to know whether the part is good."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.errors import InputError
+from core.files.project.folder import results_folder
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import WORST_FIRST, Verdict
+from core.pipeline.steps.gauge_step import in_a_project
+from core.pipeline.steps.report_step import results_content
+from core.progress import Progress, silent
+
+
+def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[Characteristic, ...]:
+    """Every characteristic among the results of the project in `folder`, the worst first.
+
+    Raises
+    ------
+    InputError
+        If there is no scan among the results, or they are damaged.
+    """
+    progress("results", 0, 1)
+    try:
+        found = results_content(results_folder(folder)).characteristics
+    except InputError as error:
+        raise in_a_project(error) from error
+    order = (*WORST_FIRST, Verdict.NONE)
+    return tuple(sorted(found, key=lambda one: (order.index(one.verdict), one.room)))

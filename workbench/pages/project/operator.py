@@ -1,0 +1,170 @@
+"""Operator mode: one part after the other with four buttons; plan, limits and settings cannot be changed in it."""
+
+from __future__ import annotations
+
+from collections.abc import Set as AbstractSet
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+from PySide6.QtCore import QObject, Signal
+
+from core.files.project.keys import left_to_do
+from workbench.bench import Bench
+from workbench.language import tr
+from workbench.pages.project.whole import MeasuringAll
+from workbench.pages.sources import put_source
+from workbench.step_state import State
+from workbench.work import jobs
+
+if TYPE_CHECKING:
+    from core.inspect.characteristic import Characteristic
+
+
+class Stage(StrEnum):
+    """How far the part is."""
+
+    PICTURES = "pictures"
+    """Its pictures are to be chosen."""
+    READY = "ready"
+    MEASURING = "measuring"
+    STOPPED = "stopped"
+    DONE = "done"
+
+
+@dataclass(frozen=True, slots=True)
+class OperatorFacts:
+    """What the stage and the four buttons rest on."""
+
+    pictures: bool
+    """Pictures of a scan are chosen."""
+    left: AbstractSet[str]
+    """The steps that are not up to date."""
+    running: bool
+    """The part is being measured."""
+    busy: bool
+    """Something else runs: a long job, a live source, a recording."""
+    stopped: str
+    """Why the last attempt ended before the report, or ""."""
+    report: bool
+    """There is a report, of this or of an earlier state."""
+    cannot_measure: str
+    """Why *Measure everything* cannot be done, or ""."""
+    read_only: str
+    """Why nothing can be written into the project, or ""."""
+
+
+class OperatorButtons(NamedTuple):
+    """Why each button is grey."""
+
+    next_part: str
+    measure: str
+    report: str
+    stop: str
+
+
+def stage_of(facts: OperatorFacts) -> Stage:
+    """How far the part is."""
+    if facts.running:
+        return Stage.MEASURING
+    if "scan" in facts.left and not facts.pictures:
+        return Stage.PICTURES
+    if facts.stopped:
+        return Stage.STOPPED
+    return Stage.READY if facts.left else Stage.DONE
+
+
+def operator_buttons(facts: OperatorFacts) -> OperatorButtons:
+    """What can be done."""
+    stage = stage_of(facts)
+    runs = tr("The part is being measured.") if facts.running else ""
+    busy = runs or (tr("Wait until what is running has ended.") if facts.busy else "")
+    measure = facts.read_only if stage is Stage.PICTURES else facts.cannot_measure
+    return OperatorButtons(
+        next_part=busy,
+        measure=busy or measure,
+        report=runs or ("" if facts.report else tr("There is no report yet: measure the part.")),
+        stop="" if facts.running or facts.busy else tr("Nothing is running."),
+    )
+
+
+class OperatorMode(QObject):
+    """Whether it is on, how far the open project's part is, and what came of it."""
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, whole: MeasuringAll) -> None:
+        super().__init__()
+        self._bench, self._model, self._whole = bench, bench.model, whole
+        self.on = False
+        self.found: tuple[Characteristic, ...] = ()
+        self._asked: tuple[object, ...] = ()
+        whole.changed.connect(self.changed)
+        self._model.results_changed.connect(self.look)
+        self._model.opened.connect(self.look)
+        for lane in (bench.measuring, bench.live):
+            lane.task_started.connect(lambda _: self.changed.emit())
+            lane.task_ended.connect(lambda _: self.changed.emit())
+
+    @property
+    def facts(self) -> OperatorFacts:
+        """As they are."""
+        model, report = self._model, self._model.states["report"].state
+        return OperatorFacts(
+            pictures=bool(model.project.sources.scan),
+            left=frozenset(left_to_do(model.project, model.results)),
+            running=self._whole.running,
+            busy=self._bench.measuring.busy or self._bench.live.busy or model.is_recording,
+            stopped=self._whole.why_stopped,
+            report=report in (State.DONE, State.OUTDATED),
+            cannot_measure=self._whole.cannot_start,
+            read_only=self._bench.cannot_write,
+        )
+
+    @property
+    def stage(self) -> Stage:
+        """How far the part is."""
+        return stage_of(self.facts)
+
+    @property
+    def buttons(self) -> OperatorButtons:
+        """What can be done."""
+        return operator_buttons(self.facts)
+
+    def turn(self, on: bool) -> None:
+        """Begin it, or end it."""
+        self.on = on
+        self.look()
+
+    def take_pictures(self, folder: Path) -> None:
+        """Measure the part by the pictures in a folder."""
+        put_source(self._model, "scan", folder, tr("pictures of the scan"))
+        self.measure()
+
+    def measure(self) -> None:
+        """Do every step that is not up to date, to the report."""
+        self._whole.start()
+
+    def look(self) -> None:
+        """Read what came of the part, if there is something new."""
+        folder, results = self._model.folder, self._model.results
+        asked = (folder, *((step, done.key, done.at) for step, done in sorted(results.items())))
+        if folder is None or not self.on or "scan" not in results:
+            self.found, self._asked = (), ()
+        elif asked != self._asked:
+            self.found, self._asked = (), asked
+            self._bench.run_quick(
+                self,
+                jobs.PROJECT_CHARACTERISTICS,
+                folder,
+                label=tr("Reading the results"),
+                on_done=lambda found: self._take(asked, found),
+                replace_waiting=True,
+            )
+        self.changed.emit()
+
+    def _take(self, asked: tuple[object, ...], found: Any) -> None:
+        if asked == self._asked:
+            self.found = found
+            self.changed.emit()

@@ -1,0 +1,163 @@
+"""The page of the operator mode: how far the part is in big type, and four buttons."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from PySide6.QtCore import QSize, Qt, QUrl, Signal
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
+
+from core.files.project.folder import results_folder
+from core.report.wording import VERDICTS, shown_name, value_line
+from workbench.language import tr
+from workbench.pages.project.operator import OperatorMode, Stage
+from workbench.pages.words import capital, wording
+from workbench.project_model import ProjectModel
+from workbench.refresh import Refresh
+from workbench.theme import icon, shades
+from workbench.views import ask
+from workbench.views.common import IconLabel, dress
+from workbench.views.layouts import Elided, enable, in_column, in_row
+from workbench.views.lists.notice_list import Banner
+from workbench.views.lists.value_rows import VERDICT_ICONS
+
+REPORT = "report.pdf"
+"""Among the results."""
+HEADLINE_PX, TEXT_PX, BUTTON_PX = 34, 19, 21
+"""To be read from where the part is handled."""
+BUTTON_HIGH_PX = 84
+SIGN_PX = 64
+"""Of the sign beside the headline."""
+
+
+class OperatorPage(QWidget):
+    """Next part, measure, report, stop."""
+
+    next_part = Signal()
+    stop = Signal()
+    leave = Signal()
+
+    def __init__(self, mode: OperatorMode, model: ProjectModel, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._mode, self._model = mode, model
+        self.part, self.who = Elided(), QLabel()
+        self.leaving = QPushButton(icon("mdi6.exit-to-app"), tr("Leave operator mode"))
+        self.leaving.setObjectName("low")
+        self.banner = Banner()
+        self.sign, self.headline, self.detail = IconLabel(SIGN_PX), QLabel(), QLabel()
+        self.bar, self.left = QProgressBar(), QLabel()
+        self.bar.setTextVisible(False)
+        self.bar.setFixedHeight(18)
+        for label in (self.headline, self.detail, self.left):
+            label.setWordWrap(True)
+            label.setTextFormat(Qt.TextFormat.PlainText)
+        self.buttons = {
+            name: QPushButton(icon(symbol), text)
+            for name, symbol, text in (
+                ("next_part", "mdi6.barcode-scan", tr("Next part")),
+                ("measure", "mdi6.play-circle-outline", tr("Measure")),
+                ("report", "mdi6.file-document-outline", tr("Report")),
+                ("stop", "mdi6.stop-circle-outline", tr("Stop")),
+            )
+        }
+        for button in self.buttons.values():
+            button.setMinimumHeight(BUTTON_HIGH_PX)
+            button.setIconSize(QSize(34, 34))
+            button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
+            dress(button, f"font-size: {BUTTON_PX}px; font-weight: 600;")
+        dress(self.part, f"font-size: {TEXT_PX}px; font-weight: 600;")
+        for label in (self.who, self.detail, self.left):
+            dress(label, f"font-size: {TEXT_PX}px;")
+        said = in_column(self.headline, self.detail, self.bar, self.left, spacing=8)
+        state = QFrame()
+        state.setObjectName("card")
+        row = in_row(on=state, margins=(24, 16, 24, 16), spacing=20)
+        row.addWidget(self.sign, 0, Qt.AlignmentFlag.AlignVCenter)
+        row.addLayout(said, 1)
+        head = in_row((self.part, 1), self.who, self.leaving, spacing=16)
+        foot = in_row(*((button, 1) for button in self.buttons.values()), spacing=12)
+        in_column(head, self.banner, (state, 1), foot, on=self, margins=(20, 14, 20, 16), spacing=12)
+        self.buttons["next_part"].clicked.connect(self.next_part)
+        self.buttons["measure"].clicked.connect(self._measure)
+        self.buttons["report"].clicked.connect(self._show_report)
+        self.buttons["stop"].clicked.connect(self.stop)
+        self.leaving.clicked.connect(self.leave)
+        self.refreshing = Refresh(self.refresh, self)
+        for signal in (mode.changed, model.changed, model.results_changed, model.opened):
+            signal.connect(self._soon)
+
+    def _soon(self) -> None:
+        if self._mode.on:
+            self.refreshing.soon()
+
+    def refresh(self) -> None:
+        """Show how far the part is now."""
+        if not self._model.is_open:
+            return
+        info, stage = self._model.project.info, self._mode.stage
+        name = info.part or info.name
+        self.part.setText(f"{name}   {tr('No. {serial}', serial=info.serial)}" if info.serial else name)
+        self.who.setText(info.operator)
+        can = self._mode.buttons
+        tips = {
+            "next_part": tr("Scan or type the serial number of the next part; plan, limits and report are the same"),
+            "measure": tr("Measure this part: from its pictures to the report"),
+            "report": tr("Open the report of this part"),
+            "stop": tr("Stop what is running; what was finished stays"),
+        }
+        onwards = {Stage.DONE: "next_part", Stage.READY: "measure", Stage.PICTURES: "measure", Stage.STOPPED: "measure"}
+        for button_name, button in self.buttons.items():
+            enable(button, getattr(can, button_name), tips[button_name])
+            primary = onwards.get(stage) == button_name
+            if button.property("primary") != primary:
+                button.setProperty("primary", primary)
+                button.style().unpolish(button)
+                button.style().polish(button)
+        symbol, colour, headline, detail = self._said(stage)
+        self.sign.show_icon(symbol, colour)
+        self.headline.setText(headline)
+        self.detail.setText(detail)
+        dress(self.headline, f"font-size: {HEADLINE_PX}px; font-weight: 700; color: {getattr(shades(), colour)};")
+        for widget in (self.bar, self.left):
+            widget.setVisible(stage is Stage.MEASURING)
+
+    def show_progress(self, stage: str, share: float | None, left: str) -> None:
+        """What is being done, the share of it that is done (None: unknown), and the time left in words."""
+        self.detail.setText(stage)
+        self.bar.setRange(0, 0 if share is None else 1000)
+        self.bar.setValue(0 if share is None else round(1000 * share))
+        self.left.setText(left)
+
+    def _said(self, stage: Stage) -> tuple[str, str, str, str]:
+        """Sign, its colour, headline and what stands below."""
+        if stage is Stage.PICTURES:
+            return "mdi6.image-multiple-outline", "text", tr("New part"), tr("Press Measure and choose its pictures.")
+        if stage is Stage.READY:
+            return "mdi6.play-circle-outline", "text", tr("Ready"), tr("Press Measure.")
+        if stage is Stage.MEASURING:
+            return "mdi6.progress-clock", "accent", tr("Measuring …"), self.detail.text()
+        if stage is Stage.STOPPED:
+            return "mdi6.alert-outline", "warn", tr("Not finished"), self._mode.facts.stopped
+        if not self._mode.found:
+            return "mdi6.check", "text", tr("Measured"), ""
+        worst = self._mode.found[0]
+        symbol, colour = VERDICT_ICONS[worst.verdict]
+        verdict = wording()(VERDICTS[worst.verdict])
+        line = f"{capital(shown_name(worst, wording()))}: {value_line(worst, wording())}"
+        return symbol, "text" if colour == "muted" else colour, capital(verdict), line
+
+    def _measure(self) -> None:
+        if self._mode.stage is not Stage.PICTURES:
+            self._mode.measure()
+            return
+        folder = self._model.folder
+        chosen = ask.choose_folder(self, tr("Pictures of this part"), Path.home() if folder is None else folder.parent)
+        if chosen is not None:
+            self._mode.take_pictures(chosen)
+
+    def _show_report(self) -> None:
+        if (folder := self._model.folder) is not None:
+            path = results_folder(folder) / REPORT
+            if not QDesktopServices.openUrl(QUrl.fromLocalFile(str(path))):
+                self.banner.show_notice("warning", tr("Nothing here opens the report: {path}", path=path), "")
