@@ -16,8 +16,10 @@ from core.inspect.shown.view_frame import FrameKind, ViewFrame
 from core.model import Pose
 from core.model.arrays import Array
 
-AXES = ("x", "y")
+AXES = ("x", "y", "z")
 """What a plane can be square to."""
+UPRIGHT = 2
+"""So many of them, the first, are those of planes that stand upright: cross-sections can measure what they show."""
 USUAL = Section()
 """Its half width and its step are those of the profile that is shown."""
 MOST_DRAWN = 2_000
@@ -45,6 +47,16 @@ class CutPlane:
         """1 where heights are the frame's z; −1 in the camera's, whose z points away from the viewer."""
         return -1 if self.frame.kind is FrameKind.CAMERA else 1
 
+    @property
+    def across(self) -> int:
+        """The axis along which a profile in it runs."""
+        return 1 if self.axis == 0 else 0
+
+    @property
+    def height(self) -> int:
+        """The axis along which heights of that profile count: z, or y in a plane square to z."""
+        return 2 if self.axis < UPRIGHT else 1
+
     def corners(self, coordinates: Array) -> Array:
         """A patch of it as large as points reach, given in its frame (N, 3): corners (4, 3) in the camera frame.
 
@@ -53,26 +65,30 @@ class CutPlane:
         low, high = coordinates.min(axis=0), coordinates.max(axis=0)
         low, high = low - BEYOND * (high - low), high + BEYOND * (high - low)
         places = np.full((4, 3), self.at_mm)
-        places[:, 1 - self.axis] = low[1 - self.axis], high[1 - self.axis], high[1 - self.axis], low[1 - self.axis]
-        lower, upper = (low[2], high[2])[:: self.upwards]
-        places[:, 2] = lower, lower, upper, upper
+        places[:, self.across] = np.array([low, high, high, low])[:, self.across]
+        lower, upper = (low[self.height], high[self.height])[:: self.upwards]
+        places[:, self.height] = lower, lower, upper, upper
         return self.frame.pose_camera_frame.apply(places)
 
     def profile(self, coordinates: Array) -> ShownProfile:
-        """What it cuts of points (N, 3), given in its frame: positions are the other axis of AXES, heights along z."""
+        """What it cuts of points (N, 3), given in its frame: positions are along `across`, heights along `height`.
+
+        An outline, as a plane square to z cuts it, has no mean line.
+        """
         near = coordinates[np.abs(coordinates[:, self.axis] - self.at_mm) <= USUAL.half_width_mm]
-        position, height = near[:, 1 - self.axis], self.upwards * near[:, 2]
-        means = averaged(position, height, USUAL.step_mm)
+        position, height = near[:, self.across], self.upwards * near[:, self.height]
+        drawn = slice(None) if self.axis < UPRIGHT else slice(0)
+        means = averaged(position[drawn], height[drawn], USUAL.step_mm)
         return ShownProfile.of(position, height, means, USUAL.step_mm, MOST_DRAWN)
 
     def section(self, pose_camera_part: Pose | None) -> Section:
-        """The cross-section that measures it; without part coordinates it is placed in the camera's."""
+        """The cross-section that measures an upright one; without part coordinates it is placed in the camera's."""
         pose = Pose.identity() if pose_camera_part is None else pose_camera_part
         place = np.zeros(3)
         place[self.axis] = self.at_mm
         place = pose.inverse().apply(self.frame.pose_camera_frame.apply(place))
         # a section's positions run along z × normal of its coordinates: so that they run as those shown
-        runs = np.cross(pose.rotation[:, 2], self.normal) @ self.frame.axes[1 - self.axis]
+        runs = np.cross(pose.rotation[:, 2], self.normal) @ self.frame.axes[self.across]
         normal = pose.rotation.T @ self.normal * (1 if runs >= 0 else -1)
         return Section(point_mm=_three(place, 3), normal=_three(normal, 9))
 

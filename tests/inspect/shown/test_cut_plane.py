@@ -85,3 +85,17 @@ def test_a_plane_square_to_y_runs_along_x():
     assert CutPlane(frame, 0, 2.0).section(None).normal == (1.0, 0.0, 0.0)
     assert CutPlane(frame, 1, 2.0).section(None).normal == (0.0, -1.0, 0.0)
     assert CutPlane(frame, 1, 2.0).section(None).point_mm == (0.0, 2.0, 0.0)
+
+
+def test_square_to_z_the_outline_is_that_of_the_block_without_a_mean_line(cloud):
+    frame = frame_on_table()
+    coordinates = frame.coordinates(cloud.points)
+    plane = CutPlane(frame, 2, 40.0)
+    outline = plane.profile(coordinates)
+    near = coordinates[np.abs(coordinates[:, 2] - 40.0) <= 1.0]
+    assert len(near) and len(outline.mean_position) == 0
+    for shown, of in ((outline.position, near[:, 0]), (outline.height, near[:, 1])):
+        assert_allclose([shown.min(), shown.max()], [of.min(), of.max()], atol=0.5)
+    corners = frame.coordinates(plane.corners(coordinates))
+    assert_allclose(corners[:, 2], 40.0, atol=1e-9)
+    assert corners[:, :2].min(axis=0) @ [1, 1] < coordinates[:, :2].min(axis=0) @ [1, 1]

@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject, Signal
 
 from core.inspect.plan.feature_spec import FeatureSpec
-from core.inspect.shown.cut_plane import CutPlane
+from core.inspect.shown.cut_plane import UPRIGHT, CutPlane
 from core.inspect.shown.shown_features import ShownProfile
 from core.inspect.shown.view_frame import ViewFrame
 from core.model.arrays import Array
@@ -26,10 +26,13 @@ class InspectCut(QObject):
 
     changed = Signal()
 
+    hides: int
+    """The side of the plane that is hidden: 1 that of larger coordinates, −1 that of smaller ones, 0 none."""
+
     def __init__(self, features: InspectFeatures, scan: InspectScan, frame: Callable[[], ViewFrame]) -> None:
         super().__init__()
         self._features, self._scan, self._frame = features, scan, frame
-        self._on, self._axis = False, 0
+        self._on, self._axis, self.hides = False, 0, 0
         self._plane: CutPlane | None = None
         self._points: Array | None = None
         self._coordinates: Array = np.empty((0, 3))
@@ -47,7 +50,10 @@ class InspectCut(QObject):
             self._plane = replace(before, frame=frame, at_mm=self._within_reach(before.at_mm))
         else:
             part = slice(None) if view.gauge is None else view.gauge.upper.indices
-            self._plane = CutPlane(frame, self._axis, float(np.median(self._coordinates[part, self._axis])))
+            middle = float(np.median(self._coordinates[part, self._axis]))
+            if self._axis >= UPRIGHT:  # not on the face that most points lie on
+                middle = float(np.mean(np.quantile(self._coordinates[:, self._axis], [0.01, 0.99])))
+            self._plane = CutPlane(frame, self._axis, middle)
         return self._plane
 
     @property
@@ -70,6 +76,20 @@ class InspectCut(QObject):
         """Lay it through the part, or take it away."""
         if shown != self._on:
             self._on, self._plane = shown, None
+            self.changed.emit()
+
+    @property
+    def clip(self) -> tuple[Array, Array] | None:
+        """A place (3,) on the plane and the unit vector (3,) towards what it hides; None if it hides nothing."""
+        plane = self.plane
+        if plane is None or not self.hides:
+            return None
+        return self.corners()[0], self.hides * plane.normal
+
+    def hide(self, side: int) -> None:
+        """Hide what lies to one side of it, or nothing; see `hides`."""
+        if side != self.hides:
+            self.hides = side
             self.changed.emit()
 
     def square_to(self, axis: int) -> None:
@@ -97,6 +117,8 @@ class InspectCut(QObject):
     @property
     def cannot_keep(self) -> str:
         """Why it cannot become a feature now, or ""."""
+        if self._axis >= UPRIGHT:
+            return tr("A cut square to z is to look at: cross-sections that are measured stand upright.")
         if self._features.plan.frame is not None and self._features.pose_camera_part is None:
             return tr("Measure the features first: the plan's part coordinates are not known.")
         return ""

@@ -16,6 +16,8 @@ from workbench.views.common import SpinBox
 from workbench.views.layouts import enable, in_column, in_row
 from workbench.views.plots.lines import LineChart
 
+SIDES = (0, 1, -1)
+"""What is hidden, in the order in which it is offered."""
 CHART_PX = 150
 """Height of the profile: the surface above it keeps most of the room."""
 
@@ -34,15 +36,21 @@ class CutPanel(QWidget):
         self.axis.setAccessibleName(tr("What the cut is square to"))
         self.at.setAccessibleName(tr("Where the cut is"))
         self.at.setToolTip(tr("Where the cut is, in the frame of the view; or drag the ring in the 3D view"))
+        self.side = QComboBox()
+        for side in SIDES:
+            self.side.addItem("", side)
+        self.side.setAccessibleName(tr("What the cut hides"))
+        self.side.setToolTip(tr("Hide the surface to one side of the plane: what is measured stays the same"))
         self.at.setSuffix(" mm")
         self.at.setDecimals(2)
         self.at.setKeyboardTracking(False)
-        row = in_row(QLabel(tr("Cut")), self.axis, self.at, spacing=6)
+        row = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, spacing=6)
         row.addStretch(1)
         row.addWidget(self.keep)
         self._column = in_column(row, on=self, spacing=4)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)
+        self.side.activated.connect(lambda place: cut.hide(SIDES[place]))
         self.keep.clicked.connect(cut.keep)
 
     @cached_property
@@ -58,12 +66,18 @@ class CutPanel(QWidget):
         cut, plane = self._cut, self._cut.plane
         if plane is None:
             return
+        axis = AXES[plane.axis]
+        words = tr("both sides"), tr("hide larger {axis}", axis=axis), tr("hide smaller {axis}", axis=axis)
+        for place, word in enumerate(words):
+            self.side.setItemText(place, word)
+        self.side.setCurrentIndex(SIDES.index(cut.hides))
         low, high = cut.reach
         with QSignalBlocker(self.at):
             self.at.setRange(low, high)
             self.at.setValue(plane.at_mm)
         profile = cut.profile(count)
-        names = AXES[1 - plane.axis], "z" if plane.upwards > 0 else "−z"
+        height = AXES[plane.height]
+        names = AXES[plane.across], height if plane.upwards > 0 else f"−{height}"
         if names != self._names:  # each call draws the chart anew
             self._names = names
             self.chart.set_axes(names[0], "mm", names[1], "mm")

@@ -191,6 +191,7 @@ class SurfaceTab(QWidget):
         self._presenter.cut.show(False)
         self.cut.hide()
         self.scene.set_handle(None)
+        self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], None, []
         self._proposal = self._other = None
         self.frame.show(None)
@@ -352,9 +353,10 @@ class SurfaceTab(QWidget):
         self.cutting.setChecked(plane is not None)
         self.cut.setVisible(plane is not None)
         self.cut.show_keep()
-        if (plane, count) == self._cut:
+        if (plane, count, self._presenter.cut.hides) == self._cut:
             return
-        self._cut = (plane, count)
+        self._cut = (plane, count, self._presenter.cut.hides)
+        self.scene.hide_side(self._presenter.cut.clip)
         if plane is None:
             self.scene.remove(CUT)
             self.scene.set_handle(None)

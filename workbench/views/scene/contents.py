@@ -92,6 +92,18 @@ class SurfaceMesh:
         return np.array([self.vertices.min(axis=0), self.vertices.max(axis=0)])
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class HiddenSide:
+    """Cloud, mesh and marks are not drawn where they lie beyond a place (3,) in a direction (3,)."""
+
+    place: Array
+    towards: Array
+
+    def hides(self, points: Array) -> NDArray[np.bool_]:
+        """Which of the points (N, 3) are hidden."""
+        return np.asarray((points - self.place) @ self.towards > 0)
+
+
 @dataclass
 class Scene:
     """Everything that is shown. Items are replaced, never changed: the same object is the same drawing."""
@@ -101,6 +113,7 @@ class Scene:
     mesh: SurfaceMesh | None = None
     mesh_shown: bool = True
     items: dict[tuple[type, str], Item] = field(default_factory=dict)
+    hidden: HiddenSide | None = None
 
     @property
     def visible_cloud(self) -> SceneCloud | None:
@@ -134,6 +147,7 @@ class Scene:
         self.cloud = self.mesh = None
         self.cloud_shown = self.mesh_shown = True
         self.items = {}
+        self.hidden = None
 
     @property
     def empty(self) -> bool:

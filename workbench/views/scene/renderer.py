@@ -18,7 +18,7 @@ from vtkmodules.vtkCommonCore import (
     vtkPoints,
     vtkUnsignedCharArray,
 )
-from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPlane, vtkPolyData
 from vtkmodules.vtkCommonMath import vtkMatrix4x4
 from vtkmodules.vtkRenderingCore import vtkActor, vtkLight, vtkPolyDataMapper, vtkRenderer, vtkRenderWindow
 from vtkmodules.vtkRenderingOpenGL2 import vtkGenericOpenGLRenderWindow
@@ -59,6 +59,7 @@ class Renderer:
         """Diameter of the cloud's points in logical pixels."""
         self._items: dict[tuple[type, str], tuple[Item, vtkActor | None]] = {}
         self._parts: dict[Part, tuple[Version, vtkActor]] = {}
+        self._cut = vtkPlane()
 
     def set_background(self, colour: Rgb) -> None:
         """Colour behind the scene."""
@@ -93,6 +94,7 @@ class Renderer:
                 item_actor.GetProperty().SetPointSize(item.size * ratio)
             if not isinstance(item, Patches):
                 item_actor.SetUserMatrix(nearer)
+        self._hide(scene)
         self._renderer.SetPreserveColorBuffer(not what.first)
         self._renderer.SetPreserveDepthBuffer(not what.first)
         self._renderer.SetUseFXAA(what.smooth)
@@ -131,6 +133,21 @@ class Renderer:
             current = version(scene, part)
             if current is None or current.serial != made.serial:  # one that has grown is shown until it is made anew
                 self._renderer.RemoveActor(self._parts.pop(part)[1])
+
+    def _hide(self, scene: Scene) -> None:
+        """Let cloud, mesh and marks be cut where their hidden side begins."""
+        if scene.hidden is not None:
+            self._cut.SetOrigin(*scene.hidden.place)
+            self._cut.SetNormal(*-scene.hidden.towards)
+        marks = (actor for item, actor in self._items.values() if isinstance(item, Marks) and actor is not None)
+        for actor in (*(actor for _, actor in self._parts.values()), *marks):
+            mapper = actor.GetMapper()
+            planes = mapper.GetClippingPlanes()
+            cut = planes is not None and planes.GetNumberOfItems() > 0
+            if scene.hidden is not None and not cut:
+                mapper.AddClippingPlane(self._cut)
+            elif scene.hidden is None and cut:
+                mapper.RemoveAllClippingPlanes()
 
     def _aim(self, camera: SceneCamera, scene: Scene) -> None:
         vtk_camera = self._renderer.GetActiveCamera()

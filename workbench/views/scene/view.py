@@ -31,6 +31,7 @@ from workbench.views.scene.cloud import SceneCloud, as_points
 from workbench.views.scene.colours import PLAIN, Colouring, Rgb, as_colours
 from workbench.views.scene.contents import (
     GRID,
+    HiddenSide,
     Item,
     Labels,
     Lines,
@@ -298,6 +299,14 @@ class SceneView(QWidget):
         self._handle = None if handle is None else (np.asarray(handle[0], float), np.asarray(handle[1], float))
         self._canvas.update()
 
+    def hide_side(self, side: tuple[ArrayLike, ArrayLike] | None) -> None:
+        """Hide what lies beyond a place (3,) in mm, along a unit vector (3,); None: nothing. Lines and planes stay."""
+        if side is None and self._scene.hidden is None:
+            return
+        self._scene.hidden = None if side is None else HiddenSide(*(np.asarray(one, float) for one in side))
+        self._drawing.changed()
+        self._canvas.update()
+
     def set_axes(self, shown: bool) -> None:
         """Show or hide the axes' triad and the scale bar."""
         self._axes = shown
@@ -561,7 +570,9 @@ class SceneView(QWidget):
     def _points_seen(self) -> Array:
         """Points (N, 3) of the cloud, if it is seen or a mesh of it is; else none."""
         seen = self._scene.visible_cloud or (self._scene.cloud if self._scene.visible_mesh is not None else None)
-        return seen.points if seen is not None else np.empty((0, 3))
+        points = seen.points if seen is not None else np.empty((0, 3))
+        hidden = self._scene.hidden
+        return points if hidden is None else np.where(hidden.hides(points)[:, None], np.nan, points)
 
     def _under(self, at: QPointF) -> int | None:
         """Number of the cloud's point under the cursor."""

@@ -136,3 +136,42 @@ def test_another_scan_has_no_plane_yet(cut, qtbot):
     qtbot.waitUntil(lambda: cut.presenter.scan.view is not None)
     settle(cut, qtbot)
     assert cut.surface.cut.isHidden() and cut.surface.cutting.isEnabled()
+
+
+def hide(cut, qtbot, place):
+    cut.surface.cut.side.setCurrentIndex(place)
+    cut.surface.cut.side.activated.emit(place)
+    settle(cut, qtbot)
+
+
+@pytest.mark.parametrize(("place", "side"), [(1, 1), (2, -1)])
+def test_the_side_that_is_hidden_is_that_of_larger_or_smaller_coordinates_and_moves_along(cut, qtbot, place, side):
+    hide(cut, qtbot, place)
+    points = cut.presenter.scan.view.points
+    for at in (-10.0, 12.5):
+        cut.surface.cut.at.setValue(at)
+        settle(cut, qtbot)
+        beyond = side * (cut.surface.scene.frame.coordinates(points)[:, 0] - at) > 0
+        assert beyond.any()
+        assert np.array_equal(cut.surface.scene._scene.hidden.hides(points), beyond)
+        assert np.array_equal(np.isnan(cut.surface.scene._points_seen()[:, 0]), beyond), "what is hidden is not clicked"
+
+
+def test_hiding_a_side_leaves_the_profile_and_taking_the_plane_away_shows_all_again(cut, qtbot):
+    before = cut.surface.cut.chart._curves["points"].x
+    hide(cut, qtbot, 1)
+    assert_allclose(cut.surface.cut.chart._curves["points"].x, before)
+    press(cut, qtbot, button(cut))
+    assert cut.surface.scene._scene.hidden is None
+    press(cut, qtbot, button(cut))
+    hide(cut, qtbot, 0)
+    assert cut.surface.scene._scene.hidden is None
+
+
+def test_square_to_z_it_shows_an_outline_that_no_section_measures_and_says_so(cut, qtbot):
+    cut.surface.cut.axis.setCurrentIndex(2)
+    settle(cut, qtbot)
+    assert np.ptp(patch(cut)[:, 2]) < 1e-9 and np.ptp(patch(cut)[:, 0]) > 10 and np.ptp(patch(cut)[:, 1]) > 10
+    assert (cut.surface.cut.chart._names[0], cut.surface.cut.chart._names[2]) == ("x", "y")
+    keep = cut.surface.cut.keep
+    assert not keep.isEnabled() and "stand upright" in keep.toolTip()

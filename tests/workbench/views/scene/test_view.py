@@ -276,6 +276,26 @@ def test_cloud_and_mesh_can_be_hidden(view, qtbot):
     assert count(view.picture(), RED) == 0
 
 
+def test_a_hidden_side_is_neither_drawn_nor_chosen_from(view, qtbot):
+    view.set_cloud(FLAT, colours=RED)
+    complete(view, qtbot)
+    whole = count(view.picture(), RED)
+    view.hide_side((np.array([0.0, 0, 500]), np.array([1.0, 0, 0])))
+    complete(view, qtbot)
+    assert count(view.picture(), RED) == pytest.approx(whole / 2, rel=0.15)
+    picked: list[int] = []
+    view.point_picked.connect(lambda number, place: picked.append(number))
+    view.start_picking()
+    size = view._canvas.logical_size
+    for side in (-20.0, 20.0):
+        (spot,), _ = view._camera.project(np.array([[side, 0, 500]]), size)
+        click(view, qtbot, spot)
+    assert len(picked) == 1 and FLAT[picked[0], 0] <= 0
+    view.hide_side(None)
+    complete(view, qtbot)
+    assert count(view.picture(), RED) > 0.9 * whole, "the mark of the point covers some"
+
+
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(view, qtbot, side):
     tilted = np.array([[x, y, 500 + side * 1.7 * x] for x, y in ((-40, -40), (40, -40), (40, 40), (-40, 40))])
