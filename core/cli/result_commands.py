@@ -55,7 +55,7 @@ def compare(
         typer.Argument(
             metavar="OTHER",
             help="What it is compared with, as it was before or should be: a folder of results, a project, or a PLY, "
-            "STL or E57 file in mm.",
+            "STL, STEP or E57 file in mm.",
         ),
     ],
     results: Annotated[Path, typer.Argument(metavar="DIR", help="The scan: a folder of results or a project.")],

@@ -1,4 +1,4 @@
-"""Surfaces of any program to compare a scan with: points or triangles of PLY, STL and E57 files, in mm."""
+"""Surfaces of any program to compare a scan with: points or triangles of PLY, STL, STEP and E57 files, in mm."""
 
 from __future__ import annotations
 
@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError, words_of
+from core.files import cad_part
 from core.files.limits import LARGEST, check_file
 from core.files.reading import MISSING, read_bytes
 from core.files.results.nominal_surface import read_nominal
@@ -22,6 +23,8 @@ from core.scan.surface.triangles import Triangles
 
 MM_PER_METRE = 1e3
 """E57 states metres."""
+TOLERANCE_MM = 0.1
+"""What the triangles of a STEP file are made for: a tenth of it is how far they are off its faces."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -33,7 +36,7 @@ class OtherSurface:
 
 
 def read_surface(path: Path) -> OtherSurface:
-    """Points or triangles of a PLY, STL or E57 file in mm; E57 in the metres its standard asks for.
+    """Points or triangles of a PLY, STL, STEP or E57 file in mm; E57 in the metres its standard asks for.
 
     A PLY with faces is taken as triangles, unless its vertices have a `sigma`: then they were measured. Points may have
     normals (nx, ny, nz) and `sigma` in mm.
@@ -43,19 +46,23 @@ def read_surface(path: Path) -> OtherSurface:
     InputError
         If it is missing, damaged, of another kind, or holds no point.
     """
-    readers: Mapping[str, Callable[[Path], OtherSurface]] = {".ply": _ply, ".stl": _stl, ".e57": _e57}
+    readers: Mapping[str, Callable[[Path], OtherSurface]] = {
+        ".ply": _ply,
+        ".e57": _e57,
+        **dict.fromkeys((".stl", *cad_part.SUFFIXES), _nominal),
+    }
     reader = readers.get(path.suffix.lower())
     if reader is None:
         raise InputError(
-            Message("surface_file.kind", "this is none of the kinds of surface that can be read"),
+            Message("comparison.file_kind", "this is none of the kinds of surface that can be read"),
             where=path,
-            todo=Message("advice.name_ply_stl_e57", "name a PLY, STL or E57 file, or a folder of results"),
+            todo=Message("advice.name_surface", "name a PLY, STL, STEP or E57 file, or a folder of results"),
         )
     return reader(path)
 
 
-def _stl(path: Path) -> OtherSurface:
-    return OtherSurface(SurfacePoints.bare(np.zeros((0, 3))), read_nominal(path))
+def _nominal(path: Path) -> OtherSurface:
+    return OtherSurface(SurfacePoints.bare(np.zeros((0, 3))), read_nominal(path, TOLERANCE_MM))
 
 
 def _ply(path: Path) -> OtherSurface:
@@ -147,7 +154,7 @@ def _e57(path: Path) -> OtherSurface:
                 sigmas.append(np.asarray(read["intensity"], dtype=np.float64) if ours else np.zeros(len(parts[-1])))
     except (pye57.libe57.E57Exception, OSError, KeyError, ValueError, RuntimeError) as error:
         raise InputError(
-            Message("surface_file.e57_damaged", "it cannot be read as E57 ({reason})", reason=words_of(error)),
+            Message("comparison.e57_damaged", "it cannot be read as E57 ({reason})", reason=words_of(error)),
             where=path,
         ) from error
     if not parts:
@@ -162,7 +169,7 @@ def _name_of(file: Any, number: int) -> str:
 
 def _no_points(path: Path) -> InputError:
     return InputError(
-        Message("surface_file.no_points", "it holds no point of a surface"),
+        Message("comparison.file_without_points", "it holds no point of a surface"),
         where=path,
-        todo=Message("advice.name_ply_stl_e57", "name a PLY, STL or E57 file, or a folder of results"),
+        todo=Message("advice.name_surface", "name a PLY, STL, STEP or E57 file, or a folder of results"),
     )

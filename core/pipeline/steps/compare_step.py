@@ -34,7 +34,7 @@ from core.scan.surface.triangles import ProximityQuery, Triangles
 
 ALIGNMENTS = (AUTOMATIC, *ALIGNED)
 USUAL = ComparisonScales()
-"""Scales that nothing is asked of."""
+"""Scales where none are given."""
 SAMPLED_MM = 0.5
 """Spacing of places on triangles: finer than stripes lie beside each other."""
 LEAST_PART = 0.05
@@ -70,7 +70,7 @@ def compare_surfaces(
     source
         The scan: a folder of results, a project's, or a cloud.ply.
     other
-        The surface it is compared with, as it was before or should be: the same, or a PLY, STL or E57 file in mm.
+        The surface it is compared with, as it was before or should be: the same, or a PLY, STL, STEP or E57 file in mm.
     align
         One of ALIGNMENTS. The part coordinates of a file are its own.
     scales

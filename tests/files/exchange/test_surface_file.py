@@ -1,4 +1,4 @@
-"""Surfaces of other programs: what is read of PLY, STL and E57, and what is refused in one sentence."""
+"""Surfaces of other programs: what is read of PLY, STL, STEP and E57, and what is refused in one sentence."""
 
 from datetime import UTC, datetime
 
@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.exchange.e57 import write_e57
 from core.files.exchange.surface_file import read_surface
 from core.files.results.ply import write_cloud, write_mesh
+from tests.files.test_cad_part import PLATE
 
 
 def test_a_cloud_keeps_points_normals_and_sigma(tmp_path, content):
@@ -42,6 +43,12 @@ def test_an_stl_is_triangles(tmp_path):
     found = read_surface(tmp_path / "box.STL")
     assert found.triangles is not None
     assert len(found.triangles.corners) == 12
+
+
+def test_a_step_part_is_triangles_near_enough_to_its_faces():
+    found = read_surface(PLATE)
+    assert found.triangles is not None
+    assert np.ptp(found.triangles.corners.reshape(-1, 3), axis=0) == pytest.approx([60, 40, 20], abs=0.01)
 
 
 def test_points_of_four_cornered_faces_are_cut_in_two(tmp_path):

@@ -67,7 +67,7 @@ class ComparisonPanel(QWidget):
         """Show what the presenter says now."""
         comparison = self._comparison
         can, shown = comparison.buttons, comparison.shown
-        enable(self.file, can.compare, tr("Compare the scan with a PLY, STL or E57 file in mm"))
+        enable(self.file, can.compare, tr("Compare the scan with a PLY, STL, STEP or E57 file in mm"))
         enable(
             self.project,
             can.compare,
@@ -84,7 +84,7 @@ class ComparisonPanel(QWidget):
         self.rows.set_rows([] if shown is None else _rows(shown))
 
     def _choose_file(self) -> None:
-        kinds = tr("Surfaces (*.ply *.stl *.e57)")
+        kinds = tr("Surfaces (*.ply *.stl *.step *.stp *.e57)")
         self._compare(ask.choose_file_to_open(self, tr("Compare with"), self._start, kinds))
 
     def _choose_project(self) -> None:
