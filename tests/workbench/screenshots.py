@@ -37,7 +37,7 @@ from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.theme import is_polishing
 
-SIZES = (QSize(1280, 800), QSize(1920, 1080))
+SIZES = (QSize(1000, 700), QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
 README = ("camera", "scan", "inspect", "report")
 README_WIDTH = 900
@@ -50,6 +50,11 @@ PLAN = InspectionPlan(
         FeatureSpec("top", "plane", (Auto(2),), limits=(("flatness", Limits(0.0, -math.inf, 0.1)),)),
         FeatureSpec("middle", "point", (Auto(2),)),
         FeatureSpec("height", "distance", of=("middle", "table")),
+        FeatureSpec("flank", "plane", (Auto(3),)),
+        FeatureSpec(
+            "parallel", "parallelism", of=("top", "table"), limits=(("parallelism", Limits(0.0, -math.inf, 0.1)),)
+        ),
+        FeatureSpec("upright", "perpendicularity", of=("flank", "table")),
         FeatureSpec("profile", "section", section=Section(((300.0, 820.0), (1600.0, 820.0)))),
         FeatureSpec("nominal", "deviation", deviation=Deviation(NOMINAL, tolerance_mm=0.1)),
     )
@@ -58,7 +63,7 @@ PLAN = InspectionPlan(
 
 
 def main() -> int:
-    """Write welcome and all pages of the finished sample in both sizes and themes."""
+    """Write welcome and all pages of the finished sample in all sizes and themes."""
     parser = argparse.ArgumentParser(prog="python -m tests.workbench.screenshots", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=Path("screenshots"))
     parser.add_argument("--readme", action="store_true", help="only the four that the README shows")
@@ -96,6 +101,10 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
                 _each(app, bench, window, folder, f"{number}-inspect-{name}")
         else:
             _each(app, bench, window, folder, f"{number}-{step.name}")
+    window.enter_operator_mode()
+    _settle(app, bench, 1.0)
+    _each(app, bench, window, folder, "9-operator")
+    window.leave_operator_mode()
 
 
 def _open_sample(app: QApplication, bench: Bench, window: MainWindow) -> None:
@@ -133,6 +142,8 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     for name, tab, feature in (
         ("surface", page.surface, ""),
         ("feature", page.surface, "top"),
+        ("parallelism", page.surface, "parallel"),
+        ("perpendicularity", page.surface, "upright"),
         ("deviations", page.surface, "nominal"),
         ("picture", page.picture, "profile"),
         ("plot", page.plot, "profile"),
@@ -161,6 +172,17 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     yield "conditions"
     page.conditions_fold.collapse(animate=False)
     _wait(app, lambda: not bench.measuring.busy, PATIENCE_S)
+    inspect.cut.show(True)
+    inspect.cut.hide(1)
+    yield "cut"
+    inspect.cut.show(False)
+    page.comparison_fold.expand(animate=False)
+    inspect.comparison.compare(inspect.model.folder / NOMINAL)
+    _wait(app, lambda: inspect.comparison.shown is not None, PATIENCE_S)
+    _settle(app, bench, 0.5)
+    _side_to(page, page.comparison_fold)
+    yield "comparison"
+    page.comparison_fold.collapse(animate=False)
 
 
 def _side_to(page: Any, widget: QWidget) -> None:

@@ -93,18 +93,22 @@ def test_the_next_part_is_measured_without_leaving_it(
     operator: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     page, before = operator.operator, operator.operator_mode.found
+
+    def stage() -> Stage:
+        return operator.operator_mode.stage
+
     pictures = operator.model.folder / "recordings" / "scan" if operator.model.folder else tmp_path
     monkeypatch.setattr(ask, "ask_next_part", lambda *_: ("2", "Bo", tmp_path / "Block 2"))
     monkeypatch.setattr(ask, "choose_folder", lambda *_: pictures)
     page.buttons["next_part"].click()
     qtbot.waitUntil(lambda: operator.model.folder == tmp_path / "Block 2", timeout=60_000)
     page.refresh()
-    assert page.isVisible() and operator.operator_mode.stage is Stage.PICTURES
+    assert page.isVisible() and stage() is Stage.PICTURES
     assert page.part.text().endswith("No. 2") and page.who.text() == "Bo"
     page.buttons["measure"].click()
-    assert operator.operator_mode.stage is Stage.MEASURING
-    qtbot.waitUntil(lambda: operator.operator_mode.stage is not Stage.MEASURING, timeout=150_000)
-    assert operator.operator_mode.stage is Stage.DONE, operator.operator_mode.facts
+    assert stage() is Stage.MEASURING
+    qtbot.waitUntil(lambda: stage() is not Stage.MEASURING, timeout=150_000)
+    assert stage() is Stage.DONE, operator.operator_mode.facts
     qtbot.waitUntil(lambda: bool(operator.operator_mode.found), timeout=60_000)
     assert page.isVisible()
     assert operator.operator_mode.found[0].value == before[0].value

@@ -110,7 +110,7 @@ class _NextPart(QDialog):
         self._check()
 
     def _go_on(self) -> None:
-        """Return after the number, as a scanner sends it: to the operator, if nobody is named yet."""
+        """Return after the number, as a scanner sends it: to the operator, if that is still empty."""
         if not self.operator.text().strip():
             self.operator.setFocus()
 

@@ -1,4 +1,4 @@
-"""What a project's results come to, in short: for whoever only wants to know whether the part is good."""
+"""What a project's results come to, in short: whether the part is good."""
 
 from __future__ import annotations
 

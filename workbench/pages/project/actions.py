@@ -234,7 +234,7 @@ class ProjectActions(QObject):
         self._sign_in()
 
     def may_leave_operator_mode(self) -> bool:
-        """Ask for a name and PIN of somebody who may change more than operators; nobody is asked without roles."""
+        """Ask for name and PIN of an inspector or administrator, if people have roles; whether they were given."""
         if not self.model.rules.people:
             return True
         if not self._sign_in():

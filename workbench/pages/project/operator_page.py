@@ -27,6 +27,7 @@ REPORT = "report.pdf"
 HEADLINE_PX, TEXT_PX, BUTTON_PX = 34, 19, 21
 """To be read from where the part is handled."""
 BUTTON_HIGH_PX = 84
+"""To be hit with a glove on."""
 SIGN_PX = 64
 """Of the sign beside the headline."""
 
