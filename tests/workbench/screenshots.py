@@ -177,6 +177,7 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     yield "cut"
     inspect.cut.show(False)
     page.comparison_fold.expand(animate=False)
+    inspect.comparison.set_value("align", "best fit")
     inspect.comparison.compare(inspect.model.folder / NOMINAL)
     _wait(app, lambda: inspect.comparison.shown is not None, PATIENCE_S)
     _settle(app, bench, 0.5)

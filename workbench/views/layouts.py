@@ -81,16 +81,19 @@ class UpAndDown(QScrollArea):
 
 
 class Folding(QWidget):
-    """Parts side by side; one below the other where they have no room for that, as in a language of long words."""
+    """Parts side by side; one below the other where they have no room for that, as in a language of long words.
 
-    def __init__(self, *parts: QLayout, spacing: int) -> None:
+    The first one takes `share` times as much of the room that is left as each of the others.
+    """
+
+    def __init__(self, *parts: QLayout, spacing: int, share: int = 1) -> None:
         super().__init__()
         self._parts = tuple(holding(part) for part in parts)
         self._box = QBoxLayout(QBoxLayout.Direction.LeftToRight, self)
         self._box.setContentsMargins(*NO_MARGINS)
         self._box.setSpacing(spacing)
         for part in self._parts:
-            self._box.addWidget(part, 1)
+            self._box.addWidget(part, 1 if self._box.count() else share)
 
     def minimumSizeHint(self) -> QSize:
         """As narrow as the widest part."""

@@ -87,4 +87,6 @@ class LineChart(Plot):
             margin = 0.08 * float(y.max() - y.min()) or 0.05 * abs(float(y.max())) or 1.0
             across = (float(x.min()), float(x.max()))
             lowest = 0.0 if self._from_zero else float(y.min()) - margin
-            self._box.setRange(xRange=across, yRange=(lowest, float(y.max()) + margin), padding=0.01)
+            titles = sum(bool(curve.title) for curve in self._curves.values())
+            above = margin * (1 + titles)  # the legend stands in no curve
+            self._box.setRange(xRange=across, yRange=(lowest, float(y.max()) + above), padding=0.01)

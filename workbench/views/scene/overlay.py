@@ -81,7 +81,8 @@ def paint_overlay(
         elif isinstance(item, Measure):
             _paint_measure(painter, item, camera, size, colours)
     if axes is not None:
-        _paint_triad(painter, axes, camera, size, colours)
+        room = size[0] - bar_width(scene.colouring, painter.font()) - 2 * MARGIN
+        _paint_triad(painter, axes, camera, (room, size[1]), colours)
         _paint_scale(painter, camera, size, colours, grid_mm)
     if scene.colouring is not None:
         _paint_bar(painter, scene.colouring, size, colours)
@@ -153,14 +154,19 @@ def _paint_measure(
 
 
 def _paint_triad(
-    painter: QPainter, frame: ViewFrame, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours
+    painter: QPainter, frame: ViewFrame, camera: SceneCamera, room: tuple[float, float], colours: OverlayColours
 ) -> None:
-    """Directions of the frame's axes, those that point away first, and above them which frame it is."""
-    centre, length = QPointF(MARGIN + 30, size[1] - MARGIN - 30), 24.0
+    """Directions of the frame's axes, those that point away first, and above them which frame it is.
+
+    They stand at the lower left of as much room, in pixels, as the colour bar leaves.
+    """
+    centre, length = QPointF(MARGIN + 30, room[1] - MARGIN - 30), 24.0
     painter.setFont(_small(painter.font()))
-    name = tr(FRAME_NAMES[frame.kind])
-    middle = MARGIN + painter.fontMetrics().horizontalAdvance(name) / 2
-    text_plate(painter, QPointF(middle, centre.y() - length - 24), name, colours)
+    metrics = QFontMetricsF(painter.font())
+    lines = _wrapped(tr(FRAME_NAMES[frame.kind]), metrics, room[0])
+    middle = MARGIN + max(map(metrics.horizontalAdvance, lines)) / 2
+    top = centre.y() - length - 24 - (len(lines) - 1) * metrics.height() / 2
+    text_plate(painter, QPointF(middle, top), "\n".join(lines), colours)
     right, up, back = camera.axes @ frame.axes.T
     for k in np.argsort(back):
         name, on_light, on_dark = AXES[k]

@@ -296,6 +296,34 @@ def test_a_hidden_side_is_neither_drawn_nor_chosen_from(view, qtbot):
     assert count(view.picture(), RED) > 0.9 * whole, "the mark of the point covers some"
 
 
+@pytest.mark.parametrize("width", [240, 700])
+def test_the_name_of_the_frame_leaves_the_colour_bar_free(view, qtbot, width, monkeypatch):
+    plates: list[tuple[str, float]] = []
+    painted = overlay.text_plate
+    monkeypatch.setitem(FRAME_NAMES, FrameKind.PART, "a frame with a name of many words")
+
+    def noting(painter: QPainter, at: QPointF, text: str, *args: Any) -> Any:
+        plate = painted(painter, at, text, *args)
+        plates.append((text, plate.right()))
+        return plate
+
+    monkeypatch.setattr(overlay, "text_plate", noting)
+    view.setMinimumWidth(0)
+    view.resize(width, 520)
+    view.set_frame(PART)
+    view.set_axes(True)
+    view.set_cloud(FLAT, values=FLAT[:, 0], colouring=Colouring("height", "mm"))
+    complete(view, qtbot)
+    plates.clear()
+    view.picture()
+    view.grab()
+    width = view._canvas.logical_size[0]
+    named = [(text, right) for text, right in plates if text.replace("\n", " ").startswith("a frame")]
+    left_of_bar = width - overlay.bar_width(Colouring("height", "mm", (-50, 50)), view.font())
+    assert named and all(right <= left_of_bar for _, right in named)
+    assert ("\n" in named[0][0]) == (width < 400)
+
+
 @pytest.mark.parametrize("side", [1, -1])
 def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(view, qtbot, side):
     tilted = np.array([[x, y, 500 + side * 1.7 * x] for x, y in ((-40, -40), (40, -40), (40, 40), (-40, 40))])

@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
-from core.inspect.plan.feature_kind import ChoiceField, FormField, NumberField, ResultKind, TextField
+from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, FormField, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import Auto, Cut, FaceAt, FeatureSpec, InBox, InSphere, PointsOf, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import FILTERS, MOST_FACES, WIDEST_MM, kind_of, results_of
@@ -37,6 +37,15 @@ TOOLS = {
 
 BY_HAND = (fields.DRAWN, fields.CLICKED, fields.PLACED)
 """Sources of points that are not set by choosing them."""
+
+
+def _of_the_list(kind: FeatureKind) -> str:
+    """What a feature of this kind is made of."""
+    if "point" not in kind.made_from:
+        return tr("A plane or cylinder of the list.")
+    if "plane" not in kind.made_from:
+        return tr("A cylinder or sphere of the list.")
+    return tr("A plane, sphere, cylinder or point of the list.")
 
 
 def choose_nominal(parent: QWidget, folder: Path | None) -> Path | None:
@@ -107,7 +116,7 @@ class FeatureForm(QWidget):
         usual = (tr("First feature"), tr("Second feature"))
         titles = [tr(title) for title in kind_of(spec).part_titles] or usual
         for place, title in zip(range(kind_of(spec).made_of), titles, strict=False):
-            form.add_choice(f"of {place}", title, others, tr("A plane, sphere, cylinder or point of the list."))
+            form.add_choice(f"of {place}", title, others, _of_the_list(kind_of(spec)))
         most = kind_of(spec).most_regions
         if most > 1:
             form.add_number(

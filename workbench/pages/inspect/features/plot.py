@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import numpy as np
-from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
 from core.inspect.plan.kinds import kind_of
@@ -14,12 +13,16 @@ from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.views.colours import FEATURE
-from workbench.views.layouts import in_column, in_row, muted
+from workbench.views.layouts import STRETCH, Folding, in_column, in_row, muted
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.lines import LineChart
 
 if TYPE_CHECKING:
     from core.inspect.shown.shown_features import ShownDeviations, ShownFeature, ShownProfile
+
+
+LEAST_CHART_PX, ROWS_PX = 260, 320
+"""Widths; where there is less than both the numbers stand below the chart."""
 
 
 class PlotTab(QWidget):
@@ -30,11 +33,10 @@ class PlotTab(QWidget):
         self._features, self._edit = features, edit
         self._shown: object = None
         self.chart, self.rows, self.words = LineChart(), ValueRows(), muted()
-        column = in_column(self.words, on=self, margins=(6, 6, 6, 4))
-        row = in_row((self.chart, 1), spacing=14)
-        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
-        self.rows.setMinimumWidth(320)
-        column.addLayout(row, 1)
+        self.chart.setMinimumWidth(LEAST_CHART_PX)
+        self.rows.setMinimumWidth(ROWS_PX)
+        both = Folding(in_row(self.chart), in_column(self.rows, STRETCH), spacing=14, share=2)
+        in_column(self.words, (both, 1), on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
         """Show what the presenter says now; drawn anew only for another feature or result."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtGui import QFontDatabase
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
 from workbench.language import tr
 from workbench.pages.inspect.studies import words
@@ -13,7 +13,7 @@ from workbench.views import ask
 from workbench.views.common import dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import enable, heading, in_column, in_row, muted, say
+from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column, in_row, muted, say
 
 FORM_WIDTH = 300
 """Pixels of the fields; the table beside them takes the rest."""
@@ -45,20 +45,15 @@ class StudyEditor(QWidget):
         self.add.clicked.connect(self._add)
         self.make.clicked.connect(lambda: self._studies.finish())
         self.cancel.clicked.connect(lambda: self._studies.give_up())
-        row = in_row((self.text, 1), spacing=14)
         side = QVBoxLayout()
         for form in self.forms.values():
             form.setFixedWidth(FORM_WIDTH)
             side.addWidget(form)
         side.addStretch(1)
-        row.addLayout(side)
-        buttons = QHBoxLayout()
-        for button in (self.open, self.add):
-            buttons.addWidget(button)
-        buttons.addStretch(1)
-        for button in (self.cancel, self.make):
-            buttons.addWidget(button)
-        in_column(self.title, self.help, (row, 1), self.problem, buttons, on=self)
+        both = Folding(in_row(self.text), side, spacing=14, share=4)
+        sources = in_row(self.open, self.add, STRETCH, spacing=6)
+        ends = in_row(STRETCH, self.cancel, self.make, spacing=6)
+        in_column(self.title, self.help, (both, 1), self.problem, Folding(sources, ends, spacing=6), on=self)
         self._dress()
 
     def refresh(self) -> None:

@@ -23,13 +23,15 @@ from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.layouts import UpAndDown, enable, in_column, in_row, muted
+from workbench.views.layouts import STRETCH, Folding, UpAndDown, enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.control import ControlPlot
 
 LIST_HEIGHT = 150
 """Pixels of the list of studies; what does not fit is scrolled to."""
+LEAST_TABLE_PX, ROWS_PX = 300, 250
+"""Widths; where there is less than both the numbers stand below the table."""
 
 
 class StudiesTab(QWidget):
@@ -71,13 +73,16 @@ class StudiesTab(QWidget):
     def _kept(self) -> QWidget:
         inside = QWidget()
         column = in_column(self.words, on=inside)
-        column.addLayout(self._row((
+        studies = self._row((
             ("grr", "mdi6.account-group-outline", tr("Gauge R&&R …"), lambda: self._studies.begin("grr")),
             ("acceptance", "mdi6.clipboard-check-outline", tr("Acceptance check …"),
              lambda: self._studies.begin("acceptance")),
+        ))  # fmt: skip
+        of_parts = self._row((
             ("series", "mdi6.chart-timeline-variant", tr("Series …"), lambda: self._studies.begin("series")),
             ("type1", "mdi6.chart-bell-curve", tr("Keep type-1 of the repeats"), self._studies.keep_type1),
-        )))  # fmt: skip
+            ))  # fmt: skip
+        column.addWidget(Folding(studies, of_parts, spacing=6))
         self.list.setColumnCount(2)
         self.list.setHeaderLabels([tr("In the report"), tr("Made of")])
         self.list.setAccessibleName(tr("Studies"))
@@ -97,10 +102,9 @@ class StudiesTab(QWidget):
         column.addWidget(self.title)
         for chart in self.charts:
             column.addWidget(chart)
-        row = in_row((self.table, 1), spacing=14)
-        row.addWidget(self.rows, 0, Qt.AlignmentFlag.AlignTop)
-        self.rows.setMinimumWidth(250)
-        column.addLayout(row, 1)
+        self.table.setMinimumWidth(LEAST_TABLE_PX)
+        self.rows.setMinimumWidth(ROWS_PX)
+        column.addWidget(Folding(in_row(self.table), in_column(self.rows, STRETCH), spacing=14, share=2), 1)
         column.addWidget(self.notes)
         return inside
 
