@@ -121,6 +121,13 @@ def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
     return _line(factor * one.value, factor * one.U, one.k, unit, words)
 
 
+def short_value(one: Characteristic, words: Words = ENGLISH) -> str:
+    """'50.012 ± 0.024 mm', '89.95° ± 0.04°'."""
+    unit, factor = shown_unit(one)
+    value, U = with_uncertainty(factor * one.value, factor * one.U, words)
+    return f"{value}° ± {U}°" if unit == "°" else f"{value} ± {U} {unit}"
+
+
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
     """What a characteristic is called, its kind in the report's language: "top flatness", "stairs height 2"."""
     feature, kind, number = one.name.rpartition(one.kind)
@@ -144,11 +151,17 @@ def shown_unit(one: Characteristic) -> tuple[str, float]:
     return ("°", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)
 
 
+def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
+    """A number with its unit, which no line break parts: '0.02 mm', but '90°', as ISO 80000-1 has it."""
+    return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
+
+
 def _line(value: float, U: float, k: float, unit: str, words: Words) -> str:
     if not math.isfinite(U):
-        return f"{words.fixed(value, 3)} {unit} ({words('uncertainty unknown')})"
+        return with_unit(words.fixed(value, 3), unit, " ") + f" ({words('uncertainty unknown')})"
     decimals = decimals_of(U)
-    return f"{words.fixed(value, decimals)} {unit} ± {words.fixed(U, decimals)} {unit} (k = {words.general(k)})"
+    value_shown, U_shown = (with_unit(words.fixed(one, decimals), unit, " ") for one in (value, U))
+    return f"{value_shown} ± {U_shown} (k = {words.general(k)})"
 
 
 def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:
@@ -198,12 +211,12 @@ def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
     if math.isinf(low) and math.isinf(high):
         return ""
     if math.isinf(low):
-        return words("at most {limit}", limit=f"{_signed(high, words)}\u00a0{unit}")
+        return words("at most {limit}", limit=with_unit(_signed(high, words), unit))
     if math.isinf(high):
-        return words("at least {limit}", limit=f"{_signed(low, words)}\u00a0{unit}")
+        return words("at least {limit}", limit=with_unit(_signed(low, words), unit))
     if math.isclose(-low, high):
-        return f"±{words.general(high)}\u00a0{unit}"
-    return words("{low} to {high}", low=_signed(low, words), high=f"{_signed(high, words)}\u00a0{unit}")
+        return with_unit(f"±{words.general(high)}", unit)
+    return words("{low} to {high}", low=_signed(low, words), high=with_unit(_signed(high, words), unit))
 
 
 def _signed(value: float, words: Words) -> str:
@@ -215,8 +228,8 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
         return words("The uncertainty is unknown, so neither conformity nor non-conformity is proven.")
     decimals = max(decimals_of(U), 0)
     shown = {
-        "deviation": f"{words.fixed(abs(deviation), decimals)} {unit}",
-        "U": f"{words.fixed(U, decimals)} {unit}",
+        "deviation": with_unit(words.fixed(abs(deviation), decimals), unit, " "),
+        "U": with_unit(words.fixed(U, decimals), unit, " "),
         "tolerance": tolerance,
     }
     if verdict == Verdict.CONFORMING:

@@ -9,6 +9,7 @@ from typing import get_args
 import numpy as np
 import pypdfium2
 import pytest
+from matplotlib.text import Text
 from pypdf import PdfReader
 
 from core.inspect.characteristic import Characteristic, Limits
@@ -22,7 +23,7 @@ from core.report.content import MOST_CALLOUTS
 from core.report.drawings import drawings
 from core.report.layout.style import ReportLook
 from core.report.pdf import build_report
-from core.report.plots.charts import callouts
+from core.report.plots.charts import callouts, surface_figure
 from core.report.plots.run_chart import run_chart_figure
 from core.report.template import SECTIONS, ReportTemplate
 from core.report.wording import Words, study_name
@@ -64,7 +65,7 @@ def test_every_characteristic_is_in_the_table_with_what_is_asked_U_k_and_its_dec
     for row in (
         "50 mm ±0.2 mm 50.012 mm 0.013 2.05 +0.012 ✓ Conforming",
         "top flatness 0 mm at most +0.05 mm 0.0310 mm 0.0080 2 +0.0310 ✓ Conforming",
-        "top to side 90 ° ±0.06 ° 89.950 ° 0.040 2 −0.050 ? Not proven",
+        "top to side 90° ±0.06° 89.950° 0.040 2 −0.050 ? Not proven",
         "step 2 height 10 mm ±0.05 mm 10.200 mm 0.020 2 +0.200 ✗ Not conforming",
         "ball diameter 24.980 mm 0.040 2 – No verdict",
         "unknown 3 mm at most +0.03 mm unknown unknown 2 ? Not proven",
@@ -117,6 +118,14 @@ def test_the_worst_of_each_feature_is_called_out_on_the_surface_with_value_U_and
     top = content.cloud.points[content.points["top"]]
     assert np.min(np.linalg.norm(top - called["top flatness ✓"].place, axis=1)) == 0
     assert np.linalg.norm(called["top flatness ✓"].place - top.mean(axis=0)) < 5
+    drawn = surface_figure(look, content.mesh, content.cloud, None, 170, 90, list(called.values()))
+    canvas = drawn.canvas
+    canvas.draw()
+    words = [text for text in drawn.findobj(Text) if text.get_text()]
+    dimensions = [text for text in words if re.fullmatch(r"[\d.]+ mm", text.get_text())]
+    boxes = [text.get_window_extent() for text in words if "±" in text.get_text()]
+    assert len(dimensions) == 2 and len(boxes) == 3
+    assert not any(box.overlaps(text.get_window_extent()) for box in boxes for text in dimensions)
     many = {f"f{n}": np.arange(n, n + 5) for n in range(30)}
     rows = tuple(Characteristic(f"f{n} flatness", "flatness", 0.1, 0.01) for n in range(30))
     crowded = replace(content, inspected=rows, points=many, features={f"f{n} flatness": f"f{n}" for n in range(30)})

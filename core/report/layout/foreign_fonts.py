@@ -18,9 +18,10 @@ from reportlab.pdfbase import pdfmetrics
 from reportlab.pdfbase.cidfonts import UnicodeCIDFont
 from reportlab.pdfbase.ttfonts import TTFError, TTFont
 
-USUAL = ("CJK", "Sans SC", "Sans JP", "Sans KR", "YaHei", "SimSun", "SimHei", "Meiryo", "Yu Gothic", "MS Gothic",
-         "Malgun", "Batang", "PingFang", "Hiragino", "SD Gothic", "AppleGothic", "WenQuanYi", "Droid Sans Fallback",
-         "IPA", "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI", "Tahoma")  # fmt: skip
+USUAL = ("Sans CJK SC", "CJK SC", "CJK", "Sans SC", "Sans JP", "Sans KR", "YaHei", "SimSun", "SimHei", "Meiryo",
+         "Yu Gothic", "MS Gothic", "Malgun", "Batang", "PingFang", "Hiragino", "SD Gothic", "AppleGothic",
+         "WenQuanYi", "Droid Sans Fallback", "IPA", "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI",
+         "Tahoma")  # fmt: skip
 """In the names of fonts of many scripts: looked into before all others."""
 NO_LETTERS = "Last Resort"
 """A font that has a box for every character."""
@@ -31,12 +32,14 @@ def system_fonts() -> Sequence[tuple[str, str]]:
     """(family, path) of the TrueType fonts of this computer, those of many scripts first."""
     own = str(Path(matplotlib.get_data_path()))
     found = {
-        font.fname: font.name
+        (next((at for at, part in enumerate(USUAL) if part in font.name), len(USUAL)), font.fname, font.name)
         for font in font_manager.fontManager.ttflist
         if not font.fname.startswith(own) and NO_LETTERS not in font.name and font.style == "normal"
     }
-    rank = {name: next((at for at, part in enumerate(USUAL) if part in name), len(USUAL)) for name in found.values()}
-    return tuple((name, path) for path, name in sorted(found.items(), key=lambda one: (rank[one[1]], one[0])))
+    paths: dict[str, str] = {}  # of a collection the best of its families
+    for _, path, name in sorted(found):
+        paths.setdefault(path, name)
+    return tuple((name, path) for path, name in paths.items())
 
 
 def truetype(name: str, path: str) -> TTFont:
@@ -53,20 +56,29 @@ def truetype(name: str, path: str) -> TTFont:
 
 
 @cache
-def embedded_font(character: str) -> tuple[str, str]:
-    """(name for reportlab, family for matplotlib) of a font of this computer that has `character`; ("", "") if none."""
-    for family, path in _having(character):
+def drawn_family(character: str) -> str:
+    """Family for matplotlib of a font of this computer that has `character`, or "".
+
+    A plot is a picture: it takes fonts whose outlines reportlab cannot embed, as those of most Chinese fonts.
+    """
+    return next((family for family, _ in _having(character)), "")
+
+
+@cache
+def embedded_font(character: str) -> str:
+    """Name for reportlab of a font of this computer that has `character` and can be embedded, or ""."""
+    for _, path in _having(character):
         name = f"Foreign-{Path(path).stem}"
         if name in pdfmetrics.getRegisteredFontNames():
-            return name, family
+            return name
         try:
             font = truetype(name, path)
         except (TTFError, OSError, ValueError):  # outlines or licences that cannot be embedded
             continue
         if ord(character) in font.face.charToGlyph:
             pdfmetrics.registerFont(font)
-            return name, family
-    return "", ""
+            return name
+    return ""
 
 
 def _having(character: str) -> Iterator[tuple[str, str]]:

@@ -39,8 +39,8 @@ TEXT_WIDTH = 170 * mm
 
 NOT_EMBEDDED = Message(
     "report.fonts_not_embedded",
-    "No font of this computer has some of the East Asian characters in this report: the program that shows it has to "
-    "bring them.",
+    "No font of this computer that can be embedded has some of the East Asian characters in this report: the program "
+    "that shows it has to bring them.",
 )
 NO_FONT = Message(
     "report.no_font",
@@ -129,13 +129,13 @@ def draw_words(canvas: Any, place: tuple[float, float], text: str, font: str, si
 
 def _foreign(character: str, text: str) -> str:
     """The font for a character of `text` that the report's own lack, or ""."""
-    return embedded_font(character)[0] or (east_asian_font(text) if is_east_asian(character) else "")
+    return embedded_font(character) or (east_asian_font(text) if is_east_asian(character) else "")
 
 
 def font_note(texts: Iterable[str]) -> Message | None:
     """What a reader must know of characters in `texts`: that some are not embedded, or have no font at all."""
     foreign = {character for text in texts for character in text if not has_character(character)}
-    lacking = {character for character in foreign if not embedded_font(character)[0]}
+    lacking = {character for character in foreign if not embedded_font(character)}
     if not lacking:
         return None
     return NOT_EMBEDDED if all(is_east_asian(character) for character in lacking) else NO_FONT

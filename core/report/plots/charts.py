@@ -41,11 +41,13 @@ from core.report.plots.figures import (
     round_up,
 )
 from core.report.plots.surface_view import SurfacePicture, surface_picture, viewer_axes
-from core.report.wording import SIGNS, points_counted, shown_name, shown_unit, with_uncertainty
+from core.report.wording import SIGNS, points_counted, short_value, shown_name
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
 DEPTH_MAP, SIGMA_MAP, SIGN_MAP = "cividis", "viridis", "PuOr_r"
+ABOVE_FOOTPRINT = 0.65
+"""Share of the picture, from above, that callouts stand in: the dimensions of the footprint stand below."""
 
 
 def height_map(accent: str) -> LinearSegmentedColormap:
@@ -148,10 +150,8 @@ def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
     for one, indices in content.shown_at:
         points = content.cloud.points[indices]
         middle = points[np.argmin(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
-        unit, factor = shown_unit(one)
-        value, U = with_uncertainty(factor * one.value, factor * one.U, look.words)
         name, sign = shown_name(one, look.words), f" {SIGNS[one.verdict]}" if one.limits is not None else ""
-        made.append(Callout(f"{name}{sign}\n{value} ± {U} {unit}", middle))
+        made.append(Callout(f"{name}{sign}\n{short_value(one, look.words)}", middle))
     return made
 
 
@@ -168,7 +168,7 @@ def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground) -> None
             axes.annotate(
                 said,
                 (x, y),
-                (at, top - (place + 0.5) / rows * 0.85 * (top - bottom)),
+                (at, top - (place + 0.5) / rows * ABOVE_FOOTPRINT * (top - bottom)),
                 ha=align,
                 va="center",
                 color=INK,

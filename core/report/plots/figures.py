@@ -21,7 +21,7 @@ from matplotlib.ticker import Formatter, ScalarFormatter
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.report.layout.foreign_fonts import embedded_font
+from core.report.layout.foreign_fonts import drawn_family
 from core.report.layout.style import INK, MUTED, has_character
 
 DPI = 200
@@ -63,12 +63,12 @@ def plot_style() -> AbstractContextManager[None]:
 
 def drawable(text: str) -> str:
     """`text` as a plot can show it: what neither the report's font nor one of this computer has is a question mark."""
-    return "".join(character if has_character(character) or embedded_font(character)[0] else "?" for character in text)
+    return "".join(character if has_character(character) or drawn_family(character) else "?" for character in text)
 
 
 def families(text: str) -> list[str]:
     """Families of fonts that have all of a `drawable` text, the report's own first."""
-    foreign = dict.fromkeys(embedded_font(character)[1] for character in text if not has_character(character))
+    foreign = dict.fromkeys(drawn_family(character) for character in text if not has_character(character))
     return [FAMILY, *(family for family in foreign if family)]
 
 

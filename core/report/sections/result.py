@@ -41,6 +41,7 @@ from core.report.wording import (
     tolerance_words,
     uncertainty_sentence,
     value_line,
+    with_unit,
 )
 
 PADDING = 5 * mm  # of the box, inside
@@ -91,11 +92,11 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     decimals = max(decimals_of(factor * one.U), 0)
     facts = {}
     if one.limits is not None and one.deviation is not None:
-        facts[words("Nominal value")] = f"{words.general(factor * one.limits.nominal)} {unit}"
+        facts[words("Nominal value")] = with_unit(words.general(factor * one.limits.nominal), unit)
         deviation = words.fixed(factor * one.deviation, decimals, signed=True)
-        facts[words("Deviation from nominal")] = f"{deviation} {unit}"
+        facts[words("Deviation from nominal")] = with_unit(deviation, unit)
         facts[words("Tolerance")] = tolerance_words(one, words)
-    facts[words("Expanded uncertainty U")] = f"{words.fixed(factor * one.U, decimals_of(factor * one.U))} {unit}"
+    facts[words("Expanded uncertainty U")] = with_unit(words.fixed(factor * one.U, decimals_of(factor * one.U)), unit)
     parts.append(_facts(look, facts, width))
     if one.limits is not None and np.isfinite((one.deviation or 0.0) + one.U):
         parts += [Spacer(0, 1 * mm), ToleranceBar(look, one, width)]
@@ -199,7 +200,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
     words, (unit, factor) = look.words, shown_unit(one)
     decimals = decimals_of(factor * one.U)
     limits = one.limits
-    nominal = "" if limits is None else f"{words.general(factor * limits.nominal)}\u00a0{unit}"
+    nominal = "" if limits is None else with_unit(words.general(factor * limits.nominal), unit)
     known = one.deviation is not None and math.isfinite(one.deviation)
     deviation = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True) if known else ""
     name = shown_name(one, words)
@@ -213,7 +214,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
     numbers = (
         nominal,
         tolerance_words(one, words),
-        f"{words.fixed(factor * one.value, decimals)}\u00a0{unit}" if math.isfinite(one.value) else words("unknown"),
+        with_unit(words.fixed(factor * one.value, decimals), unit) if math.isfinite(one.value) else words("unknown"),
         U,
         words.general(one.k),
         deviation,

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
 from pypdf import PdfReader
 
@@ -22,17 +23,22 @@ from tests.report.report_samples import block_content
 CHINESE, THAI = "量块", "ก"
 
 
-def font_file(path, characters):
-    """A TrueType font with a square for each of these characters."""
-    pen = TTGlyphPen(None)
+def font_file(path, characters, *, truetype=True):
+    """A font with a square for each of these characters; its outlines are TrueType's, or PostScript's."""
+    pen = TTGlyphPen(None) if truetype else T2CharStringPen(1000, None)
     for move, at in ((pen.moveTo, (0, 0)), (pen.lineTo, (0, 900)), (pen.lineTo, (900, 900)), (pen.lineTo, (900, 0))):
         move(at)
     pen.closePath()
-    square, names = pen.glyph(), {ord(character): f"g{ord(character):X}" for character in characters}
-    builder = FontBuilder(1000, isTTF=True)
+    names = {ord(character): f"g{ord(character):X}" for character in characters}
+    builder = FontBuilder(1000, isTTF=truetype)
     builder.setupGlyphOrder([".notdef", *names.values()])
     builder.setupCharacterMap(names)
-    builder.setupGlyf({name: square for name in (".notdef", *names.values())})
+    square = pen.glyph() if truetype else pen.getCharString()
+    squares = dict.fromkeys((".notdef", *names.values()), square)
+    if truetype:
+        builder.setupGlyf(squares)
+    else:
+        builder.setupCFF("Squares", {}, squares, {})
     builder.setupHorizontalMetrics({name: (1000, 0) for name in (".notdef", *names.values())})
     builder.setupHorizontalHeader(ascent=900, descent=-100)
     builder.setupNameTable({"familyName": "Squares", "styleName": "Regular", "psName": "Squares"})
@@ -48,10 +54,15 @@ def computer(monkeypatch):
 
     def has(*fonts):
         monkeypatch.setattr(foreign_fonts, "system_fonts", lambda: fonts)
-        foreign_fonts.embedded_font.cache_clear()
+        forget()
 
     yield has
+    forget()
+
+
+def forget():
     foreign_fonts.embedded_font.cache_clear()
+    foreign_fonts.drawn_family.cache_clear()
 
 
 @pytest.fixture(scope="module")
@@ -77,6 +88,13 @@ def test_a_font_of_this_computer_is_embedded_for_its_characters_alone(computer, 
     assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
 
 
+def test_plots_take_a_font_that_no_report_can_embed(computer, tmp_path):
+    font_file(tmp_path / "postscript.otf", CHINESE, truetype=False)
+    computer(("Squares", str(tmp_path / "postscript.otf")))
+    assert font_note([CHINESE]) == NOT_EMBEDDED
+    assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
+
+
 def test_east_asian_text_without_a_font_is_left_to_the_readers_program_and_a_note_says_so(computer, bare):
     computer()
     fonts, text = fonts_and_text(build_report(replace(bare, part=CHINESE)))
@@ -98,7 +116,7 @@ def test_a_font_that_cannot_be_read_or_embedded_is_passed_over(computer, tmp_pat
     (tmp_path / "broken.ttf").write_bytes(b"no font")
     font_file(tmp_path / "thai.ttf", THAI)
     computer(("Broken", str(tmp_path / "broken.ttf")), ("Thai", str(tmp_path / "thai.ttf")))
-    assert foreign_fonts.embedded_font(THAI) == ("Foreign-thai", "Thai")
+    assert foreign_fonts.embedded_font(THAI) == "Foreign-thai"
     assert font_note([f"x {THAI}"]) is None
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from core.inspect.conformity import Verdict
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of
-from core.report.wording import decision_sentence, grouped, shown_name, shown_unit, value_line, with_uncertainty
+from core.report.wording import decision_sentence, grouped, short_value, shown_name, value_line
 from workbench.language import number, text_of, tr
 from workbench.pages.words import wording
 from workbench.views.lists.value_rows import ValueRow
@@ -36,11 +36,7 @@ def source_of_none(spec: FeatureSpec) -> str:
 
 def value(row: Characteristic) -> str:
     """'50.012 ± 0.024 mm'."""
-    unit, factor = shown_unit(row)
-    if not math.isfinite(row.U):
-        return value_line(row, wording())
-    shown, expanded = with_uncertainty(factor * row.value, factor * row.U, wording())
-    return f"{shown} ± {expanded} {unit}" if unit != "°" else f"{shown}° ± {expanded}°"
+    return short_value(row, wording()) if math.isfinite(row.U) else value_line(row, wording())
 
 
 def tip(row: Characteristic) -> str:
