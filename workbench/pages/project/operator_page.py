@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, QUrl, Signal
+from PySide6.QtCore import QEvent, QSize, Qt, QUrl, Signal
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
@@ -18,7 +18,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import IconLabel, dress
-from workbench.views.layouts import Elided, enable, in_column, in_row
+from workbench.views.layouts import STRETCH, Elided, enable, in_column, in_row
 from workbench.views.lists.notice_list import Banner
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -28,6 +28,12 @@ HEADLINE_PX, TEXT_PX, BUTTON_PX = 34, 19, 21
 """To be read from where the part is handled."""
 BUTTON_HIGH_PX = 84
 """To be hit with a glove on."""
+SYMBOLS = {
+    "next_part": "mdi6.barcode-scan",
+    "measure": "mdi6.play-circle-outline",
+    "report": "mdi6.file-document-outline",
+    "stop": "mdi6.stop-circle-outline",
+}
 SIGN_PX = 64
 """Of the sign beside the headline."""
 
@@ -54,12 +60,12 @@ class OperatorPage(QWidget):
             label.setWordWrap(True)
             label.setTextFormat(Qt.TextFormat.PlainText)
         self.buttons = {
-            name: QPushButton(icon(symbol), text)
-            for name, symbol, text in (
-                ("next_part", "mdi6.barcode-scan", tr("Next part")),
-                ("measure", "mdi6.play-circle-outline", tr("Measure")),
-                ("report", "mdi6.file-document-outline", tr("Report")),
-                ("stop", "mdi6.stop-circle-outline", tr("Stop")),
+            name: QPushButton(icon(SYMBOLS[name]), text)
+            for name, text in (
+                ("next_part", tr("Next part")),
+                ("measure", tr("Measure")),
+                ("report", tr("Report")),
+                ("stop", tr("Stop")),
             )
         }
         for button in self.buttons.values():
@@ -70,7 +76,7 @@ class OperatorPage(QWidget):
         dress(self.part, f"font-size: {TEXT_PX}px; font-weight: 600;")
         for label in (self.who, self.detail, self.left):
             dress(label, f"font-size: {TEXT_PX}px;")
-        said = in_column(self.headline, self.detail, self.bar, self.left, spacing=8)
+        said = in_column(STRETCH, self.headline, self.detail, self.bar, self.left, STRETCH, spacing=8)
         state = QFrame()
         state.setObjectName("card")
         row = in_row(on=state, margins=(24, 16, 24, 16), spacing=20)
@@ -87,6 +93,11 @@ class OperatorPage(QWidget):
         self.refreshing = Refresh(self.refresh, self)
         for signal in (mode.changed, model.changed, model.results_changed, model.opened):
             signal.connect(self._soon)
+
+    def changeEvent(self, event: QEvent) -> None:
+        super().changeEvent(event)
+        if event.type() == QEvent.Type.PaletteChange and self._mode.on:
+            self.refreshing.soon()  # the headline has a colour of the theme
 
     def _soon(self) -> None:
         if self._mode.on:
@@ -113,6 +124,7 @@ class OperatorPage(QWidget):
             primary = onwards.get(stage) == button_name
             if button.property("primary") != primary:
                 button.setProperty("primary", primary)
+                button.setIcon(icon(SYMBOLS[button_name], colour="on_accent" if primary else ""))
                 button.style().unpolish(button)
                 button.style().polish(button)
         symbol, colour, headline, detail = self._said(stage)

@@ -109,7 +109,7 @@ class StudiesTab(QWidget):
         return inside
 
     def _row(self, wanted: tuple[tuple[str, str, str, object], ...]) -> QHBoxLayout:
-        row = QHBoxLayout()
+        row = in_row(spacing=6)
         for key, symbol, text, does in wanted:
             button = QPushButton(icon(symbol), text)
             button.clicked.connect(lambda _=False, does=does: does())
