@@ -109,8 +109,13 @@ def _rows(shown: ShownComparison) -> list[ValueRow]:
     circles = tr("{n} of {diameter} mm", n=number(shown.places, ",d"), diameter=diameter)
     return [
         (tr("Compared with"), shown.other, text_of(ALIGNED[shown.alignment]), ""),
-        (tr("Less material"), _changed(shown.lower), chance, "warn" if shown.lower.share else ""),
-        (tr("More material"), _changed(shown.higher), chance, "warn" if shown.higher.share else ""),
+        (tr("Less material"), _changed(shown.lower), _more(shown.lower) + chance, "warn" if shown.lower.share else ""),
+        (
+            tr("More material"),
+            _changed(shown.higher),
+            _more(shown.higher) + chance,
+            "warn" if shown.higher.share else "",
+        ),
         (tr("Detectable"), tr("from {lod} mm on", lod=wording().fixed(shown.lod95_mm, 3)), detectable, ""),
         (tr("Registration"), f"{wording().fixed(shown.registration_mm, 3)} mm", registration, ""),
         (tr("Circles"), circles, "", ""),
@@ -118,12 +123,16 @@ def _rows(shown: ShownComparison) -> list[ValueRow]:
 
 
 def _changed(part: Changed) -> str:
-    """'12.3 % of the places, mean −0.101 mm, at most −0.148 mm'."""
+    """'12.3 %, mean −0.101 mm'."""
     if not part.share:
         return tr("nowhere significant")
-    return tr(
-        "{share} % of the places, mean {mean} mm, at most {extreme} mm",
-        share=number(100 * part.share, ".1f"),
-        mean=wording().fixed(part.mean_mm, 3, signed=True),
-        extreme=wording().fixed(part.extreme_mm, 3, signed=True),
-    )
+    mean = wording().fixed(part.mean_mm, 3, signed=True)
+    return tr("{share} %, mean {mean} mm", share=number(100 * part.share, ".1f"), mean=mean)
+
+
+def _more(part: Changed) -> str:
+    """What the row has no room for."""
+    if not part.share:
+        return ""
+    extreme = wording().fixed(part.extreme_mm, 3, signed=True)
+    return tr("Of the places; at most {extreme} mm.", extreme=extreme) + " "

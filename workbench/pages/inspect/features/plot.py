@@ -35,7 +35,9 @@ class PlotTab(QWidget):
         self.chart, self.rows, self.words = LineChart(), ValueRows(), muted()
         self.chart.setMinimumWidth(LEAST_CHART_PX)
         self.rows.setMinimumWidth(ROWS_PX)
-        both = Folding(in_row(self.chart), in_column(self.rows, STRETCH), spacing=14, share=2)
+        beside = in_column(self.rows, STRETCH)
+        both = Folding(in_row(self.chart), beside, spacing=14, share=2)
+        self._beside = beside.parentWidget()
         in_column(self.words, (both, 1), on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
@@ -54,7 +56,7 @@ class PlotTab(QWidget):
         else:
             self.rows.set_rows([])
             self.chart.clear(self._message(result))
-        self.rows.setVisible(result is not None and bool(result.rows))
+        self._beside.setVisible(result is not None and bool(result.rows))
 
     def _message(self, result: ShownFeature | None) -> str:
         if result is not None and result.problem:

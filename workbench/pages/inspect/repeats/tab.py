@@ -59,7 +59,7 @@ class RepeatsTab(QWidget):
             numbers.addWidget(widget)
         numbers.addStretch(1)
         row.addLayout(numbers, 2)
-        self.rows.setMinimumWidth(200)
+        self.rows.setMinimumWidth(230)
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
         split.addWidget(below)
