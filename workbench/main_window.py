@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from PySide6.QtCore import QEvent, QSize, Qt, QTimer, QUrl, Signal
-from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent, QResizeEvent
+from PySide6.QtGui import QCloseEvent, QDesktopServices, QDragEnterEvent, QDropEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
@@ -46,7 +46,7 @@ from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import TaskBar
-from workbench.window_layout import keep_layout, restore_layout
+from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
@@ -108,6 +108,7 @@ class MainWindow(QMainWindow):
         self._connect()
         self.back.setIcon(icon("mdi6.chevron-left"))
         restore_layout(self, self.pages, bench.settings)
+        self._layout_of_screen = LayoutOfScreen(self, self.pages, bench.settings)
         self._project_opened()
 
     @property
@@ -202,6 +203,10 @@ class MainWindow(QMainWindow):
         self.bench.close()
         self._left = True
         self.close()
+
+    def showEvent(self, event: QShowEvent) -> None:
+        super().showEvent(event)
+        self._layout_of_screen.follow()
 
     def closeEvent(self, event: QCloseEvent) -> None:
         """Close once `leave` has said so; it asks in the next turn, as no question may come up within this event."""

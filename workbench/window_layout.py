@@ -26,6 +26,10 @@ def keep_layout(window: QWidget, pages: Mapping[str, StepPage], settings: AppSet
     screen = name_of(window.screen())
     settings.keep_text(LAST_SCREEN, screen)
     settings.keep_layout(f"{screen}/window", window.saveGeometry())
+    _keep_pages(screen, pages, settings)
+
+
+def _keep_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
     for name, page in pages.items():
         settings.keep_layout(f"{screen}/{name}", page.splitter.saveState())
         for key, panel in page.kept_panels.items():
@@ -42,15 +46,40 @@ def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: App
         window.restoreGeometry(geometry)
     if not window.isMaximized() and not window.isFullScreen():
         window.setGeometry(inside(window.geometry(), screens[name].availableGeometry()))
+    _restore_pages(name, pages, settings)
+
+
+def _restore_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
     for step, page in pages.items():
-        if divided := settings.layout(f"{name}/{step}"):
+        if divided := settings.layout(f"{screen}/{step}"):
             page.splitter.restoreState(divided)
         for key, panel in page.kept_panels.items():
-            match settings.text(f"layout/{name}/{step}/{key}", ""):
+            match settings.text(f"layout/{screen}/{step}/{key}", ""):
                 case "open":
                     panel.expand(animate=False)
                 case "folded":
                     panel.collapse(animate=False)
+
+
+class LayoutOfScreen:
+    """Lays the pages out as they were on the screen that the window is moved to; the window stays where it is put."""
+
+    def __init__(self, window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
+        self._window, self._pages, self._settings = window, pages, settings
+        self._screen = ""
+
+    def follow(self) -> None:
+        """Do so from now on; the window is shown."""
+        handle = self._window.windowHandle()
+        if not self._screen and handle is not None:
+            self._screen = name_of(self._window.screen())
+            handle.screenChanged.connect(self._moved)
+
+    def _moved(self, screen: QScreen) -> None:
+        before, self._screen = self._screen, name_of(screen)
+        if self._screen != before:
+            _keep_pages(before, self._pages, self._settings)
+            _restore_pages(self._screen, self._pages, self._settings)
 
 
 def inside(place: QRect, room: QRect) -> QRect:

@@ -80,3 +80,30 @@ def test_a_layout_of_a_screen_that_is_gone_puts_the_window_on_one_that_is_there(
     restore_layout(window, window.pages, settings)
     room = window.screen().availableGeometry()
     assert room.contains(window.geometry().topLeft())
+
+
+def test_moved_to_another_screen_the_pages_are_as_they_were_there_and_the_window_stays_where_it_was_put(
+    window: MainWindow, qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    window.model.create(tmp_path / "empty", new_project("Empty"))
+    window.go_to("scan")
+    window.show()
+    qapp.processEvents()
+    handle = window.windowHandle()
+
+    def move_to(name: str) -> None:
+        monkeypatch.setattr(window_layout, "name_of", lambda _: name)
+        handle.screenChanged.emit(window.screen())
+        qapp.processEvents()
+
+    move_to("here")
+    first, place = seen(window), window.geometry()
+    move_to("there")
+    assert seen(window) == first, "nothing is known yet of that screen"
+    change(window)
+    second = seen(window)
+    assert second != first
+    move_to("here")
+    assert seen(window) == first
+    move_to("there")
+    assert seen(window) == second and window.geometry() == place
