@@ -95,6 +95,10 @@ class Folding(QWidget):
         for part in self._parts:
             self._box.addWidget(part, 1 if self._box.count() else share)
 
+    def part(self, number: int) -> QWidget:
+        """What holds a part, to hide it."""
+        return self._parts[number]
+
     def minimumSizeHint(self) -> QSize:
         """As narrow as the widest part."""
         return QSize(max(self._widths()), super().minimumSizeHint().height())
@@ -108,7 +112,7 @@ class Folding(QWidget):
             self._box.setDirection(direction)
 
     def _widths(self) -> list[int]:
-        return [part.minimumSizeHint().width() for part in self._parts]
+        return [part.minimumSizeHint().width() for part in self._parts if not part.isHidden()]
 
 
 def resize_on_screen(window: QWidget, width: int, height: int) -> None:

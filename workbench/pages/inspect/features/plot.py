@@ -37,7 +37,7 @@ class PlotTab(QWidget):
         self.rows.setMinimumWidth(ROWS_PX)
         beside = in_column(self.rows, STRETCH)
         both = Folding(in_row(self.chart), beside, spacing=14, share=2)
-        self._beside = beside.parentWidget()
+        self._beside = both.part(1)
         in_column(self.words, (both, 1), on=self, margins=(6, 6, 6, 4))
 
     def refresh(self) -> None:
