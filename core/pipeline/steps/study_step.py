@@ -41,8 +41,9 @@ _ID = 12
 
 
 def keep_study(
-    folder: Path, kind: Kind, text: str, base: Path, limits: Mapping[str, float], progress: Progress = silent
-) -> KeptStudy:
+    folder: Path, kind: Kind, text: str, base: Path, limits: Mapping[str, float], name: str = THICKNESS,
+    progress: Progress = silent,
+) -> KeptStudy:  # fmt: skip
     """Make a study of a table and keep it with the table in the project: the caller puts it into the project's list.
 
     Parameters
@@ -58,6 +59,8 @@ def keep_study(
     limits
         In mm. Of a gauge R&R study "tolerance": T, its full width. Of an acceptance check the limit of each quantity.
         Of a series "lower" and "upper", and "size": values a subgroup.
+    name
+        Of the characteristic of a series.
     progress
         Called with what is being done; may raise Cancelled.
 
@@ -77,7 +80,7 @@ def keep_study(
                 tolerance=limits.get("tolerance"), unit=found.unit,
             )  # fmt: skip
         elif kind == "series":
-            study = _series(repeats_of(table), limits)
+            study = _series(repeats_of(table), limits, name)
         else:
             study = acceptance_check(readings_of(table), cast(Mapping[Quantity, float], limits))
     except InputError as error:
@@ -129,13 +132,13 @@ def read_study_table(path: Path) -> str:
 
 def project_rows(
     kind: Kind, folder: Path, artefact: Artefact, calibrated_mm: float, u_mm: float, diameter_mm: float,
-    progress: Progress = silent,
+    name: str = THICKNESS, progress: Progress = silent,
 ) -> str:  # fmt: skip
     """Rows of a study's table, under its HEADS, from another project's results.
 
     For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
     acceptance check what `read_positions` finds in its cloud, the project standing for the position. For a series its
-    part, its thickness and the standard uncertainty of that.
+    part, its characteristic `name`, a length, and the standard uncertainty of that.
 
     Parameters
     ----------
@@ -145,13 +148,16 @@ def project_rows(
         The other project's.
     artefact, calibrated_mm, u_mm, diameter_mm
         As for `read_positions`; of an acceptance check.
+    name
+        Of the characteristic of a series.
     progress
         Called with what is being done; may raise Cancelled.
 
     Raises
     ------
     InputError
-        If it is no project, nothing was measured in it, or the artefact is not in its cloud.
+        If it is no project, nothing was measured in it, the characteristic is none or no length, or the artefact is
+        not in its cloud.
     """
     if not is_project(folder):
         raise InputError(
@@ -173,15 +179,17 @@ def project_rows(
         values = values or [measured_in(results_folder(folder), THICKNESS).value]
         rows: list[Sequence[object]] = [(part, operator, value) for value in values]
     elif kind == "series":
-        found = measured_in(results_folder(folder), THICKNESS)
+        found = measured_in(results_folder(folder), name)
+        if found.unit != "mm":
+            raise InputError(Message("study.no_length", "the {name} is no length", name=name), where=folder)
         rows = [(project.info.serial or project.info.name or folder.name, found.value, found.u)]
     else:
         readings = read_positions(
             [results_folder(folder)], artefact, calibrated_mm=calibrated_mm, u_mm=u_mm, diameter_mm=diameter_mm,
             progress=progress,
         )  # fmt: skip
-        name = project.info.name or folder.name
-        rows = [(one.quantity, name, one.measured, one.calibrated, one.u) for one in readings]
+        place = project.info.name or folder.name
+        rows = [(one.quantity, place, one.measured, one.calibrated, one.u) for one in readings]
     return "".join(";".join(_cell(cell) for cell in row) + "\n" for row in rows)
 
 
@@ -200,7 +208,7 @@ def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
     return KeptStudy(id_, str(study_values(study)["kind"]), _title(study))
 
 
-def _series(found: Repeats, limits: Mapping[str, float]) -> SeriesStudy:
+def _series(found: Repeats, limits: Mapping[str, float], name: str) -> SeriesStudy:
     return series_study(
         found.values,
         (limits.get("lower", -math.inf), limits.get("upper", math.inf)),
@@ -208,6 +216,7 @@ def _series(found: Repeats, limits: Mapping[str, float]) -> SeriesStudy:
         stated=None if found.u is None else stated_uncertainty(found.u, ()),
         labels=found.labels,
         unit=found.unit,
+        name=name,
     )
 
 

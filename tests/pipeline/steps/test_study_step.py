@@ -12,8 +12,10 @@ from core.cli import studying
 from core.errors import InputError
 from core.files.project.data import ProjectFile, Repeat
 from core.files.project.folder import create_project
+from core.files.study.results import Measured
 from core.files.study.study_file import study_path, study_values, write_study
 from core.pipeline.project.report import project_content
+from core.pipeline.steps import study_step
 from core.pipeline.steps.study_step import (
     HEADS,
     export_study,
@@ -108,3 +110,21 @@ def test_the_report_has_the_studies_that_are_included(done, tmp_path):
     shutil.rmtree(folder / "studies")
     with pytest.raises(InputError, match="study"):
         project_content(folder, project)
+
+
+def test_a_series_is_of_any_length_and_of_no_angle(done, tmp_path, monkeypatch):
+    found = {
+        "top flatness": Measured(0.031, 0.004, 2.0, (), "mm"),
+        "top to side": Measured(89.95, 0.02, 2.0, (), "deg"),
+    }
+    monkeypatch.setattr(study_step, "measured_in", lambda _, name: found[name])
+    folder = tmp_path / "project"
+    folder.mkdir()
+    create_project(folder, ProjectFile(done.project))
+    rows = project_rows("series", folder, "plane", 0, 0, 0, "top flatness")
+    assert rows.strip().split(";")[1:] == ["0.031", "0.004"]
+    with pytest.raises(InputError, match="top to side is no length"):
+        project_rows("series", folder, "plane", 0, 0, 0, "top to side")
+    table = "part;value_mm;u_mm\n" + "".join(f"{n};{0.03 + n / 1000};0.004\n" for n in range(5))
+    kept = keep_study(tmp_path, "series", table, tmp_path, {"size": 1}, "top flatness")
+    assert '"top flatness"' in study_path(tmp_path, kept.id).read_text(encoding="utf-8")

@@ -110,7 +110,7 @@ def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(ta
     tab.window().refreshing.at_once()
     tab.buttons["series"].click()
     tab.window().refreshing.at_once()
-    assert tab.editor.forms["series"].values() == {"nominal_mm": 50.0, "tolerance_mm": 0.2, "size": 1}
+    assert tab.editor.forms["series"].values() == {"name": "thickness", "nominal_mm": 50.0, "tolerance_mm": 0.2, "size": 1}
     values = 50 + 0.01 * np.random.default_rng(5).standard_normal(40)
     values[25] += 0.08
     tab.editor.text.appendPlainText("".join(f"part {n}\t{value}\t0.002\n" for n, value in enumerate(values, start=1)))
@@ -247,3 +247,18 @@ def test_no_study_is_begun_in_a_project_that_is_read_only(tab, studies, presente
     for name in ("grr", "acceptance", "type1"):
         assert not tab.buttons[name].isEnabled()
         assert tab.buttons[name].toolTip().startswith("The project is read-only: go on in a copy")
+
+
+def test_the_characteristic_of_a_series_is_asked_of_the_projects_that_are_added(
+    tab, studies, presenter, qtbot, monkeypatch, tmp_path
+):
+    asked = []
+    lane = cast(HandLane, presenter.bench.measuring)
+    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "7;0.03;0.004\n"
+    tab.buttons["series"].click()
+    assert studies.draft.values["name"] == "thickness"
+    studies.set_value("name", "top flatness")
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
+    tab.editor.add.click()
+    qtbot.waitUntil(lambda: "0.03" in tab.editor.text.toPlainText())
+    assert asked[0][0] == "series" and asked[0][6] == "top flatness"

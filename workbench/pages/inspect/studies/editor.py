@@ -106,7 +106,7 @@ class StudyEditor(QWidget):
         if draft.kind == "grr":
             return tr("Add part, operator and thickness of another project, a line for each of its repeats")
         if draft.kind == "series":
-            return tr("Add part, thickness and u of another project; in the order of measuring")
+            return tr("Add part, characteristic and u of another project; in the order of measuring")
         return tr("Look for the artefact in another project's scan, and add what is found as one position")
 
     def _grr_form(self) -> SettingsForm:
@@ -122,6 +122,11 @@ class StudyEditor(QWidget):
 
     def _series_form(self) -> SettingsForm:
         form = SettingsForm()
+        form.add_text(
+            "name",
+            tr("Characteristic"),
+            tr("As results call it: thickness, or feature and characteristic, as top flatness."),
+        )
         form.add_number(
             "nominal_mm",
             tr("Nominal"),

@@ -71,6 +71,10 @@ LIMITS = ("form", "size", "spacing", "flatness")
 ARTEFACTS = ("sphere", "bar", "plane")
 
 
+THICKNESS = "thickness"
+"""What a series is of where nothing else is named."""
+
+
 @dataclass(frozen=True, slots=True)
 class Draft:
     """A study that is being made: its table as CSV, the folder names in it are seen from, and its settings in mm."""
@@ -175,7 +179,7 @@ class InspectStudies(QObject):
             values = dict.fromkeys(LIMITS) | {"artefact": "sphere", "calibrated_mm": 25.0, "u_mm": 0.0}
             values |= {"diameter_mm": 25.0}
         if kind == "series":
-            values |= {"nominal_mm": self._repeats.spec.nominal_mm, "size": 1}
+            values |= {"name": THICKNESS, "nominal_mm": self._repeats.spec.nominal_mm, "size": 1}
         self.draft, self.problem = Draft(kind, HEADS[kind], folder, values), ""
         self.changed.emit()
 
@@ -220,7 +224,7 @@ class InspectStudies(QObject):
                 self.draft = replace(self.draft, text=text + ("" if text.endswith("\n") or not text else "\n") + rows)
 
         self._run(
-            jobs.PROJECT_ROWS, draft.kind, folder, values.get("artefact", "plane"), *settings,
+            jobs.PROJECT_ROWS, draft.kind, folder, values.get("artefact", "plane"), *settings, _name(values),
             label=tr("Reading {name}", name=folder.name), on_done=done, of_project=False,
         )  # fmt: skip
 
@@ -237,7 +241,7 @@ class InspectStudies(QObject):
         else:
             limits = {key: draft.values[key] for key in LIMITS if draft.values[key] is not None}
         self._run(
-            jobs.KEEP_STUDY, draft.kind, _one_separator(draft.text), draft.base, limits,
+            jobs.KEEP_STUDY, draft.kind, _one_separator(draft.text), draft.base, limits, _name(draft.values),
             label=tr("Making the study"), on_done=self._keep,
         )  # fmt: skip
 
@@ -302,6 +306,11 @@ class InspectStudies(QObject):
     def _ended(self) -> None:
         self._working = None
         self.changed.emit()
+
+
+def _name(values: Mapping[str, Any]) -> str:
+    """Of the characteristic that a series is of."""
+    return str(values.get("name") or "").strip() or THICKNESS
 
 
 def _limits_of_series(values: Mapping[str, Any]) -> dict[str, float]:
