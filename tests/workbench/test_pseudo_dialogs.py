@@ -59,7 +59,8 @@ class Opened:
         self.past: dict[str, str] = {}
         self.cut: dict[str, dict[str, str]] = {}
         self.pressed: list[QAbstractButton] = []
-        self._foreign, self._done, self._open = foreign, [], True
+        self._done: list[QDialog] = []
+        self._foreign, self._open = foreign, True
         self._again()
 
     def stop(self) -> None:

@@ -10,8 +10,8 @@ from PySide6.QtCore import QObject, Signal
 from core.inspect.shown.shown_comparison import AUTOMATIC, ShownComparison
 from workbench.bench import Bench
 from workbench.language import tr
-from workbench.pages.inspect.stage import ComparisonButtons, ComparisonFacts, comparison_buttons
 from workbench.pages.inspect.scan import InspectScan
+from workbench.pages.inspect.stage import ComparisonButtons, ComparisonFacts, comparison_buttons
 from workbench.work import jobs
 
 if TYPE_CHECKING:

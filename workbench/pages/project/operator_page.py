@@ -9,10 +9,11 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
 from core.files.project.folder import results_folder
-from core.report.wording import VERDICTS, shown_name, value_line
+from core.messages import capital
+from core.report.wording import decision, shown_name, value_line
 from workbench.language import tr
 from workbench.pages.project.operator import OperatorMode, Stage
-from workbench.pages.words import capital, wording
+from workbench.pages.words import wording
 from workbench.project_model import ProjectModel
 from workbench.refresh import Refresh
 from workbench.theme import icon, shades
@@ -156,9 +157,9 @@ class OperatorPage(QWidget):
             return "mdi6.check", "text", tr("Measured"), ""
         worst = self._mode.found[0]
         symbol, colour = VERDICT_ICONS[worst.verdict]
-        verdict = wording()(VERDICTS[worst.verdict])
+        verdict = decision(worst.verdict, wording())
         line = f"{capital(shown_name(worst, wording()))}: {value_line(worst, wording())}"
-        return symbol, "text" if colour == "muted" else colour, capital(verdict), line
+        return symbol, "text" if colour == "muted" else colour, verdict, line
 
     def _measure(self) -> None:
         if self._mode.stage is not Stage.PICTURES:

@@ -11,8 +11,8 @@ from PySide6.QtWidgets import QCheckBox
 from core.inspect.shown.shown_comparison import Changed, ShownComparison
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.stage import ComparisonFacts, comparison_buttons
 from workbench.pages.inspect.page import InspectPage
+from workbench.pages.inspect.stage import ComparisonFacts, comparison_buttons
 from workbench.pages.inspect.surface import OTHER
 from workbench.views import ask
 from workbench.views.scene.contents import Marks

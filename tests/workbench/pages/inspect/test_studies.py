@@ -110,7 +110,12 @@ def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(ta
     tab.window().refreshing.at_once()
     tab.buttons["series"].click()
     tab.window().refreshing.at_once()
-    assert tab.editor.forms["series"].values() == {"name": "thickness", "nominal_mm": 50.0, "tolerance_mm": 0.2, "size": 1}
+    assert tab.editor.forms["series"].values() == {
+        "name": "thickness",
+        "nominal_mm": 50.0,
+        "tolerance_mm": 0.2,
+        "size": 1,
+    }
     values = 50 + 0.01 * np.random.default_rng(5).standard_normal(40)
     values[25] += 0.08
     tab.editor.text.appendPlainText("".join(f"part {n}\t{value}\t0.002\n" for n, value in enumerate(values, start=1)))
