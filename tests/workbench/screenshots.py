@@ -40,7 +40,7 @@ from workbench.theme import is_polishing
 SIZES = (QSize(1000, 700), QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
 README = ("camera", "scan", "inspect", "report")
-README_WIDTH = 900
+README_SIZE, README_WIDTH = QSize(1280, 800), 900
 PATIENCE_S = 600.0
 NOMINAL = "block.stl"
 PLAN = InspectionPlan(
@@ -212,7 +212,7 @@ def _published_study() -> str:
 
 def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
     """The README's pictures: few colours are enough, and keep them small."""
-    window.resize(SIZES[0])
+    window.resize(README_SIZE)
     _open_sample(app, bench, window)
     for name in README:
         window.go_to(name)
@@ -229,7 +229,7 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
         path = folder / f"{name}.png"
         small.save(str(path))
         with Image.open(path) as picture:
-            flat = picture.convert("RGB").quantize(128, dither=Image.Dither.NONE)
+            flat = picture.convert("RGB").quantize(256, Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
         flat.save(path, optimize=True)
 
 

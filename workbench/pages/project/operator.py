@@ -104,8 +104,8 @@ class OperatorMode(QObject):
         self._model.results_changed.connect(self.look)
         self._model.opened.connect(self.look)
         for lane in (bench.measuring, bench.live):
-            lane.task_started.connect(lambda _: self.changed.emit())
-            lane.task_ended.connect(lambda _: self.changed.emit())
+            lane.task_started.connect(self._task)
+            lane.task_ended.connect(self._task)
 
     @property
     def facts(self) -> OperatorFacts:
@@ -162,6 +162,9 @@ class OperatorMode(QObject):
                 on_done=lambda found: self._take(asked, found),
                 replace_waiting=True,
             )
+        self.changed.emit()
+
+    def _task(self, _: object) -> None:
         self.changed.emit()
 
     def _take(self, asked: tuple[object, ...], found: Any) -> None:
