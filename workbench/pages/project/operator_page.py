@@ -11,6 +11,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePo
 from core.files.project.folder import results_folder
 from core.messages import capital
 from core.report.wording import decision, shown_name, value_line
+from core.states import STEP_STATES
 from workbench.language import tr
 from workbench.pages.project.operator import OperatorMode, Stage
 from workbench.pages.words import wording
@@ -148,7 +149,7 @@ class OperatorPage(QWidget):
         if stage is Stage.PICTURES:
             return "mdi6.image-multiple-outline", "text", tr("New part"), tr("Press Measure and choose its pictures.")
         if stage is Stage.READY:
-            return "mdi6.play-circle-outline", "text", tr("Ready"), tr("Press Measure.")
+            return "mdi6.play-circle-outline", "text", capital(tr(STEP_STATES["ready"])), tr("Press Measure.")
         if stage is Stage.MEASURING:
             return "mdi6.progress-clock", "accent", tr("Measuring …"), self.detail.text()
         if stage is Stage.STOPPED:
