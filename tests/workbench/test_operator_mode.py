@@ -57,7 +57,7 @@ def test_the_worst_result_is_told_large_and_nothing_else_can_be_done(operator: M
     assert page.headline.text().lower() == (str(worst.verdict) or "no verdict")
     assert "mm ±" in page.detail.text()
     assert page.buttons["report"].isEnabled() and page.buttons["next_part"].isEnabled()
-    assert page.buttons["measure"].toolTip() == "Everything is up to date."
+    assert page.buttons["measure"].toolTip() == "Everything is done."
     assert page.buttons["stop"].toolTip() == "Nothing is running."
     for name in ("step inspect", "save", "open", "new", "run", "whole", "language de", "sign in"):
         assert entries[name].toolTip() == "Leave operator mode first.", name

@@ -49,7 +49,7 @@ def full_project():
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
             plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5), row_time_us=26.0,
-            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True,
+            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True, mosaic="RGGB",
             part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
