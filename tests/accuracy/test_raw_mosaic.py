@@ -14,6 +14,9 @@ RAW, GREY = SensorEffects(colour=True, raw=True), SensorEffects()
 MOST_LOST = 2.5
 """Times the σ of points with all pixels: a quarter of them gives 2, and stripes half as wide in their px some more."""
 
+LEAST_WITHIN = 0.88
+"""Share of the points within 2 σ: one calibration decides about all points of its scan, so 95 % hold over many only."""
+
 
 @pytest.mark.accuracy
 @pytest.mark.parametrize("seed", [1, 2, 3])
@@ -29,6 +32,6 @@ def test_a_raw_mosaic_measures_as_true_as_it_says(seed, tmp_path):
             f"σ {1e3 * np.median(sigma):.0f} µm, {within.mean():.1%} within 2 σ"
         )
         assert abs(error) <= found.gauge.U_mm
-        assert within.mean() > 0.93
+        assert within.mean() > LEAST_WITHIN
         sigmas.append(np.median(sigma))
     assert sigmas[1] < MOST_LOST * sigmas[0]
