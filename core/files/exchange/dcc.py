@@ -14,15 +14,13 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
 from scipy.stats import t as student
 
 from core.errors import InputError
-from core.files.atomic import write_bytes
 from core.files.exchange.records import degrees_of_freedom, one_line, result_row
-from core.files.exchange.xml_elements import decimal, put
+from core.files.exchange.xml_elements import decimal, put, write_document
 from core.inspect.characteristic import Characteristic
 from core.messages import Message
 from core.report.content import ReportContent
@@ -42,10 +40,7 @@ def write_dcc(path: Path, content: ReportContent) -> None:
     InputError
         If the laboratory or its country is not named, nothing was measured, or the file cannot be written.
     """
-    root = dcc_document(content)
-    ElementTree.indent(root)
-    data = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    write_bytes(path, data + b"\n")
+    write_document(path, dcc_document(content))
 
 
 def dcc_document(content: ReportContent) -> Element:

@@ -18,12 +18,10 @@ from itertools import count
 from pathlib import Path
 from typing import Any
 from uuid import UUID
-from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
 
-from core.files.atomic import write_bytes
 from core.files.exchange.records import one_line, result_row, unit_of
-from core.files.exchange.xml_elements import decimal, put
+from core.files.exchange.xml_elements import decimal, put, write_document
 from core.inspect.characteristic import Characteristic
 from core.report.content import ReportContent
 
@@ -49,10 +47,7 @@ STATUS = {"conforming": "PASS", "not conforming": "FAIL", "not proven": "INDETER
 
 def write_qif(path: Path, content: ReportContent) -> None:
     """Write the results as a QIF 3.0 document; InputError if it cannot be written."""
-    root = qif_document(content)
-    ElementTree.indent(root)
-    data = ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True)
-    write_bytes(path, data + b"\n")
+    write_document(path, qif_document(content))
 
 
 def qif_document(content: ReportContent) -> Element:

@@ -1,9 +1,12 @@
-"""Elements of an XML document and the numbers in them."""
+"""XML documents: their elements, the numbers in them, and the file."""
 
 from __future__ import annotations
 
+from pathlib import Path
 from xml.etree import ElementTree
 from xml.etree.ElementTree import Element
+
+from core.files.atomic import write_bytes
 
 
 def put(parent: Element, element_name: str, text: str = "", /, **attributes: str) -> Element:
@@ -12,6 +15,12 @@ def put(parent: Element, element_name: str, text: str = "", /, **attributes: str
     if text:
         element.text = "".join(c for c in text if c.isprintable() or c in "\t\n")
     return element
+
+
+def write_document(path: Path, root: Element) -> None:
+    """Write a document, indented; InputError if it cannot be written."""
+    ElementTree.indent(root)
+    write_bytes(path, ElementTree.tostring(root, encoding="UTF-8", xml_declaration=True) + b"\n")
 
 
 def decimal(value: float) -> str:
