@@ -97,6 +97,14 @@ def test_of_a_pin_only_what_is_square_to_the_true_axis_counts():
     assert value(position("cylinder", "pin", found + [0.3, -0.4, 7.0])) == pytest.approx(1.0, abs=1e-3)
 
 
+def test_along_a_direction_that_no_datum_fixes_the_zone_is_free():
+    """Without a tertiary feature the origin lies beside the middle of what was scanned: no place to measure from."""
+    two = PartFrame("floor", "left")
+    found = coordinates(position("sphere", "ball", BALL, two), "ball")
+    assert value(position("sphere", "ball", found + [0.3, 7.0, -0.4], two)) == pytest.approx(1.0, abs=1e-6)
+    assert value(position("sphere", "ball", found + [0.3, 7.0, -0.4])) > 10
+
+
 def test_of_a_pin_that_leans_the_end_farther_off_counts():
     inspection = position("cylinder", "pin", PIN, lean=0.01)
     found = coordinates(inspection, "pin")

@@ -2,7 +2,8 @@
 
 The datums are the features the part's coordinates rest on. Of a sphere the zone is a sphere round the true place. Of a
 cylinder it is a cylinder round the true axis, which goes through the true place along x, y or z, whichever is nearest;
-what counts is the end, of the length that was scanned, that lies farther off.
+what counts is the end, of the length that was scanned, that lies farther off. Along a direction that no datum fixes the
+zone is free, as ISO 5459 has it.
 
 References
 ----------
@@ -22,13 +23,12 @@ from core.inspect.features.derived import elements_of
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.fit.elements import PARALLEL, Element
 from core.inspect.fit.shapes import Sphere
-from core.inspect.plan.alignment import NAME_OTHERS, three_two_one
+from core.inspect.plan.alignment import NAME_OTHERS, three_two_one, unfixed
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.temperature import correction_to_reference
 from core.inspect.uncertainty.budget import budget_of
 from core.messages import Message
 from core.model.arrays import Array
-from core.model.directions import square_to
 
 STEP = 1e-4
 """Mm, or rad, by which datums are moved to see how coordinates follow them."""
@@ -61,20 +61,24 @@ def measure_position(spec: FeatureSpec, scene: Scene) -> FeatureResult:
             todo=NAME_OTHERS,
         )
     datums = [one.element for name in scene.frame.names if (one := scene.found[name]).element is not None]
-    into_part, rule, true_axis = scene.pose_camera_part.inverse(), _RULE_BALL, None
-    place, gradient = element.position, element.position_gradient
+    into_part, true_place = scene.pose_camera_part.inverse(), np.asarray(asked.at_mm)
+    fixed = np.ones(3)
+    if (free := unfixed(datums[1], datums[2] if len(datums) > 2 else None)) is not None:
+        fixed[free] = 0.0
+    rule, ends = _RULE_BALL, np.zeros(1)
     if element.kind == "axis":
-        rule, true_axis = _RULE_AXIS, int(np.argmax(np.abs(into_part.rotation @ element.direction)))
+        rule = _RULE_AXIS
+        fixed[np.argmax(np.abs(into_part.rotation @ element.direction))] = 0.0
         along = (scene.cloud.points[found.indices] - element.position) @ element.direction
-        ends = element.position + np.outer([along.min(), along.max()], element.direction)
-        off = [np.linalg.norm(_off(into_part.apply(end), asked.at_mm, true_axis)) for end in ends]
-        place = ends[int(np.argmax(off))]
-        gradient = gradient + (along.min(), along.max())[int(np.argmax(off))] * element.direction_gradient
+        ends = np.array([along.min(), along.max()])
+    off_ends = [fixed * (into_part.apply(element.position + end * element.direction) - true_place) for end in ends]
+    worst = int(np.argmax(np.linalg.norm(off_ends, axis=1)))
+    off_mm, end = off_ends[worst], ends[worst]
+    place = element.position + end * element.direction
+    gradient = element.position_gradient + end * element.direction_gradient
     at = into_part.apply(place)
-    off_mm = _off(at, asked.at_mm, true_axis)
     distance = float(np.linalg.norm(off_mm))
-    free = np.eye(3)[2] if true_axis is None else np.eye(3)[true_axis]
-    towards = off_mm / distance if distance > PARALLEL else square_to(free)[:, 0]
+    towards = off_mm / distance if distance > PARALLEL else np.eye(3)[np.argmax(fixed)]
     parts = [(2 * (towards @ into_part.rotation) @ gradient, element.effects)]
     for number, datum in enumerate(datums):
         moved, turned = _following(datums, number, place)
@@ -96,14 +100,6 @@ _RULE_AXIS = Message(
 _RULE_BALL = Message(
     "feature.rule_position_ball", "diameter of the sphere round the true place that has the centre on it"
 )
-
-
-def _off(at: Array, true: Sequence[float], axis: int | None) -> Array:
-    """From the true place (3,) to a place, both in part coordinates; only square to the true axis if there is one."""
-    off: Array = at - np.asarray(true)
-    if axis is not None:
-        off[axis] = 0.0
-    return off
 
 
 def _following(datums: Sequence[Element], number: int, place: Array) -> tuple[Array, Array]:

@@ -86,6 +86,13 @@ def three_two_one(primary: Element, secondary: Element, tertiary: Element | None
     return Pose(np.column_stack([x, y, z]), np.linalg.solve(rows, asked))
 
 
+def unfixed(secondary: Element, tertiary: Element | None) -> int | None:
+    """Along which part coordinate, 0 or 1, no feature fixes the origin of `three_two_one`; None: all are fixed."""
+    if tertiary is not None:
+        return None
+    return 1 if secondary.kind == "plane" else 0
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class Aligned:
     """The nominal surface's coordinates into the camera frame, and the median distance in mm that is left."""
