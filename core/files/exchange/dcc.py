@@ -96,7 +96,7 @@ def _core_data(core: Element, content: ReportContent) -> None:
     put(core, "dcc:uniqueIdentifier", content.report_id)
     for name in ("beginPerformanceDate", "endPerformanceDate"):
         put(core, f"dcc:{name}", content.timestamp.date().isoformat())
-    put(core, "dcc:performanceLocation", "laboratory")
+    put(core, "dcc:performanceLocation", "other")  # nobody states where
 
 
 def _item(item: Element, content: ReportContent) -> None:
