@@ -71,6 +71,12 @@ def test_the_report_names_part_thickness_and_version(measured):
     assert f"{value} mm ± {uncertainty} mm" in " ".join(text.split())
 
 
+def test_the_report_has_the_results_with_it_as_they_are(measured):
+    attached = {name: files[0] for name, files in PdfReader(str(measured / "report.pdf")).attachments.items()}
+    assert set(attached) == {"camera.json", "planes.json", "gauge.json"}
+    assert all(data == (measured / name).read_bytes() for name, data in attached.items())
+
+
 def test_each_step_alone_gives_the_same_files_as_the_whole_run(simulated, measured, tmp_path):
     out = tmp_path / "out"
     for step in ("camera", "planes", "scan", "gauge", "report"):

@@ -1,18 +1,19 @@
-"""A report as PDF/A-2b (ISO 19005-2, level B): a file that shows the same in decades, by what it holds itself.
+"""A report as PDF/A-3b (ISO 19005-3, level B): a file that shows the same in decades, by what it holds itself.
 
 What reportlab writes lacks the profile that its colours are meant in, the metadata as XMP and the mark of links that
 they are printed, and has an empty transition on every page. Nothing that is seen is touched. The rules of the standard
-named here are those of its clauses 6.2 to 6.6.
+named here are those of its clauses 6.2 to 6.8. Without attachments it is PDF/A-2b: the same rules but that only the
+third part allows files of any kind in it.
 """
 
 from __future__ import annotations
 
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cache
 from typing import Any
 
-from pikepdf import Array, Dictionary, Name, Pdf
+from pikepdf import Array, AttachedFileSpec, Dictionary, Name, Pdf
 
 _PRINTED = 4
 """Flag of an annotation (ISO 32000-1, 12.5.3): shown on paper, too."""
@@ -21,18 +22,21 @@ _ICC_DATE = slice(24, 36)
 _NO_DATE = bytes((7, 234, 0, 1, 0, 1, 0, 0, 0, 0, 0, 0))  # 2026-01-01
 
 
-def archived(data: bytes) -> bytes:
-    """A report as PDF/A-2b, the same bytes for the same report; as it was where it has a font that is only named."""
+def archived(data: bytes, attachments: Mapping[str, bytes]) -> bytes:
+    """A report with these JSON files attached, as PDF/A; not said to be that where a font in it is only named.
+
+    The same bytes for the same report and files.
+    """
     with Pdf.open(io.BytesIO(data)) as pdf:
-        if not all(_is_embedded(font) for font in _fonts(pdf)):
-            return data
+        _attach(pdf, attachments)
         for page in pdf.pages:
             if Name.Trans in page.obj:
                 del page.obj[Name.Trans]
             for annotation in page.obj.get(Name.Annots, ()):
                 annotation[Name.F] = _PRINTED
         _add_output_intent(pdf)
-        _add_metadata(pdf)
+        whole = all(_is_embedded(font) for font in _fonts(pdf))
+        _add_metadata(pdf, part=("3" if attachments else "2") if whole else None)
         stream = io.BytesIO()
         pdf.save(stream, min_version="1.7", deterministic_id=True)
     return stream.getvalue()
@@ -70,10 +74,36 @@ def _add_output_intent(pdf: Pdf) -> None:
     pdf.Root.OutputIntents = Array([pdf.make_indirect(intent)])
 
 
-def _add_metadata(pdf: Pdf) -> None:
-    """What the file says of itself, as XMP; the same as in its older dictionary, which has to agree."""
+def _attach(pdf: Pdf, attachments: Mapping[str, bytes]) -> None:
+    """The files, as the data that the pages show (clause 6.8), of the date of the report."""
+    made = str(pdf.docinfo[Name.CreationDate])
+    specs = [
+        AttachedFileSpec(
+            pdf,
+            data,
+            filename=name,
+            description=name,
+            mime_type="application/json",
+            creation_date=made,
+            mod_date=made,
+            relationship=Name.Data,
+        )
+        for name, data in attachments.items()
+    ]
+    for spec in specs:
+        pdf.attachments[spec.filename] = spec
+    if specs:
+        pdf.Root.AF = Array([pdf.attachments[spec.filename].obj for spec in specs])
+
+
+def _add_metadata(pdf: Pdf, part: str | None) -> None:
+    """What the file says of itself, as XMP; the same as in its older dictionary, which has to agree.
+
+    `part` of the standard that it keeps to; None if it keeps to none.
+    """
     if Name.Trapped in pdf.docinfo:
         del pdf.docinfo[Name.Trapped]  # XMP has no word for it
     with pdf.open_metadata(set_pikepdf_as_editor=False, update_docinfo=True) as meta:
         meta.load_from_docinfo(pdf.docinfo)
-        meta["pdfaid:part"], meta["pdfaid:conformance"] = "2", "B"
+        if part is not None:
+            meta["pdfaid:part"], meta["pdfaid:conformance"] = part, "B"

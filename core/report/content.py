@@ -232,6 +232,8 @@ class ReportContent:
         The company's own in it.
     audit
         Where the project's audit trail stood; None where there is none.
+    attachments
+        By name, the JSON files of the results as they are, to go into the file.
 
     Raises
     ------
@@ -281,6 +283,7 @@ class ReportContent:
     language: str = "en"
     template: ReportTemplate = field(default_factory=ReportTemplate)
     audit: AuditMark | None = None
+    attachments: Mapping[str, bytes] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if unknown := self.hidden - SECTIONS.keys():

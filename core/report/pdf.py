@@ -78,7 +78,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     """The report as the bytes of a PDF; nothing is written to disk.
 
     The same content gives the same bytes: no clock and no random number is in it. Text is selectable and the fonts
-    are embedded, and the file is PDF/A-2b. Where this computer has no font for an East Asian text it is not, and a note
+    are embedded, and the file is PDF/A. Where this computer has no font for an East Asian text it is not, and a note
     says that the reader's program brings it.
 
     Raises
@@ -116,7 +116,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
     if tried.last_page < LEAST_OF_A_PAGE and tried.pages > 1:
         limits, tried = _without_last_page(look, content, pictures, limits, tried)
     progress(step, total - 1, total)
-    data = archived(_typeset(look, content, pictures, limits, tried.pages).data)
+    data = archived(_typeset(look, content, pictures, limits, tried.pages).data, content.attachments)
     progress(step, total, total)
     return data
 

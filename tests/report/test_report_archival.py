@@ -1,7 +1,8 @@
-"""The report as PDF/A-2b: the rules of ISO 19005-2 that it could break, each on a report that has everything."""
+"""The report as PDF/A-3b: the rules of ISO 19005-3 that it could break, each on a report that has everything."""
 
 import io
 import re
+from dataclasses import replace
 
 import pikepdf
 import pytest
@@ -13,10 +14,12 @@ from core.report.archival import archived
 from core.report.pdf import build_report
 from tests.report.inspection_samples import whole_content
 
+ATTACHED = {"gauge.json": b'{"thickness_mm": 50.0}', "camera.json": '{"name": "\u76f8\u673a"}'.encode()}
+
 
 @pytest.fixture(scope="module")
 def data():
-    return build_report(whole_content())
+    return build_report(replace(whole_content(), attachments=ATTACHED))
 
 
 @pytest.fixture
@@ -31,7 +34,7 @@ def fonts(pdf):
 
 def test_the_file_says_what_it_is_and_its_metadata_agree(pdf):
     meta = pdf.open_metadata()
-    assert (meta["pdfaid:part"], meta["pdfaid:conformance"]) == ("2", "B")
+    assert (meta["pdfaid:part"], meta["pdfaid:conformance"]) == ("3", "B")
     assert (meta["dc:title"], meta["xmp:CreatorTool"]) == (str(pdf.docinfo.Title), str(pdf.docinfo.Creator))
     at = re.sub(r"\D", "", str(pdf.docinfo.CreationDate))[:14]
     assert re.sub(r"\D", "", meta["xmp:CreateDate"])[:14] == at
@@ -74,8 +77,25 @@ def test_a_report_with_a_font_that_is_only_named_does_not_say_that_it_is_an_arch
         del pdf.Root.Metadata
         stream = io.BytesIO()
         pdf.save(stream)
-    assert archived(stream.getvalue()) == stream.getvalue()
+    with pikepdf.open(io.BytesIO(archived(stream.getvalue(), {}))) as pdf:
+        assert "pdfaid:part" not in pdf.open_metadata()
+
+
+def test_the_results_are_attached_to_the_byte_and_said_to_be_what_the_pages_show(pdf):
+    assert {name: spec.get_file().read_bytes() for name, spec in pdf.attachments.items()} == ATTACHED
+    made = str(pdf.docinfo.CreationDate).rstrip("'")
+    for spec in pdf.Root.AF:
+        file = spec.EF.F
+        assert (spec.AFRelationship, str(file.Subtype)) == (Name.Data, "/application/json")
+        assert (str(spec.F), str(file.Params.ModDate).rstrip("'")) == (str(spec.UF), made)
+    assert len(pdf.Root.AF) == len(ATTACHED)
+
+
+def test_a_report_without_attachments_keeps_to_the_second_part_of_the_standard():
+    with pikepdf.open(io.BytesIO(build_report(whole_content()))) as pdf:
+        assert pdf.open_metadata()["pdfaid:part"] == "2"
+        assert Name.AF not in pdf.Root
 
 
 def test_the_validator_of_pikepdf_finds_nothing(data):
-    assert list(pdfa.validate_written(io.BytesIO(data), "2b").findings) == []
+    assert list(pdfa.validate_written(io.BytesIO(data), "3b").findings) == []

@@ -58,6 +58,8 @@ METHOD_IN_WORDS: dict[str, str] = {
 WITHOUT_SWEEPS = label("no sweeps: steps on the light profiles of the fixed fan alone")
 METHODS = (label("network"), label("three-crossings"))
 """As the settings name them."""
+ATTACHED = ("camera", "planes", "check", "gauge", "profile", "inspection", "comparison")
+"""Results that a report has with it as they are, for programs to read; run.json ends after the report only."""
 RIG_ID = 12
 """Hex digits of a rig's hash that name it."""
 
@@ -114,6 +116,7 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         content,
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
         overlay=_overlay(work.found, scan, content.cloud) if scan else None,
+        attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
     )
     content = said(content) if said else content
     channel = work.record().settings.get("scan", {}).get("channel") or rig.channel_of("scan")
