@@ -39,7 +39,8 @@ class SharedErrorFactors:
     over_picture
         For errors that a part of the picture repeats in every view: a lens that the model does not have.
     chance
-        How far above 1 either comes by chance, as a standard deviation.
+        How far above 1 `within_views` comes by chance, as a standard deviation. The others have many clusters, and
+        hardly do.
     """
 
     within_views: float
@@ -87,9 +88,8 @@ def free_covariance(
     free = len(inverse) - float(np.diag(inverse) @ prior)  # parameters that the views, not the prior, tell
     views = len(normal.information)
     of_views = np.array([gradients.sum(axis=0) for gradients in normal.gradients])
-    shares = inverse @ normal.information
-    independent = free - float(np.einsum("vij,vji->", shares, shares))
-    within = _scatter(of_views, inverse) / max(variance * independent, 1e-300)
+    expected, freedom = _of_independent(inverse @ normal.information)
+    within = _scatter(of_views, inverse) / max(variance * expected, 1e-300)
 
     corner = np.unique(np.round(np.concatenate(points), 6), axis=0, return_inverse=True)[1].ravel()
     joined = np.concatenate(normal.gradients)
@@ -102,9 +102,23 @@ def free_covariance(
         float(np.sqrt(max(1.0, within))),
         float(np.sqrt(max(1.0, across))),
         float(np.sqrt(max(1.0, over_picture))),
-        float(np.sqrt(1 / (2 * free * max(views - 1, 1)))),
+        float(np.sqrt(0.5 / freedom)),
     )
     return variance * widening.total**2 * inverse, widening
+
+
+def _of_independent(shares: Array) -> tuple[float, float]:
+    """What Σ gᵀ S⁻¹ g over the views is in the mean in σ², if all corners are independent, and its freedom.
+
+    With the views' `shares` A = S⁻¹ S_v (V, F, F) of the information the gradients' covariance is δ S_v − S_v S⁻¹ S_w
+    in σ²: the sum is of squares in unequal parts, χ² of E²/Σ(parts²) degrees of freedom in Satterthwaite's manner. A
+    view sees some parameters much better than others, so that these are far fewer than F (V − 1).
+    """
+    squares = shares @ shares
+    expected = float(np.einsum("vii->", shares) - np.einsum("vii->", squares))
+    together = squares.sum(axis=0)
+    parts = np.einsum("vii->", squares) - 2 * np.einsum("vij,vji->", shares, squares) + np.trace(together @ together)
+    return expected, max(1.0, expected**2 / max(float(parts), 1e-300))
 
 
 def _excess(gradients: Array, cluster: NDArray[np.intp], inverse: Array, independent: float) -> float:

@@ -28,7 +28,7 @@ _ENOUGH_TILT_RANGE = np.deg2rad(25.0)
 _WORSE_VIEW = 3.0
 """Times the usual RMS of the views."""
 _MUCH_WIDER = 1.5
-"""Factor on the standard deviations for errors that corners share, unless chance alone may make more,"""
+"""Factor on the standard deviations for errors that corners share, unless chance alone may make more of a few views,"""
 _CHANCE_SDS = 3.0
 """which is so many of its standard deviations."""
 _BOWED_MM = 0.05
@@ -175,7 +175,7 @@ def notes_on(calibration: CameraCalibration, widening: SharedErrorFactors) -> tu
                 times=widening.within_views,
             )
         )
-    if widening.across_views > limit:
+    if widening.across_views > _MUCH_WIDER:
         notes.append(
             Message(
                 "camera.corners_err_alike",
