@@ -40,9 +40,19 @@ from core.model.arrays import Array
 P_TOLD = 0.01
 """A change is told where chance alone would look so with a smaller probability."""
 PROVES_NOTHING = 0.001
-"""With a smaller probability nothing measured is proof of conformity."""
+"""With a smaller probability nothing measured is proof of conformity, even where a check of the day has passed."""
 LEAST_INFORMATION = 0.05
 """A change of which pictures know less, for its size by default, is not looked at: they cannot tell."""
+
+CHANGED = Message(
+    "inspection.rig_has_changed",
+    "Laser or camera have surely changed since they were calibrated: nothing measured proves conformity.",
+)
+MAY_HAVE_CHANGED = Message(
+    "inspection.rig_may_have_changed",
+    "Laser or camera seem to have changed since they were calibrated, and no check of the day has passed: nothing "
+    "measured proves conformity. Check with one to three pictures of the plane target in the fan.",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,6 +199,10 @@ class Change:
         Why pictures of an interim check say nothing.
     spread
         What the rig's own checks say of how much it changes, where that is reckoned with.
+    checked
+        Whether pictures of the day, of a check or a re-adjustment, agree with the calibrations by themselves.
+    stability
+        What was reckoned with.
     """
 
     deviations: tuple[Deviation, ...]
@@ -196,6 +210,19 @@ class Change:
     times: float
     left_out: tuple[Message, ...] = ()
     spread: RigSpread | None = None
+    checked: bool = False
+    stability: Stability = DEFAULT_STABILITY
+
+    @property
+    def doubt(self) -> Message | None:
+        """Why nothing measured proves conformity; None where changes are as small as is reckoned with.
+
+        Who has no passed check has only the scan to go by, which sees little of most changes: what shows in it at all
+        may be far larger than U allows for.
+        """
+        if self.p < PROVES_NOTHING:
+            return CHANGED
+        return MAY_HAVE_CHANGED if self.p < P_TOLD and not self.checked else None
 
     @property
     def notes(self) -> tuple[Message, ...]:
@@ -225,11 +252,13 @@ class Change:
         )
 
 
-def reckoned(stated: Stability | None, charted: RigSpread | None) -> tuple[Stability, Source]:
-    """The stability that is reckoned with, and the source of what changes by it."""
+def reckoned(
+    stated: Stability | None, charted: RigSpread | None, assumed: Stability = DEFAULT_STABILITY
+) -> tuple[Stability, Source]:
+    """The stability that is reckoned with, and the source of what changes by it: `assumed` where neither is known."""
     if charted is not None:
         return charted.stability, "charted change"
-    return (DEFAULT_STABILITY, "assumed change") if stated is None else (stated, "change")
+    return (assumed, "assumed change") if stated is None else (stated, "change")
 
 
 def judge(
@@ -239,27 +268,36 @@ def judge(
     evidence: Evidence,
     stated: Stability | None,
     charted: RigSpread | None = None,
+    assumed: Stability = DEFAULT_STABILITY,
 ) -> Change:
     """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
 
     `camera` and `fan` are those calibrated. The stability is that by the rig's checks, `charted`, where they say it;
-    else that `stated`, else the default is assumed; what change adds says so.
+    else that `stated`, else that `assumed`; what change adds says so.
     """
-    stability, source_of_change = reckoned(stated, charted)
+    stability, source_of_change = reckoned(stated, charted, assumed)
     bent = tuple(one for one in deviations if one.source == UNEXPLAINED)  # no parameter of camera and fan
     m = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     squares, freedom = _squares(evidence, m)
-    p = float(chdtrc(freedom, squares)) if freedom else 1.0
+    p = _by_chance(squares, freedom)
     times = float(np.sqrt(squares / max(freedom, 1)))
     if not stability.over_default.any():
-        return Change(tuple(one for one in deviations if one.source != "change"), p, times, spread=charted)
+        return Change(
+            tuple(one for one in deviations if one.source != "change"), p, times, spread=charted, stability=stability
+        )
     x, estimate, root = _lasting(deviations, evidence, stability)
     free = [one for one, there in zip(deviations, x, strict=True) if there]
     steps = np.array([_vector(one.camera, one.fan) for one in free]) - _vector(camera, fan)
     sources = [source_of_change if one.source == "change" else one.source for one in free] + [source_of_change]
     displaced = np.vstack([np.linalg.qr(root.T, mode="r"), estimate]) @ steps  # R of the root's transpose is Lᵀ
     told = (_displaced(camera, fan, source, step) for source, step in zip(sources, displaced, strict=True))
-    return Change((*told, *bent), p, times, spread=charted)
+    return Change((*told, *bent), p, times, spread=charted, stability=stability)
+
+
+def agrees(deviations: Sequence[Deviation], evidence: Evidence) -> bool:
+    """Whether pictures that say something of a rig's changes agree with its calibrations."""
+    squares, freedom = _squares(evidence, np.array([one.source == "change" for one in deviations], dtype=np.bool_))
+    return freedom > 0 and _by_chance(squares, freedom) >= P_TOLD
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:
@@ -305,6 +343,11 @@ def _squares(evidence: Evidence, m: NDArray[np.bool_]) -> tuple[float, int]:
     expected = mz @ mz.T + evidence.scatter[np.ix_(m, m)]
     part = seen.T @ evidence.gradient[m]
     return float(part @ np.linalg.solve(seen.T @ expected @ seen, part)), len(part)
+
+
+def _by_chance(squares: float, freedom: int) -> float:
+    """Probability that so many squares are as large by chance; 1 where none are seen."""
+    return float(chdtrc(freedom, squares)) if freedom else 1.0
 
 
 def _vector(camera: Camera, fan: Fan) -> Array:

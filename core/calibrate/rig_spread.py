@@ -21,7 +21,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.calibrate.change import DEFAULT_STABILITY, Evidence
+from core.calibrate.change import DEFAULT_STABILITY, Evidence, Stability
 from core.calibrate.deviations import UNEXPLAINED, Deviation
 from core.model.arrays import Array
 
@@ -42,12 +42,30 @@ def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Arra
     return np.array(likelihoods)
 
 
+def stability_by_pictures(deviations: Sequence[Deviation], evidence: Evidence) -> Stability:
+    """The stability to assume of a rig of which nothing is stated and no check of the day has passed.
+
+    The default is known to a factor of two only, and a rig that has changed more than most shows a little of it in each
+    scan. It is the default times the root of the mean square of t, given the pictures, and no less than the default:
+    they may not see what changed. Where they say nothing it is the default.
+    """
+    if not evidence.information.any():
+        return DEFAULT_STABILITY
+    weight = _weights(log_likelihoods(deviations, evidence), 1.0)
+    return DEFAULT_STABILITY.times(*[max(1.0, float(np.sqrt(weight @ FACTORS**2)))] * 4)
+
+
 def most_likely_factor(likelihoods: Array, about: float = 1.0) -> float:
     """The factor by the likelihoods (n, F) of n checks: the mean of its logarithm; `about` where they say nothing.
 
     Before any check it is within a factor of two of that (one standard deviation): default and statement are honest
     guesses.
     """
-    log = np.sum(likelihoods, axis=0) - 0.5 * np.log2(FACTORS / about) ** 2
+    return float(np.exp(_weights(np.sum(likelihoods, axis=0), about) @ np.log(FACTORS)))
+
+
+def _weights(likelihoods: Array, about: float) -> Array:
+    """Probability (F,) of each factor by the logarithms (F,) of their likelihoods and the prior `about` one."""
+    log = likelihoods - 0.5 * np.log2(FACTORS / about) ** 2
     weight = np.exp(log - log.max())
-    return float(np.exp(weight @ np.log(FACTORS) / weight.sum()))
+    return np.asarray(weight / weight.sum())

@@ -166,7 +166,9 @@ EFFECTS = (
 
 
 BOUNCES, LIGHT = "second bounces between table and part's sides", "scan.room_light_changed"
-CHANGED = ("scan.fan_has_moved", "inspection.rig_has_changed", "validity.check_failed")
+CHANGED = (
+    "scan.fan_has_moved", "inspection.rig_has_changed", "inspection.rig_may_have_changed", "validity.check_failed",
+)  # fmt: skip
 MOVEMENT = (
     "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
     "gauge.moved_and_no_faces", "scan.frames_moved",

@@ -129,3 +129,15 @@ def test_no_effect_makes_a_thickness_wrong_without_a_word(effect, strength, tmp_
     print(row_of([case], {case.name: figures}))
     assert "error" in figures
     assert state_of(case, figures) in ("held", "told")
+
+
+@pytest.mark.accuracy
+def test_an_unchecked_rig_that_changed_beyond_u_proves_nothing_where_the_scan_shows_it(tmp_path):
+    """Warmed by a whole pixel and 500 ppm, five times what is assumed: −0.18 mm at U = 0.16 mm, p = 0.004."""
+    (case,) = [one for one in hostile_cases(0.25, (2,), (0,)) if (one.effect, one.strength) == (WARM, "1 px")]
+    figures = figures_of(case, tmp_path)
+    print(row_of([case], {case.name: figures}))
+    assert "inspection.rig_may_have_changed" in figures["told"]
+    assert figures["verdict"] == "not proven" and not figures["complete"]
+    assert abs(figures["error"]) < 1.3 * figures["U"]
+    assert state_of(case, figures) in ("held", "told")

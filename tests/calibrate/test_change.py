@@ -1,10 +1,12 @@
 """What may have changed since the calibrations, and what pictures leave of it."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.calibrate.camera.reprojection import parameters_of
-from core.calibrate.change import DEFAULT_STABILITY, STABLE, Evidence, Stability, changes, judge, lasting
+from core.calibrate.change import DEFAULT_STABILITY, STABLE, Evidence, Stability, agrees, changes, judge, lasting
 from core.calibrate.deviations import Deviation, moved_fan
 from core.model import Fan, LightPlane
 from tests.calibrate.fan_scenes import CAMERA, PAPER
@@ -59,6 +61,36 @@ def test_pictures_that_see_everything_leave_nothing_but_what_they_saw():
     change = judge(CAMERA, FAN, DEVIATIONS, evidence, DEFAULT_STABILITY)
     assert change.p < 1e-9
     assert change.notes[0].code == "scan.fan_has_moved"
+
+
+def seen(times: float) -> Evidence:
+    """Precise pictures that see every change, each as many noises of theirs large."""
+    of_change = np.array([one.source == "change" for one in DEVIATIONS], dtype=float)
+    information = np.diag(1e4 * of_change)
+    return Evidence(information, information, 1e2 * times * of_change)
+
+
+@pytest.mark.parametrize(
+    ("times", "of_unchecked", "of_checked"),
+    [
+        (1.0, None, None),
+        (1.6, "inspection.rig_may_have_changed", None),
+        (2.0, "inspection.rig_has_changed", "inspection.rig_has_changed"),
+    ],
+)
+def test_what_may_be_chance_in_one_of_100_rigs_proves_nothing_unless_a_check_of_the_day_has_passed(
+    times, of_unchecked, of_checked
+):
+    change = judge(CAMERA, FAN, DEVIATIONS, seen(times), DEFAULT_STABILITY)
+    assert (0.001 < change.p < 0.01) is (times == 1.6)
+    doubts = [replace(change, checked=checked).doubt for checked in (False, True)]
+    assert [doubt and doubt.code for doubt in doubts] == [of_unchecked, of_checked]
+
+
+def test_only_pictures_that_see_a_change_agree_with_the_calibrations():
+    assert agrees(DEVIATIONS, seen(1.0))
+    assert not agrees(DEVIATIONS, seen(1.6))
+    assert not agrees(DEVIATIONS, NOTHING)
 
 
 def test_change_is_told_as_seldom_as_chance_looks_like_it():

@@ -18,6 +18,7 @@ from core.calibrate.change import (
     Evidence,
     RigSpread,
     Stability,
+    agrees,
     changes,
     judge,
     lasting,
@@ -27,7 +28,7 @@ from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviat
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
-from core.calibrate.rig_spread import log_likelihoods
+from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
 from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.options import Options
@@ -303,15 +304,24 @@ def judged(
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
     checked: tuple[CheckedPose, ...] = ()
+    agree = _readjusted_on_the_day(found, calibration.fan)
     if found.check:
         names = {pair.name for pair in found.check}
         seen = measure_check(found, camera, options, progress) if poses is None else poses
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         evidence += of_check
+        agree = agrees(deviations, of_check)
     change = judge(
-        camera, fan.fan, deviations, evidence, _stability(found, calibration), charted_spread(found, calibration)
+        camera,
+        fan.fan,
+        deviations,
+        evidence,
+        _stability(found, calibration),
+        charted_spread(found, calibration),
+        DEFAULT_STABILITY if agree else stability_by_pictures(deviations, evidence),
     )
+    change = replace(change, checked=agree)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
         change = replace(change, p=0.0, times=math.inf)
@@ -328,7 +338,7 @@ def assumed_stability(found: RecordingSet, change: Change) -> tuple[Message, ...
         return (_charted(change.spread, found),)
     if found.rig.stability is not None:
         return ()
-    size = DEFAULT_STABILITY
+    size = change.stability
     return (
         Message(
             "scan.stability_assumed",

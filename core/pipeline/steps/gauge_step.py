@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
-from core.calibrate.change import PROVES_NOTHING
+from core.calibrate.change import CHANGED, PROVES_NOTHING
 from core.errors import InputError
 from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
@@ -32,11 +32,6 @@ PART = "part"
 
 MATTERS = 1.1
 """A rig is told to be unchecked if U is so many times what it would be without a change since the calibration."""
-
-CHANGED = Message(
-    "inspection.rig_has_changed",
-    "Laser or camera have surely changed since they were calibrated: nothing measured proves conformity.",
-)
 
 
 def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
@@ -128,9 +123,9 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    if scan.doubt in (MOVED_WITHIN, DRIFTED_WITHIN):
-        return replace(errors, doubt=scan.doubt)
-    return replace(errors, doubt=CHANGED if scan.change_p < PROVES_NOTHING else scan.doubt)
+    if scan.doubt is None and scan.change_p < PROVES_NOTHING:  # results of versions that did not keep this doubt
+        return replace(errors, doubt=CHANGED)
+    return replace(errors, doubt=scan.doubt)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.change import PROVES_NOTHING
 from core.errors import InputError
 from core.files.pictures import compression_of
 from core.files.recording.options import Options, StatedTilt
@@ -24,7 +23,7 @@ from core.inspect.step_height import KnownTilt, Step, measure_steps, profile_axe
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
-from core.pipeline.steps.gauge_step import CHANGED, PART, of_part
+from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import OF_CLOUD, Calibration, StepLog, Workspace, check_size
@@ -125,7 +124,7 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        doubt = CHANGED if change.p < PROVES_NOTHING else doubt_of_the_day(work, calibration)
+        doubt = change.doubt or doubt_of_the_day(work, calibration)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
         if doubt is not None:

@@ -109,7 +109,7 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
-        doubt = _unsteady(scan) or doubt_of_the_day(work, calibration)
+        doubt = _unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
         said = (*change.notes, *([doubt] if doubt else []))
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
