@@ -8,9 +8,12 @@ import numpy as np
 import pytest
 
 from core.files.results.comparison_file import read_comparison
+from core.files.results.mesh_export import write_stl
 from core.files.results.ply import read_cloud, write_cloud
 from core.files.results.ply_format import parse_ply
 from core.pipeline.steps.report_step import results_content
+from core.scan.surface.fused_surface import Mesh
+from core.simulate.scene.objects import gauge_block
 from tests.simulated import copy_of, trisect
 
 WEAR_MM = 0.4
@@ -60,6 +63,17 @@ def test_wear_is_told_written_and_reported(results, before):
     assert content.compared is not None
     assert "before.ply" in str(content.compared)
     assert read_comparison(results / "comparison.json").alignment == "as measured"
+
+
+def test_a_block_as_it_should_be_differs_from_its_drawing_by_chance_alone(results, tmp_path):
+    corners = gauge_block(50.0).triangles
+    block, flat = tmp_path / "block.stl", corners.reshape(-1, 3)
+    write_stl(block, Mesh(flat, np.zeros_like(flat), np.zeros(len(flat)), np.arange(len(flat)).reshape(-1, 3)))
+    said = trisect("compare", block, results, "--align", "best fit", "--json")
+    assert said.code == 0, said.err
+    told = json.loads(said.out)
+    assert told["lower"]["share"] + told["higher"]["share"] < 0.05  # of 95 % none is by chance beyond it
+    assert max(abs(told[side]["extreme_mm"] or 0.0) for side in ("lower", "higher")) < 0.5
 
 
 @pytest.mark.parametrize(

@@ -61,6 +61,8 @@ FEWEST_PATCHES = 8
 """That tell it at all."""
 AT_ONCE = 1000
 """Core points taken together: their pairs with points fill about 100 MB."""
+UNEVEN = 4.0
+"""Times the usual scatter that points of one surface have about the fit where it has an edge or lies upon another."""
 SAMPLE = 400
 """Core points that the diameter is chosen by."""
 
@@ -262,8 +264,8 @@ def compare(
     if not kept.any():
         raise _nothing_common(scales.reach_mm)
     deviation, u = np.concatenate([one.deviation for one in found]), np.concatenate([one.u for one in found])
-    counts = np.concatenate([one.counts for one in found])
-    places, deviation, u = places[kept], deviation[kept], u[kept]
+    counts, scatter = np.concatenate([one.counts for one in found]), np.concatenate([one.scatter for one in found])
+    places, deviation, u = places[kept], deviation[kept], np.hypot(u[kept], _mixed(scatter[kept]))
     registration = scales.registration_mm
     if registration is None:
         registration = _registration(places, deviation, u, PATCH * diameter)
@@ -364,12 +366,16 @@ class _Inside:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class _Fitted:
-    """Of C cylinders: whether there is enough in them, deviation and u in mm, points of both (C, 2)."""
+    """Of C cylinders: whether there is enough in them, deviation and u in mm, points of both (C, 2).
+
+    `scatter` (C, 2) is the variance in mm² of both surfaces' points about the fit.
+    """
 
     kept: NDArray[np.bool_]
     deviation: Array
     u: Array
     counts: NDArray[np.int64]
+    scatter: Array
 
 
 def _inside(cylinders: _Cylinders, surface: SurfacePoints, tree: cKDTree) -> _Inside:
@@ -423,10 +429,21 @@ def _fitted(cylinders: _Cylinders, clouds: tuple[tuple[SurfacePoints, cKDTree], 
     weight = (design * gain[owner]).sum(axis=1) / noise[owner]
     left = along - (design * fit[owner]).sum(axis=1)
     variance = (gain**2 * prior).sum(axis=1)
+    scatter = np.zeros((count, 2))
     for number, one in enumerate(both):
         mine = of_other == number
-        variance += _variance(one, weight[mine], left[mine], counts[:, number])
-    return _Fitted(kept, fit[:, 0] - fit[:, 1], np.sqrt(variance), counts)
+        scatter[:, number] = np.bincount(one.owner, left[mine] ** 2, count) / np.maximum(counts[:, number] - 1, 1)
+        variance += _variance(one, weight[mine], scatter[:, number])
+    return _Fitted(kept, fit[:, 0] - fit[:, 1], np.sqrt(variance), counts, scatter)
+
+
+def _mixed(scatter: Array) -> Array:
+    """(C,) uncertainty in mm where points of one surface lie on different sides of the part, by their scatter (C, 2).
+
+    Such points are of no one place, and more of them tell it no better; only points without normals are mixed so.
+    """
+    usual = UNEVEN**2 * np.median(scatter, axis=0)
+    return np.asarray(np.sqrt(np.maximum(scatter - usual, 0.0).sum(axis=1)))
 
 
 def _noise(both: list[_Inside], counts: NDArray[np.int64]) -> Array:
@@ -447,15 +464,17 @@ def _groups(one: _Inside) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     return piece, keys // span
 
 
-def _variance(one: _Inside, weight: Array, left: Array, counts: NDArray[np.int64]) -> Array:
-    """(C,) what one surface adds: its sweeps' stated errors, or what its points show if more; what it shares."""
-    count = len(counts)
+def _variance(one: _Inside, weight: Array, scatter: Array) -> Array:
+    """(C,) what one surface adds: its sweeps' stated errors, or what its points' scatter (C,) in mm² shows if more.
+
+    What all its points share comes on top.
+    """
+    count = len(scatter)
     piece, owner = _groups(one)
     number = len(owner)
     stated = np.bincount(owner, np.bincount(piece, weight * one.sigma, number) ** 2, count)
     together = np.bincount(owner, np.bincount(piece, weight, number) ** 2, count)
     alone = np.bincount(one.owner, weight**2, count)
-    scatter = np.bincount(one.owner, left**2, count) / np.maximum(counts - 1, 1)
     shared = np.bincount(one.owner, weight * one.common, count)
     return np.asarray(np.maximum(stated, scatter * np.maximum(together, alone)) + shared**2)
 

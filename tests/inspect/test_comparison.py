@@ -90,6 +90,23 @@ def test_dense_points_of_another_program_are_detected_by_the_published_formula()
     assert found.significant[middle].all()
 
 
+def test_a_point_where_sides_without_normals_meet_is_not_significant():
+    """A block's edge in points of another program: those of the flank lie beside those of the top, but deeper."""
+    rng = np.random.default_rng(4)
+    flat = rng.uniform([-20, -20], [20, 0], (16_000, 2))
+    top = np.column_stack([flat, np.zeros(len(flat))])
+    flank = np.column_stack([rng.uniform(-20, 20, 16_000), np.zeros(16_000), rng.uniform(-20, 0, 16_000)])
+    other = SurfacePoints.bare(np.vstack([top, flank]))
+    noise = rng.normal(0, 0.01, len(flat))
+    ours = SurfacePoints.bare(top + noise[:, None] * [0.0, 0.0, 1.0], np.tile([0.0, 0.0, 1.0], (len(top), 1)))
+    found = compare(ours, other, ComparisonScales(diameter_mm=3.0))
+    at_edge = found.points[:, 1] > -1.5
+    assert np.abs(found.deviation[at_edge]).max() > 0.1  # what lies there is no one surface
+    assert not found.significant[at_edge].any()
+    assert found.detectable[~at_edge].max() < 0.02
+    assert found.significant[~at_edge].mean() < 0.08
+
+
 def test_a_tilt_of_one_on_the_other_is_the_registrations_and_not_significant():
     tilted = scan(7)
     turn = Pose.from_vector([0.003, 0.0, 0.0, 0.0, 0.0, 0.0])

@@ -12,8 +12,9 @@ from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.deviation_map import classes_of, mark
 from core.inspect.uncertainty.causes import FACETS
+from core.model import Pose
 from core.scan.surface.triangles import ProximityQuery, Triangles
-from core.simulate.scene.objects import step_block
+from core.simulate.scene.objects import gauge_block, step_block
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, PIN, PIN_AXIS, ShapeScan
 
 STEPS = Triangles(step_block((12.0, 20.0, 31.0), (60.0, 35.0)).triangles)
@@ -61,6 +62,21 @@ def test_a_part_is_found_however_it_lies(turn):
     pose = aligned.pose_camera_nominal
     corners = STEPS.corners.reshape(-1, 3)
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
+
+
+def test_a_start_near_another_side_is_not_taken_where_that_leaves_points_off():
+    """A block of 70 × 60 × 50, its top and a side scanned: half of the points lie close with either side up."""
+    rng = np.random.default_rng(5)
+    top = np.column_stack([rng.uniform(-34, 34, (900, 1)), rng.uniform(-29, 29, (900, 1)), np.full(900, 50.0)])
+    side = np.column_stack([rng.uniform(-34, 34, (100, 1)), np.full(100, 30.0), rng.uniform(5, 49, (100, 1))])
+    down = Pose(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, 500.0]))
+    points = down.apply(np.vstack([top, side]) + rng.normal(0, 0.01, (1000, 3)))
+    query, up = ProximityQuery(Triangles(gauge_block(50.0).triangles)), np.array([0.0, 0.0, -1.0])
+    on_its_side = down @ Pose(Rotation.from_euler("x", 90, degrees=True).as_matrix(), np.array([0.0, 25.0, 20.0]))
+    for near in (on_its_side, down):
+        found = best_fit(points, up, query, near=near)
+        assert np.abs(query.nearest(found.pose_camera_nominal.inverse().apply(points)).distance).max() < 0.06
+    assert found.pose_camera_nominal.rotation == pytest.approx(down.rotation, abs=0.01)  # alike sides are not turned
 
 
 @pytest.mark.accuracy

@@ -41,8 +41,8 @@ FIRST_CUT, NARROWER = 0.04, 0.85
 that alone fix a direction must not lose theirs before they have moved the part."""
 HELD = 0.02
 """A fit holds if the median distance left is less than this share of the part's size,"""
-HELD_AT_ONCE = 0.002
-"""and one from a start that was given, if it is less than this."""
+BETTER = 2.0
+"""and one from a start that was given, unless another start leaves less than 1 / BETTER of its mean distance."""
 
 
 def three_two_one(primary: Element, secondary: Element, tertiary: Element | None) -> Pose:
@@ -117,8 +117,8 @@ def best_fit(
     progress
         Called with how far it is.
     near
-        A pose of the nominal surface near the one looked for, of a part that lies about as before: where it leads to a
-        good fit no other is tried, so that a part with alike sides is not turned.
+        A pose of the nominal surface near the one looked for, of a part that lies about as before: where it leads to is
+        taken unless another start leads to a clearly better fit, so that a part with alike sides is not turned.
 
     Raises
     ------
@@ -127,10 +127,6 @@ def best_fit(
     """
     rng = np.random.default_rng(0)
     shuffled = points[rng.permutation(len(points))]
-    if near is not None:
-        pose, left = _fitted(shuffled[: STAGES[-1][0]], near.inverse(), query, STAGES[-1][1])
-        if left <= HELD_AT_ONCE * query.size_mm:
-            return Aligned(pose.inverse(), left)
     poses = _starts(shuffled[: STAGES[0][0]], up, query.surface)
     done, total = 0, len(poses) + sum(kept for _, _, kept in STAGES)
     for count, rounds, kept in STAGES:
@@ -142,7 +138,12 @@ def best_fit(
             pose, _ = _fitted(sample, start, query, rounds)
             tried.append((_left(sample, pose, query), len(tried), pose))
         poses = [pose for _, _, pose in sorted(tried, key=lambda one: one[:2])[:kept]]
-    pose, left = _fitted(sample, poses[0], query, rounds, exact=True)
+    found = poses[0]
+    if near is not None:
+        nearby = _fitted(sample, near.inverse(), query, rounds)[0]
+        if _left(sample, nearby, query) <= BETTER * _left(sample, found, query):
+            found = nearby
+    pose, left = _fitted(sample, found, query, rounds, exact=True)
     progress("alignment", total, total)
     if left > HELD * query.size_mm:
         raise InputError(
