@@ -161,6 +161,8 @@ class Capabilities:
         What can be chosen; () if nothing can.
     sensor
         (width, height) within which a region can be chosen; None if it cannot.
+    row_time_us
+        Time from one row to the next as the camera tells it, in µs: 0 of a global shutter; None if it does not.
     """
 
     exposure_ms: Limits | None = None
@@ -169,6 +171,7 @@ class Capabilities:
     triggers: tuple[str, ...] = ()
     pixel_formats: tuple[str, ...] = ()
     sensor: tuple[int, int] | None = None
+    row_time_us: float | None = None
 
     @property
     def names(self) -> tuple[str, ...]:

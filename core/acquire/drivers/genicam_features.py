@@ -74,6 +74,7 @@ def capabilities_of(features: Features) -> Capabilities:
         triggers=(FREE_RUNNING, *_trigger_lines(features)) if can_trigger else (),
         pixel_formats=readable(features.entries("PixelFormat")) if features.has("PixelFormat") else (),
         sensor=sensor_size(features),
+        row_time_us=row_time_us(features),
     )
 
 
@@ -132,6 +133,21 @@ def sensor_size(features: Features) -> tuple[int, int] | None:
         return None
     sizes = [_largest(features, names) for names in _SIZES]
     return sizes[0], sizes[1]
+
+
+def row_time_us(features: Features) -> float | None:
+    """Time from one row to the next in µs, 0 of a global shutter; None where the camera does not tell.
+
+    The standard has `SensorShutterMode`, but no time of a row: of a rolling shutter that is the time of the whole
+    read-out, in µs, over its rows, where the camera has `SensorReadoutTime`. Rows that begin together and end one after
+    another (`GlobalReset`) are neither.
+    """
+    mode = features.entry("SensorShutterMode") if features.has("SensorShutterMode") else ""
+    if mode == "Global":
+        return 0.0
+    if mode != "Rolling" or not (features.has("SensorReadoutTime") and features.has("Height")):
+        return None
+    return features.number("SensorReadoutTime") / max(features.number("Height"), 1.0) or None
 
 
 def is_asked_for(features: Features) -> bool:

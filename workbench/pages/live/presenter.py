@@ -7,6 +7,7 @@ the process that runs it runs one after another.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -460,6 +461,7 @@ class LivePresenter(QObject):
         match event:
             case LiveStarted():
                 self.settings.opened(self._source, event.capabilities)
+                self._take_shutter(event)
                 self.started.emit(event)
             case LiveTaken():
                 self._sound()
@@ -481,6 +483,21 @@ class LivePresenter(QObject):
                 self.bench.notices.info(tr("{camera} is back; the recording goes on.", camera=self.name))
                 self.back.emit()
         self.changed.emit()
+
+    def _take_shutter(self, event: LiveStarted) -> None:
+        """Take over how the camera reads its rows out, where nothing is stated; undoable."""
+        project, row_time_us = self.model.project, event.capabilities.row_time_us
+        if row_time_us is None or project.rig.row_time_us is not None:
+            return
+        after = replace(project, rig=replace(project.rig, row_time_us=row_time_us))
+        self.model.edit(tr("take the shutter from the camera"), after)
+        said = (
+            tr("{camera} has a rolling shutter, {us} µs from row to row: that is reckoned with.",
+               camera=event.name, us=number(row_time_us, ".3g"))
+            if row_time_us
+            else tr("{camera} has a global shutter: that is reckoned with.", camera=event.name)
+        )  # fmt: skip
+        self.bench.notices.info(said)
 
     def _sound(self) -> None:
         if self.sound:

@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 
+from core.acquire.settings import Capabilities
 from core.acquire.source import SourceInfo
 from core.files.project.data import Done
 from core.messages import plain
@@ -350,3 +351,22 @@ def test_checks_and_advice_are_gone_with_the_recording(running, lane):
     assert running.checks[0].state == "ok" and str(running.advice.sentence) == "Too bright."
     lane.finish(LiveEnded(request_of(lane).folder, 0, 0))
     assert running.checks == () and running.advice.sentence is None
+
+
+@pytest.mark.parametrize(("told_us", "word"), [(25.8, "rolling shutter, 25.8 µs"), (0.0, "global shutter")])
+def test_the_shutter_that_a_camera_tells_of_is_taken_over_once_and_can_be_undone(live, lane, told_us, word):
+    live.start()
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480), Capabilities(row_time_us=told_us)))
+    assert live.model.project.rig.row_time_us == told_us
+    assert word in live.bench.notices.all[-1].text
+    live.model.undo_stack.undo()
+    assert live.model.project.rig.row_time_us is None
+
+
+def test_a_shutter_that_is_stated_or_not_told_stays(live, lane):
+    project = live.model.project
+    live.model.edit("state it", replace(project, rig=replace(project.rig, row_time_us=26.0)))
+    live.start()
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480), Capabilities(row_time_us=0.0)))
+    lane.current.reported.emit(LiveStarted("Camera 1", (640, 480)))
+    assert live.model.project.rig.row_time_us == 26.0
