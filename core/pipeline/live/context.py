@@ -138,7 +138,7 @@ class LiveContext:
     def took(self, name: str, picture: Picture) -> None:
         """A view, pose or reference is on the disk."""
         self._told = None
-        self.emit(LiveTaken(name, Display(THUMBNAIL_PX).reduced(picture)[0]))
+        self.emit(LiveTaken(name, Display.of(self.request.rig, THUMBNAIL_PX).reduced(picture)[0]))
 
     def put_aside(self, *names: str) -> bool:
         """Move pictures (names without ending) out of the recording; False if there is none of them."""

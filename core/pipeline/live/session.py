@@ -56,7 +56,7 @@ class LiveLoop:
     ) -> None:
         self._context, self._step, self._commands, self._ready = context, step, commands, ready
         self._source: FrameSource = context.source
-        self._display = Display(context.request.display_px)
+        self._display = Display.of(context.request.rig, context.request.display_px)
         self._stopping = self._started = False
         self._waiting: deque[Command] = deque()
         self._newest: Frame | None = None
