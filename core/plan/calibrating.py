@@ -91,23 +91,33 @@ def plan_fan(design: Design, camera: Camera, seed: int, progress: Progress = sil
     InputError
         If the fan meets the target in too few poses to be calibrated.
     """
+    options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
+    return fit_fan(_plates_seen(design, seed, design.poses, "plate noise"), camera, options, progress)
+
+
+def plan_check(design: Design, seed: int) -> list[PoseFeatures]:
+    """The planned number of pictures of the plane target in the fan, taken on the day of the scan."""
+    return _plates_seen(design, seed, design.check_poses, "check noise")
+
+
+def _plates_seen(design: Design, seed: int, count: int, what: str) -> list[PoseFeatures]:
+    """What `count` pictures of the plane target in the fan show; `what` names their noise."""
     true, target = design.camera(), design.plane_target
     stripes = SeenStripes.of_plates(design)
-    noise = generator(seed, "plate noise")
+    noise = generator(seed, what)
     features = []
-    for number, (pose, pieces) in enumerate(plates_under_fan(design, seed)):
+    for number, (pose, pieces) in enumerate(plates_under_fan(design, seed, count)):
         view = _view(f"pose{number:02d}", true, pose, target, noise)
         tried = stripes.tried(pieces, WHITE * float(room_shade(pose, PLANE_GREY)))  # each pose has its own sharpness
         features.append(_features(view, tuple(tried.centreline(piece, noise) for piece in pieces), true))
-    options = FanOptions(design.lines, np.radians(design.angle_deg) if design.lines > 1 else None)
-    return fit_fan(features, camera, options, progress)
+    return features
 
 
-def plates_under_fan(design: Design, seed: int) -> list[tuple[Pose, list[LitLine]]]:
-    """How the plane target is held in the planned poses, and the fan's stripes on the light parts of each."""
+def plates_under_fan(design: Design, seed: int, count: int) -> list[tuple[Pose, list[LitLine]]]:
+    """How the plane target is held in `count` poses, and the fan's stripes on the light parts of each."""
     rig, plate = design.rig(), printed(design.plane_target)
     near, far = NEAREST_POSE * design.distance_mm, FARTHEST_POSE * design.distance_mm
-    poses = plane_poses(fan_centres(rig, design.poses, near, far), plate.outline, generator(seed, "plane poses"))
+    poses = plane_poses(fan_centres(rig, count, near, far), plate.outline, generator(seed, "plane poses"))
     filter_px, nothing = SeenStripes.of_plates(design).filter_px, np.empty((0, 3, 3))
     return [
         (

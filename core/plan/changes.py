@@ -79,6 +79,14 @@ def _grey(value: float) -> Message:
     return Message("plan.grey_levels", "{value:.3g} grey levels", value=value)
 
 
+_CHECKED = 3
+"""Pictures of a check on the day, as the manual advises."""
+_MORE_CHECKS = Change(
+    Message("plan.change_check", "pictures of a check on the day of the scan: {n} more", n=_CHECKED),
+    lambda design: Message("plan.number", "{n}", n=design.check_poses + _CHECKED),
+    lambda design: _with(design, "check_poses", design.check_poses + _CHECKED),
+)
+
 CHANGES = (
     _scaled("baseline_mm", 1.2, Message("plan.change_baseline_up", "baseline of the fan 20 % longer"), _mm),
     _scaled("baseline_mm", 0.8, Message("plan.change_baseline_down", "baseline of the fan 20 % shorter"), _mm),
@@ -92,6 +100,7 @@ CHANGES = (
     _twice("poses", Message("plan.change_poses", "poses of the plane target doubled")),
     _twice("views", Message("plan.change_views", "views of the camera target doubled")),
     _twice("sweeps", Message("plan.change_sweeps", "sweeps doubled")),
+    _MORE_CHECKS,
     _scaled("speckle", 0.5, Message("plan.change_speckle", "speckle halved"), _contrast),
     _scaled("stripe_grey", 1.5, Message("plan.change_brightness", "stripes half as bright again"), _grey),
 )

@@ -68,6 +68,7 @@ RANGES: Mapping[str, Range] = {
     "views": Range(3, 200, "views"),
     "poses": Range(2, 200, "poses"),
     "sweeps": Range(3, 1000, "sweeps"),
+    "check_poses": Range(0, 20, "poses"),
     "speckle": Range(0.0, 1.0),
     "stripe_grey": Range(5.0, 5000.0, "grey levels"),
     "stripe_sigma_mm": Range(0.02, 3.0, "mm"),
@@ -100,6 +101,8 @@ class Design:
         Thicknesses to be measured; length and width of the blocks.
     views, poses, sweeps
         Pictures of the camera target, of the plane target, and frames of the scan.
+    check_poses
+        Pictures of the plane target in the fan on the day of the scan.
     speckle
         Contrast of the lasers' speckle as one pixel sees it.
     stripe_grey, stripe_sigma_mm
@@ -129,6 +132,7 @@ class Design:
     views: int = 14
     poses: int = 9
     sweeps: int = 60
+    check_poses: int = 0
     speckle: float = 0.18
     stripe_grey: float = Beam().peak_grey
     stripe_sigma_mm: float = Beam().sigma_mm

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from core.calibrate.change import Stability
 from core.errors import InputError, WrongValue
 from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
 from core.image.targets import Target
@@ -31,10 +32,14 @@ def read_design(path: Path) -> Design:
     return design
 
 
-def read_part(path: Path) -> Part:
-    """What the rig.toml at `path`, or in that folder, states of the part; InputError as `read_design`."""
+def read_stated(path: Path) -> tuple[Part, Stability | None]:
+    """What the rig.toml at `path`, or in that folder, states of the part, and of how far the rig may change.
+
+    InputError as `read_design`.
+    """
     tables = read_rig_tables(path / "rig.toml" if path.is_dir() else path)
-    return Part() if tables.part is None else tables.part.part()
+    part = Part() if tables.part is None else tables.part.part()
+    return part, None if tables.stability is None else tables.stability.stability()
 
 
 def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:

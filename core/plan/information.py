@@ -164,7 +164,7 @@ def _of_plates(sensing: Sensing, seed: int) -> Array:
     size = sensing.unknowns
     information = np.zeros((size, size))
     columns = np.concatenate([np.arange(CAMERA), size + np.arange(_POSE)])
-    for pose, pieces in plates_under_fan(sensing.design, seed):
+    for pose, pieces in plates_under_fan(sensing.design, seed, sensing.design.poses):
         own = np.zeros((size + _POSE, size + _POSE))
         rows = _target_rows(sensing, sensing.design.plane_target, pose, PLANE_GREY)
         own[np.ix_(columns, columns)] += rows.T @ rows

@@ -14,7 +14,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from core.calibrate.deviations import calibration_deviations
+from core.calibrate.change import STABLE, Stability, changes, judge
+from core.calibrate.deviations import Deviation, calibration_deviations
+from core.calibrate.fan.interim_check import check_poses
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.inspect.gauge import adjusted, measure_gauge
@@ -25,13 +27,15 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.messages import Message
 from core.model.arrays import Array
-from core.plan.calibrating import plan_camera, plan_fan
+from core.plan.calibrating import plan_camera, plan_check, plan_fan
 from core.plan.design import Design
 from core.plan.scanning import plan_scan
 from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
 from core.scan.features.extraction import ScanFeatures
 from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.results import ScanResult
+from core.scan.scan_evidence import scan_evidence
 from core.scan.surface.cloud import Cloud
 
 MAP_COLUMNS = 48
@@ -102,12 +106,14 @@ class Planner:
     """Predicts, and remembers what plans that differ in little have in common.
 
     Of the `part` what its temperature, expansion and surface make uncertain is known before any picture; None leaves
-    it out.
+    it out. `stability` is how far the rig may change between calibration and scan: None assumes the default, as a
+    measurement does.
     """
 
     progress: Progress = silent
     sigma_cut_mm: float = ReconstructOptions().sigma_cut_mm
     part: Part | None = None
+    stability: Stability | None = STABLE
     _known: dict[tuple[object, ...], object] = field(default_factory=dict)
 
     def predict(self, design: Design, height_mm: float, scans: int = 1) -> Prediction:
@@ -146,7 +152,7 @@ class Planner:
         scan = reconstruct(
             features, camera.camera, fan.fan, ReconstructOptions(sigma_cut_mm=self.sigma_cut_mm), told.within_step
         )
-        deviations = calibration_deviations(camera, fan)
+        deviations = self._deviations(design, seed, (camera, fan), features, scan)
         common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle, scan.pis.shape[1])
@@ -174,11 +180,32 @@ class Planner:
             ("fan", whole, seed), lambda: plan_fan(design, camera.camera, seed, told.within_step)
         )
 
+    def _deviations(
+        self,
+        design: Design,
+        seed: int,
+        calibrations: tuple[CameraCalibration, FanCalibration],
+        features: ScanFeatures,
+        scan: ScanResult,
+    ) -> tuple[Deviation, ...]:
+        """Those of the calibrations, and what may have changed since, as far as scan and check do not exclude it."""
+        camera, fan = calibrations
+        deviations = calibration_deviations(camera, fan)
+        if self.stability == STABLE:
+            return deviations
+        deviations = (*deviations, *changes(camera.camera, fan.fan))
+        evidence = scan_evidence(features, scan, camera.camera, fan.fan, deviations)
+        seen = plan_check(design, seed)
+        if seen:
+            evidence += check_poses(seen, camera.camera, fan, deviations)[1]
+        return judge(camera.camera, fan.fan, deviations, evidence, self.stability).deviations
+
     def _features(self, design: Design, height_mm: float, seed: int) -> ScanFeatures:
         known = replace(
             design,
             views=Design().views,
             poses=Design().poses,
+            check_poses=Design().check_poses,
             camera_target=Design().camera_target,
             plane_target=Design().plane_target,
         )
@@ -217,7 +244,8 @@ def light_not_foretold(part: Part) -> Message | None:
 
 
 _SCAN_ONLY = {
-    name: getattr(Design(), name) for name in ("sweeps", "hand_baseline_mm", "heights_mm", "block_mm", "ambient_grey")
+    name: getattr(Design(), name)
+    for name in ("sweeps", "hand_baseline_mm", "heights_mm", "block_mm", "ambient_grey", "check_poses")
 }
 """Quantities that calibrations do not feel, at their defaults."""
 

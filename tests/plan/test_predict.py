@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.inspect.uncertainty.causes import FAN_CALIBRATION
+from core.inspect.uncertainty.causes import CHANGE_ASSUMED, FAN_CALIBRATION
 from core.messages import plain
 from core.plan.bounds import bounds_of
 from core.plan.changes import CHANGES, Change, Effect, advice, compare
@@ -120,3 +120,18 @@ def test_a_plan_can_be_cancelled():
 
     with pytest.raises(Cancelled):
         Planner(cancel).predict(SMALL, HEIGHT)
+
+
+def test_what_may_change_after_the_calibration_is_a_row_of_the_plan_and_a_check_takes_most_of_it(base):
+    unstated = Planner(sigma_cut_mm=CUT_MM, stability=None)
+    unchecked = unstated.predict(SMALL, HEIGHT)
+    checked = unstated.predict(replace(SMALL, check_poses=3), HEIGHT)
+
+    def change(prediction):
+        return sum(row.u_mm for row in prediction.budget if row.source == CHANGE_ASSUMED)
+
+    assert not change(base), "of a rig that nothing changes"
+    assert 0.02 < change(unchecked) < 0.1
+    assert change(checked) < 0.7 * change(unchecked)
+    assert unchecked.each_u_mm[0] > 1.5 * base.each_u_mm[0]
+    assert checked.each_u_mm[0] < 1.2 * base.each_u_mm[0]

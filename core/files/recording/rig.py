@@ -188,6 +188,7 @@ class PlanTable(Table):
     views: _Count1 | None = Field(None, description=_A_COUNT)
     poses: _Count1 | None = Field(None, description=_A_COUNT)
     sweeps: _Count1 | None = Field(None, description=_A_COUNT)
+    check_poses: int | None = Field(None, ge=0, le=20, description="a whole number, 0 to 20")
     speckle: float | None = Field(None, ge=0, allow_inf_nan=False, description="a contrast not below 0")
     stripe_grey: _Above | None = Field(None, description=_A_NUMBER)
     stripe_sigma_mm: _Length | None = Field(None, description=_A_LENGTH)

@@ -16,7 +16,7 @@ from core.messages import Message, as_json
 from core.plan.bounds import Bound, bounds_of
 from core.plan.changes import Effect, advice, compare
 from core.plan.design import Design
-from core.plan.from_rig import read_design, read_part
+from core.plan.from_rig import read_design, read_stated
 from core.plan.predict import Planner, Prediction, light_not_foretold
 from core.progress import Progress, silent
 from core.report.plots.plan_map import plan_map_png
@@ -73,8 +73,8 @@ def plan(
         If rig.toml is wrong, or the rig cannot measure.
     """
     design = read_design(rig)
-    part = read_part(rig)
-    planner = Planner(progress, sigma_cut_mm, part)
+    part, stability = read_stated(rig)
+    planner = Planner(progress, sigma_cut_mm, part, stability)
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()
