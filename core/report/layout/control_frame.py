@@ -1,16 +1,11 @@
-"""A feature control frame as drawings have it: symbol, zone, datums, each in its box.
-
-References
-----------
-ISO 7083:2021, Symbols for geometrical tolerancing, proportions and dimensions.
-"""
+"""A feature control frame as drawings have it: symbol, zone, datums, each in its box."""
 
 from __future__ import annotations
 
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 
-from core.inspect.plan.control_frame import ControlFrame
+from core.inspect.plan.control_frame import STROKES, ControlFrame
 from core.report.layout.style import INK, SANS, ReportLook, color, draw_words, words_width
 
 HEIGHT, SIZE, PADDING = 4.4 * mm, 6.5, 1.1 * mm
@@ -42,35 +37,16 @@ class ControlFrameMark(Flowable):  # type: ignore[misc]
         self._symbol()
 
     def _symbol(self) -> None:
-        """In a square of side 1, each as ISO 7083 has it."""
+        """In its square."""
         canvas = self.canv
         canvas.saveState()
         canvas.scale(HEIGHT, HEIGHT)
         canvas.setLineWidth(0.06)
         canvas.setLineCap(1)
-        match self.symbol:
-            case "flatness":
-                self._lines((0.12, 0.28, 0.66, 0.28, 0.88, 0.72, 0.34, 0.72, 0.12, 0.28))
-            case "cylindricity":
-                canvas.circle(0.5, 0.5, 0.2)
-                self._lines((0.12, 0.22, 0.4, 0.78), (0.6, 0.22, 0.88, 0.78))
-            case "parallelism":
-                self._lines((0.26, 0.2, 0.52, 0.8), (0.48, 0.2, 0.74, 0.8))
-            case "perpendicularity":
-                self._lines((0.18, 0.24, 0.82, 0.24), (0.5, 0.24, 0.5, 0.8))
-            case "position":
-                canvas.circle(0.5, 0.5, 0.24)
-                self._lines((0.12, 0.5, 0.88, 0.5), (0.5, 0.12, 0.5, 0.88))
-            case "profile of a surface":
-                canvas.arc(0.16, 0.0, 0.84, 0.68, 0, 180)
-                self._lines((0.16, 0.34, 0.84, 0.34))
+        for (x, y), *others in STROKES[self.symbol]:
+            path = canvas.beginPath()
+            path.moveTo(x, y)
+            for place in others:
+                path.lineTo(*place)
+            canvas.drawPath(path)
         canvas.restoreState()
-
-    def _lines(self, *lines: tuple[float, ...]) -> None:
-        """Polylines x, y, x, y, …"""
-        for line in lines:
-            path = self.canv.beginPath()
-            path.moveTo(*line[:2])
-            for place in range(2, len(line), 2):
-                path.lineTo(*line[place : place + 2])
-            self.canv.drawPath(path)

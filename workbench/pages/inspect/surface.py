@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from html import escape
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QHideEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
@@ -22,7 +24,16 @@ from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.refresh import Refresh
-from workbench.views.colours import DEVIATIONS, FACE_LOWER, FACE_UPPER, FEATURE, OTHER_SURFACE, PROPOSED, to_rgba
+from workbench.views.colours import (
+    DATUM,
+    DEVIATIONS,
+    FACE_LOWER,
+    FACE_UPPER,
+    FEATURE,
+    OTHER_SURFACE,
+    PROPOSED,
+    to_rgba,
+)
 from workbench.views.layouts import enable, in_column
 from workbench.views.scene.view import Colouring, SceneView
 
@@ -40,6 +51,9 @@ MOST_MARKED = 100_000
 
 CUT = "cut"
 """Name of the plane that is laid through the surface."""
+
+DATUMS = "datums"
+"""Name of the letters that are written at them."""
 
 OTHER = "other surface"
 """Name of its points."""
@@ -69,7 +83,7 @@ class SurfaceTab(QWidget):
         self._face = ""
         self._drawn: tuple[object, ...] = ()
         self._marked: list[str] = []
-        self._feature: ShownFeature | None = None
+        self._feature: list[ShownFeature] = []
         self._highlights: list[str] = []
         self._cloud: tuple[object, ...] = ()
         self._mesh: tuple[object, ...] = ()
@@ -192,7 +206,7 @@ class SurfaceTab(QWidget):
         self.cut.hide()
         self.scene.set_handle(None)
         self.scene.hide_side(None)
-        self._marked, self._feature, self._highlights = [], None, []
+        self._marked, self._feature, self._highlights = [], [], []
         self._proposal = self._other = None
         self.frame.show(None)
         self.scene.clear(message)
@@ -283,22 +297,28 @@ class SurfaceTab(QWidget):
             self.scene.set_highlight(name, view.points[used[::step]], colour)
 
     def _show_feature(self) -> None:
-        """The points that the chosen feature used, over whatever colours the surface."""
-        features = self._presenter.features
-        result = features.result(features.chosen)
-        if result is self._feature:
+        """The points that the chosen feature used, or its parts, and those of its datums, over whatever colours all."""
+        own, datums = self._presenter.features.rests_on(self._presenter.features.chosen)
+        marked = [*own, *(one for some in datums.values() for one in some)]
+        if [id(one) for one in marked] == [id(one) for one in self._feature]:
             return
-        self._feature = result
+        self._feature = marked
         for name in self._highlights:
             self.scene.remove_highlight(name)
         self._highlights = []
-        if result is None:
-            return
-        if result.deviations is None:
-            self._highlight("feature", result.places, FEATURE)
-            return
-        for one in result.deviations.classes:
+        self.scene.remove(DATUMS)
+        for one in (one for result in own if result.deviations is not None for one in result.deviations.classes):
             self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
+        self._highlight("feature", _places(one for one in own if one.deviations is None), FEATURE)
+        labels = []
+        for letter, some in datums.items():
+            places = _places(some)
+            self._highlight(f"datum {letter}", places, DATUM)
+            if len(places):
+                middle = np.linalg.norm(places - places.mean(axis=0), axis=1).argmin()
+                labels.append((places[middle], letter))
+        if labels:
+            self.scene.set_labels(DATUMS, labels)
 
     def _show_other(self) -> None:
         """The surface the scan is compared with, beside it."""
@@ -326,12 +346,14 @@ class SurfaceTab(QWidget):
     def _legend(self) -> str:
         """What the colours of the chosen feature mean, each with its sign, behind what is shown."""
         features = self._presenter.features
-        result = features.result(features.chosen)
-        if result is None or not result.used:
+        own, datums = features.rests_on(features.chosen)
+        name = escape(features.chosen)
+        if not any(one.used for one in own):
             return ""
-        name = escape(result.name)
+        result = own[0]
         if result.deviations is None:
-            return "; " + _dot(FEATURE, tr("used for {name}", name=name))
+            used = [_dot(FEATURE, tr("used for {name}", name=name))]
+            return "; " + ", ".join(used + [_dot(DATUM, tr("datum {letter}", letter=one)) for one in datums])
         middle = len(DEVIATIONS) // 2
         classes = result.deviations.classes
         signs = [_dot(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0")) for one in classes]
@@ -434,6 +456,11 @@ class SurfaceTab(QWidget):
             )
         self.line.setText(shown + self._legend())
         self.hint.setText(tr("Outlining …") if p.outlining else p.picks.hint())
+
+
+def _places(features: Iterable[ShownFeature]) -> NDArray[np.float32]:
+    """Points (N, 3) in mm of all of them."""
+    return np.concatenate([np.zeros((0, 3), np.float32), *(one.places for one in features)])
 
 
 def _dot(colour: str, text: str) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtWidgets import QButtonGroup, QFrame, QToolButton, QWidget
 
 from workbench.theme import icon
@@ -63,6 +63,8 @@ class StepRail(QFrame):
             button.setToolButtonStyle(style)
             button.setMinimumWidth(40 if narrow else 150)
         self._set_tips()
+        # A window that is being resized lays itself out with the width the rail had before.
+        QTimer.singleShot(0, self, self.updateGeometry)
 
     def set_current(self, name: str) -> None:
         """Mark the step whose page is shown."""

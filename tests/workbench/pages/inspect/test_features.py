@@ -8,6 +8,7 @@ from typing import cast
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QAbstractButton, QLabel
 
 from core.errors import InputError
@@ -26,7 +27,8 @@ from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.surface import TOGETHER
 from workbench.views import ask
-from workbench.views.scene.contents import Marks
+from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesIcon
+from workbench.views.scene.contents import Labels, Marks
 from workbench.work import jobs
 
 __all__ = ["toy"]
@@ -631,3 +633,84 @@ def test_delete_and_alt_arrows_work_in_the_list(presenter, page, features, qtbot
     qtbot.keyClick(page.features.list, Qt.Key.Key_Delete)
     page.refreshing.at_once()
     assert features.plan.names == ("plane 1",)
+
+
+# ---- lie to datums
+
+
+@pytest.fixture
+def lie(presenter, qtbot):
+    """A face that should be parallel to another one, which is its datum, and one that nobody asks for; measured."""
+    plan = InspectionPlan(
+        (
+            FeatureSpec("base", "plane", (Auto(1),)),
+            FeatureSpec("top", "plane", (Auto(2),)),
+            FeatureSpec("other", "plane", (Auto(3),)),
+            FeatureSpec(
+                "lie", "parallelism", of=("top", "base"), limits=(("parallelism", Limits(0.0, -math.inf, 0.05)),)
+            ),
+        )
+    )
+    presenter.features.put_plan(plan, "plan")
+    measured(presenter.features, qtbot)
+    return presenter.features
+
+
+def item_named(page, name):
+    tree = page.features.list
+    return next(
+        tree.topLevelItem(row)
+        for row in range(tree.topLevelItemCount())
+        if tree.topLevelItem(row).data(0, Qt.ItemDataRole.UserRole) == name
+    )
+
+
+def test_what_is_asked_of_a_lie_stands_as_a_control_frame_in_list_and_form_with_its_datum(lie, page):
+    asked = Frame("parallelism", ("0.05", "A"))
+    assert item_named(page, "lie").data(0, FRAMES_ROLE) == [asked]
+    assert item_named(page, "lie").text(0) == "lie"
+    assert item_named(page, "base").data(0, FRAMES_ROLE)[0] == Frame(None, ("A",))
+    assert not item_named(page, "other").data(0, FRAMES_ROLE)
+    lie.choose("lie")
+    page.refresh()
+    assert page.features.form.frames.frames == (asked,)
+    lie.choose("base")
+    page.refresh()
+    assert page.features.form.frames.frames == (Frame(None, ("A",)),)
+
+
+def test_a_tolerance_changed_changes_the_frame_and_leaves_the_editors_where_they_are(lie, page):
+    lie.choose("lie")
+    page.refresh()
+    form = page.features.form
+    before, place = form.what, form.what.mapTo(page, form.what.rect().topLeft())
+    page.presenter.feature.set_value("limits upper parallelism", 0.125)
+    page.refresh()
+    assert form.frames.frames == (Frame("parallelism", ("0.125", "A")),)
+    assert form.what is before
+    assert form.what.mapTo(page, form.what.rect().topLeft()) == place
+
+
+def test_a_chosen_lie_marks_its_face_and_its_datum_with_its_letter(lie, page):
+    scene = page.surface.scene._scene
+    lie.choose("lie")
+    page.refresh()
+    assert {(Marks, "feature"), (Marks, "datum A"), (Labels, "datums")} <= set(scene.items)
+    assert scene.items[Labels, "datums"].texts == ("A",)
+    assert "used for lie" in page.surface.line.text()
+    assert "datum A" in page.surface.line.text()
+    lie.choose("other")
+    page.refresh()
+    assert (Marks, "feature") in scene.items
+    assert not {(Marks, "datum A"), (Labels, "datums")} & set(scene.items)
+
+
+def test_a_control_frame_is_drawn_in_its_own_size(qapp):
+    icon = FramesIcon((Frame(None, ("B",)), Frame("position", ("⌀0.1", "A", "B"))))
+    drawn = icon.pixmap(icon.size, QIcon.Mode.Normal, QIcon.State.Off).toImage()
+    inked = np.array(
+        [[drawn.pixelColor(x, y).alpha() > 0 for x in range(drawn.width())] for y in range(drawn.height())]
+    )
+    assert inked[0].mean() > 0.8  # the upper edge of its boxes
+    assert not inked.any(axis=0).all()  # with a gap between the two
+    assert icon.size.width() > FramesIcon((Frame("position", ("⌀0.1",)),)).size.width()

@@ -22,9 +22,10 @@ from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.control_frames import FramesMark
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import enable, heading, in_column
+from workbench.views.layouts import enable, heading, in_column, in_row
 
 CLICK = "face"
 """The tool that takes a face clicked in 3D for a region."""
@@ -70,6 +71,7 @@ class FeatureForm(QWidget):
         self.where, self.what = SettingsForm(), SettingsForm()
         self.tools: dict[tuple[int, str], QToolButton] = {}
         self.buttons: dict[str, QPushButton] = {}
+        self.frames = FramesMark()
         self._column = in_column(self._inside, on=self)
 
     def refresh(self) -> None:
@@ -87,6 +89,7 @@ class FeatureForm(QWidget):
             form.set_values(values)
             for key in form.values():
                 form.set_complaint(key, self._edit.complaint(key))
+        self.frames.show_frames(words.frames_of(spec, plan))
         self._show_tools()
 
     # ---- making it
@@ -96,8 +99,9 @@ class FeatureForm(QWidget):
         self._inside.hide()
         self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
         self._inside, self.where, self.what = QWidget(), SettingsForm(), SettingsForm()
-        self.tools, self.buttons = {}, {}
-        column = in_column(heading(tr(kind_of(spec).title)), on=self._inside, margins=(0, 6, 0, 0), spacing=4)
+        self.tools, self.buttons, self.frames = {}, {}, FramesMark()
+        column = in_column(on=self._inside, margins=(0, 6, 0, 0), spacing=4)
+        column.addLayout(in_row((heading(tr(kind_of(spec).title)), 1), self.frames))
         self._add_where(spec, plan)
         column.addWidget(self.where)
         if fields.own_regions(spec):

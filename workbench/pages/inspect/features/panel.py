@@ -32,6 +32,7 @@ from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesDelegate
 from workbench.views.layouts import enable, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -63,6 +64,8 @@ class FeaturesPanel(QWidget):
         super().__init__(parent)
         self._features, self._edit = features, edit
         self._shown: object = None
+        self._frames: dict[str, Frame] = {}
+        self._datums: dict[str, Frame] = {}
         self.list, self.add, self.measure = QTreeWidget(), QPushButton(), QPushButton()
         self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
@@ -98,6 +101,7 @@ class FeaturesPanel(QWidget):
         self.list.setAccessibleName(tr("Features"))
         self.list.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.list.setIndentation(14)
+        self.list.setItemDelegateForColumn(0, FramesDelegate(self.list))
         self.list.setUniformRowHeights(True)
         header = self.list.header()
         header.setStretchLastSection(False)
@@ -120,6 +124,7 @@ class FeaturesPanel(QWidget):
         shown = (features.plan, results, features.measuring)
         if shown != self._shown:
             self._shown = shown
+            self._frames, self._datums = words.asked_frames(features.plan), words.datum_frames(features.plan)
             self.list.blockSignals(True)
             self.list.clear()
             self.list.addTopLevelItems([self._item(spec.name, kind_of(spec)) for spec in features.plan.features])
@@ -145,8 +150,11 @@ class FeaturesPanel(QWidget):
         result = outdated or self._features.result(name)
         rows = () if result is None else result.rows
         text = words.value(rows[0]) if len(rows) == 1 else ""
-        item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if text else name, text])
+        frames = [self._frames[row.name] for row in rows if row.name in self._frames] if text else []
+        named = text and not frames  # the symbol says what it is
+        item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if named else name, text])
         item.setData(0, Qt.ItemDataRole.UserRole, name)
+        item.setData(0, FRAMES_ROLE, [*([self._datums[name]] if name in self._datums else []), *frames])
         item.setIcon(0, icon(kind.icon))
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         below = [self._row(words.short_name(row, name), row, name) for row in rows] if len(rows) > 1 else []
@@ -174,6 +182,7 @@ class FeaturesPanel(QWidget):
     def _row(self, text: str, row: Characteristic, name: str) -> QTreeWidgetItem:
         item = QTreeWidgetItem([text, words.value(row)])
         item.setData(0, Qt.ItemDataRole.UserRole, name)
+        item.setData(0, FRAMES_ROLE, [self._frames[row.name]] if row.name in self._frames else [])
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._mark(item, row.verdict)
         for column in (0, 1):

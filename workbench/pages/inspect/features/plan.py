@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.errors import InputError
 from core.files.project.keys import finished, up_to_date
+from core.inspect.plan.control_frame import datum_letters, datums_of
 from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
@@ -252,6 +253,27 @@ class InspectFeatures(QObject):
         if found is None or name not in self.plan.names or found.kind != self.plan.feature(name).kind:
             return None
         return None if self.result(name) is found else found
+
+    def rests_on(self, name: str) -> tuple[list[ShownFeature], dict[str, list[ShownFeature]]]:
+        """What points a feature is made of: those of itself or of its parts, and of its datums by their letters.
+
+        A part that is made of others itself stands for theirs. What is not measured is left out.
+        """
+        if name not in self.plan.names:
+            return [], {}
+        spec, letters = self.plan.feature(name), datum_letters(self.plan)
+        datums = datums_of(spec, self.plan)
+        parts = [one for part in spec.of if part not in datums for one in self._measured(part)]
+        by_letter = {letters[one]: self._measured(one) for one in datums if one in letters}
+        return [*self._measured(name)] if not spec.of else parts, by_letter
+
+    def _measured(self, name: str) -> list[ShownFeature]:
+        """The result of a feature that has points, or those of what it is made of."""
+        spec = self.plan.feature(name) if name in self.plan.names else None
+        if spec is None:
+            return []
+        found = [self.result(name)] if not spec.of else [one for part in spec.of for one in self._measured(part)]
+        return [one for one in found if one is not None]
 
     def choose(self, name: str) -> None:
         """Show the points this feature used; "" for none."""

@@ -6,16 +6,19 @@ import math
 from typing import TYPE_CHECKING
 
 from core.inspect.conformity import Verdict
+from core.inspect.plan.control_frame import control_frames, datum_letters
 from core.inspect.plan.feature_kind import FeatureKind
-from core.inspect.plan.kinds import kind_of
+from core.inspect.plan.kinds import kind_of, results_of
 from core.report.wording import decision_sentence, grouped, short_value, shown_name, value_line
 from workbench.language import number, text_of, tr
 from workbench.pages.words import wording
+from workbench.views.control_frames import Frame
 from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
     from core.inspect.plan.feature_spec import FeatureSpec
+    from core.inspect.plan.inspection_plan import InspectionPlan
     from core.inspect.shown.shown_features import ShownDeviations, ShownFeature
 
 
@@ -83,3 +86,23 @@ def class_rows(found: ShownDeviations) -> list[ValueRow]:
 def used(feature: ShownFeature) -> str:
     """How many points it rests on."""
     return tr("{count} points used", count=grouped(feature.used)) if feature.used else ""
+
+
+def asked_frames(plan: InspectionPlan) -> dict[str, Frame]:
+    """Feature control frames by the names of the characteristics that are asked so."""
+    return {
+        name: Frame(one.symbol, (f"{one.round}{wording().general(one.zone_mm)}", *one.datums))
+        for name, one in control_frames(plan).items()
+    }
+
+
+def datum_frames(plan: InspectionPlan) -> dict[str, Frame]:
+    """Letters of datums by the names of the features that are datums."""
+    return {name: Frame(None, (letter,)) for name, letter in datum_letters(plan).items()}
+
+
+def frames_of(spec: FeatureSpec, plan: InspectionPlan) -> list[Frame]:
+    """The letter of a feature if it is a datum, and what is asked of its form and lie."""
+    asked, datum = asked_frames(plan), datum_frames(plan).get(spec.name)
+    own = [asked[name] for result in results_of(spec) if (name := f"{spec.name} {result}") in asked]
+    return own if datum is None else [datum, *own]
