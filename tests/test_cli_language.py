@@ -15,6 +15,7 @@ from core.files.project.audit import append, read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
 from core.translations import PSEUDO
+from tests.plan.small import CUT_MM, TOML
 from tests.report.test_report_pseudo import outside_brackets
 from tests.simulated import CUT, trisect
 from tests.study.grr_tables import AIAG
@@ -57,6 +58,7 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
     out = shutil.copytree(measured, tmp_path / "out")
     project = tmp_path / "project"
     create_project(project, ProjectFile(new_project("2026")))
+    (tmp_path / "rig.toml").write_text(TOML)
     (tmp_path / "grr.csv").write_text(
         "part;operator;value\n" + "".join(f"{p};{o};{AIAG[p, o, r]}\n" for p, o, r in cells(AIAG.shape))
     )
@@ -68,7 +70,7 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         ("mesh", out, "--format", "stl", "--fill-holes", 2, "--triangles", 900),
         ("export", out, "--format", "csv,json"),
         ("target", "--out", tmp_path / "target.pdf", "charuco"),
-        ("plan", simulated, "--no-changes", "--scans", 1, "--bounds"),
+        ("plan", tmp_path / "rig.toml", "--no-changes", "--scans", 1, "--bounds", "--sigma-cut", CUT_MM),
         ("import", tmp_path / "new", "--camera", simulated / "camera", "--dry-run"),
         ("import", tmp_path / "new", "--camera", simulated / "camera"),
         ("check", simulated, "--out", out, "--history"),
@@ -122,14 +124,11 @@ def test_all_help_is_in_the_catalogues():
     assert [text for text in texts if text and not text.startswith("⟦")] == []
 
 
-def commands(*path):
+def commands(found, *path):
     """What is typed for each command and each group of commands, and what Typer knows of it."""
-    found = get_command(app)
-    for name in path:
-        found = found.commands[name]
     yield path, found
-    for name in getattr(found, "commands", {}):
-        yield from commands(*path, name)
+    for name, one in getattr(found, "commands", {}).items():
+        yield from commands(one, *path, name)
 
 
 def typed_alike(command):
@@ -141,7 +140,9 @@ def typed_alike(command):
     yield from (*getattr(command, "commands", ()), "--language", "CODE", "--help", "-h")
 
 
-@pytest.mark.parametrize(("path", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands()])
+@pytest.mark.parametrize(
+    ("path", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands(get_command(app))]
+)
 def test_no_help_has_an_untranslated_word(monkeypatch, path, command):
     monkeypatch.setenv("COLUMNS", "300")  # in narrow columns a word is broken in two
     said = trisect(*path, "--help", "--language", PSEUDO)
@@ -185,7 +186,7 @@ def test_a_wrong_command_line_is_told_to_programs_too():
 
 
 def test_every_command_stands_under_a_heading_that_says_what_it_is_for():
-    assert [path for path, one in commands() if len(path) == 1 and not one.rich_help_panel] == []
+    assert [path for path, one in commands(get_command(app)) if len(path) == 1 and not one.rich_help_panel] == []
     said = trisect("--help", "--language", "de")
     headings = ["Ein Teil messen", "Den Aufbau kalibrieren und prüfen", "Berichte, Studien, andere Programme"]
     assert [heading for heading in headings if f"─ {heading} ─" not in said.out] == []

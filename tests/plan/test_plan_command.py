@@ -7,17 +7,8 @@ from core.errors import InputError
 from core.files.pictures import read_picture
 from core.pipeline.steps.plan_step import plan, write_plan
 from core.report.plots.plan_map import plan_map_png
-from tests.plan.small import CUT_MM, SMALL
+from tests.plan.small import CUT_MM, SMALL, TOML
 from tests.simulated import trisect
-
-TOML = f"""[plan]
-pixels = [960, 687]
-pixel_um = 6.68
-views = {SMALL.views}
-poses = {SMALL.poses}
-sweeps = {SMALL.sweeps}
-heights_mm = [40, 50]
-"""
 
 
 @pytest.fixture(scope="module")

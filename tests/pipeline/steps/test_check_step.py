@@ -6,6 +6,7 @@ import re
 import shutil
 from dataclasses import replace
 from datetime import timedelta
+from functools import cache
 
 import numpy as np
 import pytest
@@ -24,11 +25,12 @@ from core.inspect.conformity import Verdict
 from core.pipeline.run import run
 from core.pipeline.steps import planes_step as planes_step_module
 from core.pipeline.steps.camera_step import camera_step
-from core.pipeline.steps.check_step import check_step, since_calibration
+from core.pipeline.steps.check_step import check_step, measure_check, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
-from core.pipeline.steps.scan_step import scan_step
+from core.pipeline.steps.scan_pictures import look_at_scan
+from core.pipeline.steps.scan_step import Measured, scan_step
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.content import thickness_characteristic
@@ -76,6 +78,31 @@ def work_in(folder, tmp_path, *, with_check: bool = True) -> Workspace:
     for name in ("camera.json", "planes.json", "planes.npz"):
         (out / name).write_bytes((folder / "out" / name).read_bytes())
     return Workspace.open(found if with_check else replace(found, check=()), out)
+
+
+@cache
+def check_seen_in(folder):
+    """What the pictures of a prepared check show, and which they are, looked at once for all tests here."""
+    work = Workspace.open(open_set(folder / "set"), folder / "out")
+    return measure_check(work.found, work.calibration().camera.camera, Options()), work.found.hashes
+
+
+@cache
+def scan_seen_in(folder):
+    """What the pictures of a prepared scan show, looked at once for all tests here."""
+    return look_at_scan((open_set(folder / "set"), COARSE))
+
+
+def check_of(folder, work: Workspace):
+    poses, hashes = check_seen_in(folder)
+    work.found.hashes.update(hashes)
+    return check_step(work, poses=poses)
+
+
+def scan_of(folder, work: Workspace) -> Measured:
+    poses, hashes = check_seen_in(folder)
+    work.found.hashes.update(hashes)
+    return scan_step(work, COARSE, check=poses if work.found.check else None, seen=lambda: scan_seen_in(folder))
 
 
 def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
@@ -205,7 +232,7 @@ def test_a_readjustment_is_told_by_the_command_line(turned, tmp_path):
 @pytest.mark.parametrize("with_check", [False, True], ids=["no check", "checked"])
 def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_check):
     work = work_in(unchanged, tmp_path, with_check=with_check)
-    scan_step(work, COARSE)
+    scan_of(unchanged, work)
     gauge = gauge_step(work)
     (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_change_assumed"]
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
@@ -219,7 +246,7 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     fan = planes_step(work)
     assert (fan.scale_sd, fan.scale_assumed) == (SUSPECTED_SCALE, True)
     assert {"target.size_assumed", "target.flatness_assumed"} <= {note.code for note in fan.notes}
-    scan_step(work, COARSE)
+    scan_of(unchanged, work)
     gauge = gauge_step(work)
     (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_scale_assumed"]
     assert row.u_mm == pytest.approx(SUSPECTED_SCALE * gauge.thickness_mm, rel=0.05)
@@ -231,7 +258,7 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
 def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_path, stated, said):
     work = work_in(unchanged, tmp_path, with_check=False)
     work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=stated)), work.out)
-    notes = scan_step(work, COARSE).scan.notes
+    notes = scan_of(unchanged, work).scan.notes
     assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
 
 
@@ -239,7 +266,7 @@ def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_
 def test_a_mount_that_turned_unseen_is_within_what_could_not_be_excluded(turned, tmp_path):
     """It turned by twice the standard uncertainty that is assumed: right at the edge of U, and noise comes on top."""
     work = work_in(turned, tmp_path, with_check=False)
-    scan_step(work, COARSE)
+    scan_of(turned, work)
     gauge = gauge_step(work)
     assert abs(gauge.thickness_mm - 50) <= 1.1 * gauge.U_mm
 
@@ -294,7 +321,7 @@ def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing(unchanged, tmp_pa
     work = work_in(unchanged, tmp_path, with_check=False)
     daily = replace(work.found.rig, validity=Validity(check_days=1.0))
     work = replace(work, found=replace(work.found, rig=daily))
-    measured = scan_step(work, COARSE)
+    measured = scan_of(unchanged, work)
     assert measured.scan.notes[0].code == "validity.never_checked"
     gauge = gauge_step(work)
     assert not gauge.complete and gauge.verdict is Verdict.NOT_PROVEN
@@ -303,11 +330,11 @@ def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing(unchanged, tmp_pa
 
 def test_a_check_that_leaves_much_open_asks_for_more_pictures(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
-    check = check_step(work)
+    check = check_of(unchanged, work)
     (note,) = (note for note in work.record().notes["check"] if note.code == "check.leaves_much")
     assert note.values["unseen_mm"] == check.unseen_mm > 1.2 * note.values["calibrations_mm"] > 0
     sure = replace(work.found, rig=replace(work.found.rig, stability=DEFAULT_STABILITY.times(0.2, 0.2, 0.2, 0.2)))
-    check_step(replace(work, found=sure))
+    check_of(unchanged, replace(work, found=sure))
     assert "check.leaves_much" not in [note.code for note in work.record().notes["check"]]
 
 
@@ -327,7 +354,7 @@ def charted(checked, work, tmp_path, days=8, last=1):
     """Deviations by a change of the rig in `work` if the checks on so many days before the scan saw `checked`."""
     name = work.calibration().id
     seen = work_in(checked, tmp_path / "checked")
-    check_step(seen)
+    check_of(checked, seen)
     (one,) = read_history(seen.calibration().id).checks
     history_file(seen.calibration().id).unlink()
     when = taken_at(work.found.frames) - timedelta(hours=1)
@@ -347,7 +374,7 @@ def test_a_steady_history_makes_the_row_of_change_smaller_and_one_of_a_turned_mo
     steady = charted(unchanged, work, tmp_path / "steady", days=QUIET_DAYS)
     assert assumed[0] == "assumed change" and steady[0] == "charted change"
     assert steady[1] < 0.6 * assumed[1]
-    notes = {note.code: str(note) for note in scan_step(work, COARSE).scan.notes}
+    notes = {note.code: str(note) for note in scan_of(unchanged, work).scan.notes}
     assert f"on {QUIET_DAYS} days from" in notes["scan.stability_charted"]
     assert "only a check of the day shows it" in notes["scan.stability_charted"]
     assert "scan.stability_assumed" not in notes
@@ -362,7 +389,7 @@ def test_a_rig_that_was_not_checked_on_the_day_is_told_where_that_rules_u(unchan
     def told(folder, **kind):
         work = work_in(unchanged, tmp_path / folder, with_check=kind.pop("with_check"))
         work = replace(work, found=replace(work.found, rig=replace(work.found.rig, **kind)))
-        scan_step(work, COARSE)
+        scan_of(unchanged, work)
         gauge = gauge_step(work)
         return gauge, {note.code: note for note in gauge.notes}.get("inspection.rig_not_checked")
 
@@ -376,7 +403,7 @@ def test_a_mount_that_turned_after_quiet_days_is_within_u(unchanged, turned, tmp
     work = work_in(turned, tmp_path, with_check=False)
     without = charted(unchanged, work, tmp_path / "none", days=0)
     assert charted(unchanged, work, tmp_path / "quiet", days=QUIET_DAYS - 1) == without
-    scan_step(work, COARSE)
+    scan_of(turned, work)
     gauge = gauge_step(work)
     # It turned by twice the standard uncertainty that is assumed: right at the edge of U, and noise comes on top.
     assert abs(gauge.thickness_mm - RIG.height_mm) < 1.1 * gauge.U_mm
@@ -392,17 +419,17 @@ def test_a_stated_stability_stands_unless_the_history_shows_more(unchanged, turn
     history_file(work.calibration().id).unlink()
     source, size = charted(turned, work, tmp_path / "turned")
     assert source == "charted change" and size > 1.5 * without[1]
-    notes = {note.code: str(note) for note in scan_step(work, COARSE).scan.notes}
+    notes = {note.code: str(note) for note in scan_of(unchanged, work).scan.notes}
     assert "more than rig.toml states" in notes["scan.stability_more_than_stated"]
 
 
 def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself(turned, tmp_path):
     work = work_in(turned, tmp_path)
-    alone = check_step(work)
+    alone = check_of(turned, work)
     (kept,) = read_history(work.calibration().id).checks
     proposed = propose_readjustment(work.found, work.calibration(), Options()).record
     charted(turned, work, tmp_path / "earlier")
-    after = check_step(work)
+    after = check_of(turned, work)
     assert after.p == alone.p
     assert after.stated_mm > 1.1 * alone.stated_mm
     assert after.unseen_mm > alone.unseen_mm

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import cast
 
@@ -11,11 +12,15 @@ import numpy as np
 import pytest
 from PySide6.QtWidgets import QApplication
 
+from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.views import SeenView, SeenViews
+from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, Project, new_project
+from core.files.recording.options import Options
 from core.messages import plain
+from core.pipeline.steps.camera_step import solve_camera
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases
@@ -53,21 +58,41 @@ def views_folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return folder
 
 
-def seen(folder: Path, project: Project) -> SeenViews:
-    """What finding the target in those pictures would give; one picture shows none, one view is poor."""
-    if "circle" in type(project.rig.camera_target).__name__.lower():
-        raise InputError("the camera target was found in none of 9 pictures", todo="check the target")
+@cache
+def views() -> SeenViews:
+    """What the target in those pictures would be found as; one picture shows none, one view is poor."""
     views = [replace(view, name=f"camera/{view.name}") for view in synthetic_views(1, VIEWS - 1)]
     rng = np.random.default_rng(5)
     views[3] = replace(views[3], uv=views[3].uv + rng.normal(0, 0.06, views[3].uv.shape))
     lost = SeenView(f"camera/view{VIEWS - 1:02d}.png", None, plain("no checkerboard"), TRUTH.image_size)
-    return SeenViews((*(SeenView(view.name, view, None, TRUTH.image_size) for view in views), lost), str(folder))
+    return SeenViews((*(SeenView(view.name, view, None, TRUTH.image_size) for view in views), lost), "camera")
+
+
+@cache
+def solved(options: Options, board: BoardTolerance) -> CameraCalibration:
+    """The calibration of those views; solved once for all tests."""
+    return solve_camera(views(), options, tolerance=board)
+
+
+def find(folder: Path, project: Project) -> SeenViews:
+    """What finding the target gives."""
+    if "circle" in type(project.rig.camera_target).__name__.lower():
+        raise InputError("the camera target was found in none of 9 pictures", todo="check the target")
+    return views()
+
+
+def solve(folder: Path, project: Project, found: SeenViews) -> CameraCalibration:
+    """The calibration as a process would send it: another object each time."""
+    if found is not views():  # what the project has kept
+        return solve_camera(found, project.options, tolerance=project.rig.camera_board)
+    return replace(solved(project.options, project.rig.camera_board))
 
 
 @pytest.fixture
 def camera_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     """An open project without pictures; the target is found at once in whatever it is given."""
-    cast(HandLane, hand_bench.measuring).answers[jobs.FIND_VIEWS] = seen
+    cast(HandLane, hand_bench.measuring).answers[jobs.FIND_VIEWS] = find
+    cast(HandLane, hand_bench.quick).answers[jobs.SOLVE_VIEWS] = solve
     hand_bench.model.create(tmp_path / "project", new_project("block"))
     return hand_bench
 
