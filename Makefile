@@ -21,9 +21,13 @@ BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 3 $(AS_MODULES)
 
+# Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
+# compile half a million lines anew.
+unexport PYTHONDONTWRITEBYTECODE
+
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
+.PHONY: demo app test examples quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -35,13 +39,15 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 	$(BIN)/python -c 'from core.pipeline.compile_ahead import compile_ahead; compile_ahead()'
 
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
-	@$(MAKE) --no-print-directory -j2 --output-sync=target check compile  # neither keeps two cores busy
-	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
+	@$(MAKE) --no-print-directory -j2 --output-sync=target check examples  # neither keeps two cores busy
 	@if command -v Xvfb >/dev/null; then set -x; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
 	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); \
 	else echo "Xvfb is not installed: windows are tested without a screen only"; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
+
+examples: compile         ## those in the code's documentation and in the manual
+	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
 
 quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
