@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import sys
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -337,7 +336,7 @@ def _past_check(check: PastCheck, chart: ControlChart) -> str:
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
     """The same for programs."""
     limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
-    return {**asdict(check), "taken_at": check.taken_at.isoformat(), "limits": limits}
+    return {**check.values, "limits": limits}
 
 
 def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from datetime import datetime
+from datetime import date, datetime
 from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
@@ -29,6 +29,13 @@ def _aware(value: object) -> object:
 
 TIME_WORDS = label("a date and time with its zone, as in 2025-01-31T12:00:00+00:00")
 Time = Annotated[datetime, BeforeValidator(_aware), Field(description=TIME_WORDS)]
+
+
+def _date(value: object) -> object:
+    return date.fromisoformat(value) if isinstance(value, str) else value
+
+
+OptionalDay = Annotated[date | None, BeforeValidator(_date), Field(description=label("a date, as 2028-03-01"))]
 
 
 def _bounded(value: float) -> float:

@@ -24,6 +24,7 @@ from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
+from core.study.artefact_check import ArtefactCheck
 from core.study.repeats import RepeatStatistics, repeat_statistics
 
 MOST_CALLOUTS = 10
@@ -200,6 +201,8 @@ class ReportContent:
         What a comparison with another scan or surface came to; None where none was made.
     studies
         As study.json has them.
+    artefacts
+        Known artefacts measured with these calibrations, each as nearest in time to this result.
     calibrations
         Which calibrations the result rests on.
     rig_id
@@ -260,6 +263,7 @@ class ReportContent:
     deviations: tuple[Deviations, ...] = ()
     compared: Message | None = None
     studies: tuple[Mapping[str, Any], ...] = ()
+    artefacts: tuple[ArtefactCheck, ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
     overlay: Overlay | None = None
@@ -358,6 +362,7 @@ class ReportContent:
             "language": "" if self.language == "en" else self.language,
             "template": self.template.words,
             "studies": self.studies,
+            "artefacts": self.artefacts,
             "compared": None if self.compared is None else str(self.compared),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
@@ -389,6 +394,7 @@ class ReportContent:
             "budget": not any(one.budget for one in self.characteristics),
             "repeats": not self.repeats,
             "studies": not self.studies,
+            "artefacts": not self.artefacts,
             "remarks": not self.remarks.strip(),
             "inputs": not self.hashes,
         }

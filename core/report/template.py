@@ -31,6 +31,7 @@ SECTIONS: Mapping[str, str] = MappingProxyType(
         "budget": label("Uncertainty budget"),
         "repeats": label("Repeated scans"),
         "studies": label("Studies"),
+        "artefacts": label("Checks by known artefacts"),
         "calibrations": label("Calibrations and rig"),
         "frames": label("Frames and calibration pictures"),
         "remarks": label("Remarks of the operator"),

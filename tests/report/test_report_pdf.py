@@ -1,6 +1,6 @@
 import io
 from dataclasses import replace
-from datetime import UTC, datetime
+from datetime import UTC, date, datetime
 from hashlib import sha256
 
 import matplotlib
@@ -13,6 +13,7 @@ from core.messages import plain
 from core.report.pdf import build_report
 from core.scan.results import FrameRecord
 from core.scan.surface.fused_surface import Mesh
+from core.study.artefact_check import Artefact, ArtefactCheck
 
 from .report_samples import block_content, gauge
 
@@ -219,3 +220,24 @@ def test_progress_is_told_and_can_cancel(quick):
 
     with pytest.raises(Cancelled):
         build_report(quick, stop)
+
+
+def test_known_artefacts_are_printed_with_certificate_e_n_and_verdict(quick):
+    good = ArtefactCheck(
+        Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03", date(2028, 3, 1)),
+        50.004,
+        0.009,
+        date(2026, 5, 4),
+    )
+    wrong = ArtefactCheck(Artefact("GB 20-1", 20.0, 0.0003), 20.0412, 0.012, date(2026, 5, 3))
+    content = replace(quick, artefacts=(good, wrong))
+    text = words(build_report(content))
+    assert "Checks by known artefacts" in text
+    for expected in (
+        "GB 50-7 D-K-15070 2026-03 2026-05-04 50.00030 ± 0.00040 50.004 ± 0.018 +0.004 0.21 2028-03-01 in order",
+        "GB 20-1 2026-05-03 20.00000 ± 0.00030 20.041 ± 0.024 +0.041 1.72 not stated changed",
+    ):
+        assert expected in text, text[text.find("known artefacts") :][:600]
+    assert content.report_id != quick.report_id
+    assert "Checks by known artefacts" not in words(build_report(quick))
+    assert "GB 50-7" not in words(build_report(replace(content, hidden=frozenset({"artefacts"}))))

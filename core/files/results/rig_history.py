@@ -28,9 +28,10 @@ from core.files.complaints import checked_json
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.check_file import CheckVerdict, InterimCheck
-from core.files.tables import RESULT, Finite, LengthAbove0, OrNan, Probability, ResultFile, Time
+from core.files.tables import RESULT, Finite, LengthAbove0, OptionalDay, OrNan, Probability, ResultFile, Time
 from core.inspect.uncertainty.coverage import coverage_factor
 from core.messages import Message
+from core.study.artefact_check import Artefact, ArtefactCheck
 from core.study.control_chart import FEWEST, ControlChart, control_chart
 
 DATA = "TRISECT_DATA"
@@ -51,6 +52,8 @@ class PastCheck:
 
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
+    `certified_u_mm`, `certified_k`, `certificate` and `due` are what its certificate says; no u of checks before that
+    was kept.
     `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, or where no stripe was found.
     `stated_mm` is what change does to a step by the stability in rig.toml, or without one by the default, `default_mm`
     what it does by the default.
@@ -70,6 +73,10 @@ class PastCheck:
     celsius: Finite | None = None
     artefact: str = ""
     e_n: OrNan = math.nan
+    certified_u_mm: OrNan = math.nan
+    certified_k: Annotated[Finite, Field(ge=1, le=10, description="a coverage factor from 1 to 10")] = 2.0
+    certificate: str = ""
+    due: OptionalDay = None
     likelihoods: Annotated[
         Annotated[tuple[Finite, ...], Field(min_length=len(FACTORS), max_length=len(FACTORS))] | None,
         Field(description=f"{len(FACTORS)} finite numbers"),
@@ -81,6 +88,53 @@ class PastCheck:
     def by_default_mm(self) -> float:
         """`default_mm`; of checks before it was kept, whose `likelihoods` say that nothing was stated, `stated_mm`."""
         return self.stated_mm if math.isnan(self.default_mm) else self.default_mm
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """The check as its file has it."""
+        due = None if self.due is None else self.due.isoformat()
+        return {**asdict(self), "taken_at": self.taken_at.isoformat(), "due": due}
+
+    @property
+    def of_artefact(self) -> ArtefactCheck | None:
+        """An artefact against its certificate; None of pictures, or where the certificate was not kept."""
+        if not self.artefact or math.isnan(self.certified_u_mm + self.error_mm) or not self.unseen_mm > 0:
+            return None
+        known = Artefact(
+            self.artefact,
+            self.step_mm,
+            self.certified_k * self.certified_u_mm,
+            self.certified_k,
+            self.certificate,
+            self.due,
+        )
+        square = (self.unseen_mm / 2) ** 2 - self.certified_u_mm**2
+        day = self.taken_at.astimezone().date()
+        return ArtefactCheck(known, self.step_mm + self.error_mm, math.sqrt(max(square, 0.0)), day)
+
+    @classmethod
+    def of_measured(
+        cls, measured: ArtefactCheck, taken_at: datetime, ids: tuple[str, str], celsius: float | None
+    ) -> PastCheck:
+        """An artefact that has just been measured, with the `ids` of calibration and pictures."""
+        known = measured.artefact
+        return cls(
+            taken_at,
+            *ids,
+            measured.verdict,
+            measured.p,
+            known.value_mm,
+            error_mm=measured.error_mm,
+            unseen_mm=2 * measured.u_error_mm,
+            stated_mm=0.0,  # its uncertainty holds what may have changed
+            celsius=celsius,
+            artefact=known.id,
+            e_n=measured.e_n,
+            certified_u_mm=known.U_mm / known.k,
+            certified_k=known.k,
+            certificate=known.certificate,
+            due=known.due,
+        )
 
     @classmethod
     def of(
@@ -108,6 +162,14 @@ class RigHistory:
     def of_calibration(self, calibration_id: str) -> tuple[PastCheck, ...]:
         """Those with these calibrations."""
         return tuple(check for check in self.checks if check.calibration_id == calibration_id)
+
+    def artefacts(self, calibration_id: str, when: datetime) -> tuple[ArtefactCheck, ...]:
+        """Of each artefact measured with these calibrations, the check nearest in time to `when`."""
+        found: dict[str, ArtefactCheck] = {}
+        for one in sorted(self.of_calibration(calibration_id), key=lambda one: abs(one.taken_at - when)):
+            if (measured := one.of_artefact) is not None:
+                found.setdefault(one.artefact, measured)
+        return tuple(found[name] for name in sorted(found))
 
     def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
         """Those with the same calibrations by the same means: pictures, or one artefact."""
@@ -225,9 +287,5 @@ def keep_check(name: str, check: PastCheck) -> RigHistory:
     history = read_history(name).added(check)
     path = history_file(name)
     make_folder(path.parent)
-    write_json(path, {"rig": name, "checks": [_table(one) for one in history.checks]})
+    write_json(path, {"rig": name, "checks": [one.values for one in history.checks]})
     return history
-
-
-def _table(check: PastCheck) -> dict[str, Any]:
-    return {**asdict(check), "taken_at": check.taken_at.isoformat()}

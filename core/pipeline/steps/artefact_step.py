@@ -31,20 +31,7 @@ def artefact_step(work: Workspace, artefact: Artefact, celsius: float | None = N
     check_calibration(work.path("scan"), read_scan(work.path("scan")).calibration_id, calibration)
     thickness, when = read_thickness(work.path("gauge")), taken_at(found.frames)
     check = ArtefactCheck(artefact, thickness.value, thickness.u, when.astimezone().date())
-    past = PastCheck(
-        taken_at=when,
-        calibration_id=calibration.id,
-        pictures_id=_frames_id(found, work),
-        verdict=check.verdict,
-        p=check.p,
-        step_mm=artefact.value_mm,
-        error_mm=check.error_mm,
-        unseen_mm=2 * check.u_error_mm,
-        stated_mm=0.0,  # its uncertainty holds what may have changed
-        celsius=celsius,
-        artefact=artefact.id,
-        e_n=check.e_n,
-    )
+    past = PastCheck.of_measured(check, when, (calibration.id, _frames_id(found, work)), celsius)
     keep_check(history_name(found.rig, calibration.id), past)
     return check
 

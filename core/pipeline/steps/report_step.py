@@ -19,6 +19,7 @@ from core.files.atomic import write_bytes
 from core.files.reading import file_hash, read_json
 from core.files.recording.recording_set import RIG, RecordingSet
 from core.files.recording.rig import Rig, rig_to_toml
+from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import camera_id
 from core.files.results.comparison_file import read_comparison
 from core.files.results.fan_file import fan_id
@@ -38,6 +39,7 @@ from core.inspect.step_height import profile_axes
 from core.messages import Command, Message, label
 from core.model import Camera
 from core.model.arrays import Array
+from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
@@ -46,6 +48,7 @@ from core.scan.method import Method
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.second_process import SecondProcess
+from core.study.artefact_check import ArtefactCheck
 
 METHOD_IN_WORDS: dict[str, str] = {
     Method.NETWORK: label(
@@ -117,6 +120,7 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
         overlay=_overlay(work.found, scan, content.cloud) if scan else None,
         attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
+        artefacts=_artefacts(work),
     )
     content = said(content) if said else content
     channel = work.record().settings.get("scan", {}).get("channel") or rig.channel_of("scan")
@@ -126,6 +130,16 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
         rig=_rig_in_words(rig, content.camera.camera.image_size, channel, words),
         part_celsius=rig.part.celsius if content.part_celsius is None else content.part_celsius,
     )
+
+
+def _artefacts(work: Workspace) -> tuple[ArtefactCheck, ...]:
+    """Known artefacts that were measured with the same calibrations; none where the rig's history cannot be read."""
+    calibration = work.calibration()
+    try:
+        history = history_of(work.found.rig, calibration.id)
+    except InputError:
+        return ()  # doubt_of_the_day has told it
+    return history.artefacts(calibration.id, taken_at(work.found.frames))
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:

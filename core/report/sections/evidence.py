@@ -24,8 +24,55 @@ from core.report.layout.blocks import (
 )
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
-from core.report.wording import grouped
+from core.report.wording import decimals_of, grouped, with_uncertainty
 from core.scan.features.frames import NO_REASON
+from core.states import CHECKS
+
+
+def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """Known artefacts measured with these calibrations, against their certificates."""
+    if not content.artefacts:
+        return []
+    words = look.words
+    rows: list[list[Flowable]] = [
+        heads(
+            look, "Artefact", "certificate", "measured on", "certified, mm", "measured, mm", "error, mm", "E_n",
+            "valid until", "", numbers=(3, 4, 5, 6),
+        )
+    ]  # fmt: skip
+    for one in content.artefacts:
+        known = one.artefact
+        numbers = (
+            " ± ".join(with_uncertainty(known.value_mm, known.U_mm, words)),
+            " ± ".join(with_uncertainty(one.measured_mm, 2 * one.u_mm, words)),
+            words.fixed(one.error_mm, decimals_of(2 * one.u_mm), signed=True),
+            words.fixed(one.e_n, 2),
+        )
+        due = words("not stated") if known.due is None else known.due.isoformat()
+        rows.append(
+            [
+                look.text(known.id, "small"),
+                look.text(known.certificate, "small"),
+                look.text(one.day.isoformat(), "small"),
+                *(look.text(number, "number") for number in numbers),
+                look.text(due, "small"),
+                look.text(words(CHECKS[one.verdict]), "small"),
+            ]
+        )
+    shares = (0.09, 0.15, 0.1, 0.17, 0.15, 0.09, 0.06, 0.1, 0.09)
+    note = look.say(
+        "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
+        "was measured with k = 2. E_n is the error over the U of both together; above 1 nothing is conforming.",
+        "caption",
+    )
+    return [
+        section(
+            look,
+            "artefacts",
+            "Checks by known artefacts",
+            [ruled_table(rows, [TEXT_WIDTH * share for share in shares]), note],
+        )
+    ]
 
 
 def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:

@@ -52,6 +52,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         ("budget", lambda: _budgets(look, content, limits)),
         ("repeats", lambda: _repeats(look, content, pictures, limits)),
         ("studies", lambda: studies(look, content, pictures, limits)),
+        ("artefacts", lambda: evidence.artefacts(look, content)),
         ("calibrations", lambda: evidence.calibrations(look, content, limits)),
         ("frames", lambda: evidence.pictures_used(look, content, limits)),
         ("", lambda: evidence.warnings(look, content, limits)),

@@ -1,7 +1,7 @@
 """The history of a rig's checks on the disk."""
 
 from dataclasses import replace
-from datetime import timedelta
+from datetime import date, timedelta
 
 import pytest
 
@@ -9,6 +9,7 @@ from core.calibrate.change import DEFAULT_STABILITY, STABLE
 from core.calibrate.rig_spread import FACTORS
 from core.errors import InputError
 from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
+from core.study.artefact_check import Artefact, ArtefactCheck
 from core.study.control_chart import FEWEST
 from tests.check_cases import check, nowhere
 
@@ -134,3 +135,43 @@ def test_a_check_made_with_a_stated_stability_counts_against_the_default_as_well
 @pytest.mark.parametrize("stated_mm", [0.0, float("nan")])
 def test_a_check_by_which_no_step_is_assumed_wrong_says_nothing_of_the_rig(stated_mm):
     assert spread(QUIET_DAYS, error_mm=0.12, stated_mm=stated_mm) is None
+
+
+BLOCK = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03", date(2028, 3, 1))
+
+
+def measured_block(days: float, measured_mm: float, block: Artefact = BLOCK) -> PastCheck:
+    taken_at = FIRST.taken_at + timedelta(days=days)
+    check = ArtefactCheck(block, measured_mm, 0.009, taken_at.astimezone().date())
+    return PastCheck.of_measured(check, taken_at, (FIRST.calibration_id, f"frames-{days}"), 20.5)
+
+
+def test_an_artefact_is_kept_with_what_its_certificate_says():
+    keep_check("bench", measured_block(1, 50.004))
+    (kept,) = read_history("bench").checks
+    assert kept == measured_block(1, 50.004)
+    told = kept.of_artefact
+    assert told is not None and told.artefact == BLOCK
+    assert (told.measured_mm, told.u_mm, told.e_n) == pytest.approx((50.004, 0.009, kept.e_n))
+    assert PastCheck.of(check()).of_artefact is None
+    assert replace(kept, certified_u_mm=float("nan")).of_artefact is None, "kept before certificates were"
+
+
+def test_of_each_artefact_the_check_nearest_in_time_counts():
+    other = replace(BLOCK, id="GB 20-1", value_mm=20.0)
+    checks = (measured_block(1, 50.001), measured_block(3, 50.003), measured_block(9, 50.009))
+    history = RigHistory("bench", (FIRST, *checks, measured_block(5, 20.002, other)))
+    when = FIRST.taken_at + timedelta(days=4)
+    found = history.artefacts(FIRST.calibration_id, when)
+    assert [(one.artefact.id, one.measured_mm) for one in found] == [
+        ("GB 20-1", pytest.approx(20.002)), ("GB 50-7", pytest.approx(50.003)),
+    ]  # fmt: skip
+    assert history.artefacts("another", when) == ()
+
+
+def test_a_day_that_there_is_not_is_told():
+    keep_check("bench", measured_block(1, 50.004))
+    text = history_file("bench").read_text().replace("2028-03-01", "2028-13-01")
+    history_file("bench").write_text(text)
+    with pytest.raises(InputError, match=r"checks\[0\]\.due is .2028-13-01., not a date"):
+        read_history("bench")

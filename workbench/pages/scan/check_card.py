@@ -13,12 +13,14 @@ from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
+from core.report.wording import with_uncertainty
 from core.states import CHECKS, STEP_STATES
+from core.study.artefact_check import ArtefactCheck
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.stage import CheckButtons, CheckFacts, check_buttons
-from workbench.pages.words import mm, px
+from workbench.pages.words import mm, px, wording
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
@@ -78,7 +80,8 @@ class CheckCard(QFrame):
         say(self.sentence, sentence)
         shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
         past = check.past if shown is not None else None
-        self.rows.set_rows(figures(shown, limits(check.history, past)))
+        known = check.history.artefacts(shown.calibration_id, shown.taken_at) if check.history and shown else ()
+        self.rows.set_rows([*figures(shown, limits(check.history, past)), *artefact_rows(known)])
         self._show_chart(check.history, past)
         self.rows.setVisible(shown is not None)
         checking = stage is CheckStage.CHECKING
@@ -274,4 +277,23 @@ def figures(look: InterimCheck | None, allowed: Sequence[ValueRow]) -> list[Valu
         for pose in look.poses
         if pose.reason is not None
     ]
+    return rows
+
+
+def artefact_rows(artefacts: Sequence[ArtefactCheck]) -> list[ValueRow]:
+    """What was measured of known artefacts with the same calibrations, and what their certificates say."""
+    rows: list[ValueRow] = []
+    for one in artefacts:
+        known = one.artefact
+        measured = " ± ".join(with_uncertainty(one.measured_mm, 2 * one.u_mm, wording()))
+        certified = " ± ".join(with_uncertainty(known.value_mm, known.U_mm, wording()))
+        due = tr("not stated") if known.due is None else known.due.isoformat()
+        certificate = " ".join(filter(None, (known.certificate, f"k = {number(known.k, 'g')}")))
+        level = "" if one.verdict == "passed" else LEVELS[one.verdict]
+        said = f"{text_of(one.sentence)} {one.day.isoformat()}"
+        rows += [
+            (tr("{artefact} measured", artefact=known.id), f"{measured} mm", said, ""),
+            (tr("{artefact} certified", artefact=known.id), f"{certified} mm", certificate, ""),
+            (tr("E_n; valid until"), f"{number(one.e_n, '.2f')}; {due}", said, level),
+        ]
     return rows

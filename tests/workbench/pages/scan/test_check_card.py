@@ -1,6 +1,7 @@
 """The Check card of the scan page: pictures of the day, run, light, figures."""
 
 from dataclasses import replace
+from datetime import date
 from typing import cast
 
 import numpy as np
@@ -11,14 +12,17 @@ from core.calibrate.results import CameraCalibration, FanCalibration, ProposedRe
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
+from core.files.results.rig_history import PastCheck
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
 from core.scan.preview.preflight import Check
+from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage
+from workbench.pages.scan.check_card import artefact_rows
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views import ask
@@ -253,6 +257,32 @@ def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring,
     card = with_history(chosen, measuring, qtbot, replace(check(), error_mm=0.06), 9)
     assert card.word.text() == "In doubt" and card.sign.shown[0] == "mdi6.alert-outline"
     assert "the 9 checks before" in card.sentence.text()
+
+
+@pytest.mark.parametrize(
+    ("measured_mm", "due", "level"),
+    [(50.004, None, ""), (50.004, date(2026, 1, 31), "warn"), (50.04, None, "bad")],
+    ids=["in order", "lapsed", "wrong"],
+)
+def test_artefacts_of_the_same_calibrations_are_shown_with_their_certificates(
+    chosen, measuring, qtbot, measured_mm, due, level
+):
+    block = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03", due)
+    measured = ArtefactCheck(block, measured_mm, 0.009, TAKEN.date())
+    past = PastCheck.of_measured(measured, TAKEN, (check().calibration_id, "frames"), None)
+    quick = cast(HandLane, chosen.presenter.bench.quick)
+    history = chart(check(), 2)
+    quick.answers[jobs.CHECK_HISTORY] = lambda folder, project: replace(history, checks=(*history.checks, past))
+    measuring.finish(check())
+    card = shown(chosen, qtbot, CheckStage.CHECKED)
+    qtbot.waitUntil(lambda: chosen.presenter.check.history is not None)
+    chosen.refresh()
+    assert card.rows.text_of("GB 50-7 measured") == f"{measured_mm:.3f} ± 0.018 mm"
+    assert card.rows.text_of("GB 50-7 certified") == "50.00030 ± 0.00040 mm"
+    assert card.rows.text_of("E_n; valid until") == f"{measured.e_n:.2f}; {'2026-01-31' if due else 'not stated'}"
+    rows = {label: (tip, how) for label, _, tip, how in artefact_rows([measured])}
+    assert rows["E_n; valid until"][1] == level
+    assert "D-K-15070 2026-03" in rows["GB 50-7 certified"][0]
 
 
 def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuring, qtbot):
