@@ -14,6 +14,7 @@ from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
 
 from core.errors import InputError, WrongValue
 from core.messages import Language, Message, label
+from core.translations import languages
 from workbench.work.worker import ENDED, Failure
 
 _FIELDS = {
@@ -78,6 +79,11 @@ def chosen() -> Language:
 def spoken() -> str:
     """The name of the language that was chosen."""
     return _chosen.name
+
+
+def printed() -> str:
+    """The name of the language of reports that state none."""
+    return spoken() if spoken() in languages() else "en"
 
 
 def tr(english: str, /, **values: Any) -> str:

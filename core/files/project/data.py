@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from typing import Annotated
 
@@ -99,14 +99,18 @@ class KeptStudy:
 class ReportChoices:
     """How the report is made: the sections left out, the paper, the language of its fixed words, the template file.
 
-    `template` is named as `Sources` are: within the project relative to its folder, elsewhere in full; nothing: none.
+    `language`: nothing is that of the window or command that makes it. `template` is named as `Sources` are: within the
+    project relative to its folder, elsewhere in full; nothing: none.
     """
 
     hidden: Annotated[frozenset[str], Field(description="a list of names of sections")] = frozenset()
     paper: Annotated[Paper, Field(description='"A4" or "Letter"')] = "A4"
     language: Annotated[
-        str, Field(pattern=f"^({'|'.join(languages())})$", description=" or ".join(f'"{one}"' for one in languages()))
-    ] = "en"
+        str,
+        Field(
+            pattern=f"^({'|'.join(languages())}|)$", description=" or ".join(f'"{one}"' for one in (*languages(), ""))
+        ),
+    ] = ""
     template: str = ""
     __pydantic_config__ = _CHECKED
 
@@ -129,6 +133,10 @@ class Project:
     report: ReportChoices = field(default_factory=ReportChoices)
     inspection: InspectionPlan = field(default_factory=InspectionPlan)
     studies: tuple[KeptStudy, ...] = ()
+
+    def printed_in(self, language: str) -> Project:
+        """The same, its report in this language unless it states one."""
+        return replace(self, report=replace(self.report, language=self.report.language or language))
 
 
 @dataclass(frozen=True, slots=True)

@@ -70,7 +70,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         ),
         hidden=choices.hidden & SECTIONS.keys(),
         paper=choices.paper,
-        language=choices.language,
+        language=choices.language or content.language,
         template=template,
         audit=_audit_mark(folder),
     )

@@ -72,9 +72,9 @@ def finished_project(folder: Path, project: Project, progress: Progress = silent
     InputError
         If that stops before the report: the pictures do not suffice, or somebody has to decide something.
     """
-    whole = measure_all(folder, ProjectFile(project), progress)
+    whole = measure_all(folder, ProjectFile(project), progress=progress)
     if whole.stop is not None and whole.stop.page == "inspect":  # a part without a thickness has a report, too
-        whole = measure_all(folder, whole.file, progress)
+        whole = measure_all(folder, whole.file, progress=progress)
     if whole.stop is not None:
         raise InputError(Message("sample.not_finished", "not every step could be done ({why})", why=whole.stop.why))
     return whole.file

@@ -50,7 +50,13 @@ class WholeJob:
     stop: Stop | None
 
 
-def measure_all(folder: Path, file: ProjectFile, progress: Progress = silent, watch: Watch | None = None) -> WholeJob:
+def measure_all(
+    folder: Path,
+    file: ProjectFile,
+    language: str = "en",
+    progress: Progress = silent,
+    watch: Watch | None = None,
+) -> WholeJob:
     """Do every step of a project that is not up to date, from its pictures to its report.
 
     It stops where somebody has to decide: at a calibration that is bad, was rejected, or rests on a minority of its
@@ -61,12 +67,14 @@ def measure_all(folder: Path, file: ProjectFile, progress: Progress = silent, wa
     ----------
     folder, file
         The project, and what is done of it already.
+    language
+        Of the report, where the project states none.
     progress
         Called with what is being done; may raise Cancelled.
     watch
         Given the project after each step that was done.
     """
-    work = _Work(folder, file, progress, watch or (lambda _: None))
+    work = _Work(folder, file, progress, watch or (lambda _: None), language)
     for step, page, do in (
         ("camera", "camera", work.camera),
         ("planes", "planes", work.planes),
@@ -90,8 +98,9 @@ def measure_all(folder: Path, file: ProjectFile, progress: Progress = silent, wa
 class _Work:
     """The project while its steps are done; each says whether to stop after it."""
 
-    def __init__(self, folder: Path, file: ProjectFile, progress: Progress, watch: Watch) -> None:
+    def __init__(self, folder: Path, file: ProjectFile, progress: Progress, watch: Watch, language: str) -> None:
         self.file = file
+        self._language = language
         self._folder, self._progress, self._watch = folder, progress, watch
 
     @property
@@ -144,7 +153,7 @@ class _Work:
         return None
 
     def report(self) -> Stop | None:
-        make_report(self._folder, self._project, self._progress)
+        make_report(self._folder, self._project.printed_in(self._language), self._progress)
         self._done("report")
         return None
 

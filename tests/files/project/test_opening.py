@@ -273,14 +273,14 @@ def test_an_older_project_is_brought_up_to_date_step_by_step(tmp_path, monkeypat
     assert read_project(tmp_path).project.info.name == "X!"
 
 
-def test_a_project_from_before_reports_had_a_language_is_english_and_without_template(tmp_path):
+def test_a_project_from_before_reports_had_a_language_states_none_and_no_template(tmp_path):
     create_project(tmp_path, ProjectFile(full_project()))
     tables = json.loads((tmp_path / "project.json").read_text())
     tables["schema_version"] = 2
     del tables["report"]["language"], tables["report"]["template"]
     (tmp_path / "project.json").write_text(json.dumps(tables))
     report = read_project(tmp_path).project.report
-    assert (report.paper, report.language, report.template) == ("Letter", "en", "")
+    assert (report.paper, report.language, report.template) == ("Letter", "", "")
 
 
 @pytest.mark.parametrize(("data", "said"), [

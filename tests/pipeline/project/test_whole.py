@@ -131,6 +131,6 @@ def test_what_was_done_before_it_is_cancelled_is_known(folder, begun):
             raise Cancelled
 
     with pytest.raises(Cancelled):
-        measure_all(folder, begun, stop_in_the_report, last.append)
+        measure_all(folder, begun, progress=stop_in_the_report, watch=last.append)
     assert {"scan", "inspect"} <= last[-1].results.keys()
     assert measure_all(folder, last[-1]).file.results.keys() == {"camera", "planes", "scan", "inspect", "report"}

@@ -24,9 +24,8 @@ from core.files.project.folder import (
 )
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from core.simulate.sample import simulated_project
-from core.translations import languages
 from workbench.bench import Bench
-from workbench.language import spoken, text_of, tr
+from workbench.language import text_of, tr
 from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copies import PACKED, ProjectCopies
 from workbench.pages.project.import_dialog import ImportDialog
@@ -412,7 +411,7 @@ class ProjectActions(QObject):
 
         def create() -> None:
             try:
-                self.model.create(folder, replace(made, info=replace(made.info, name=name), report=report))
+                self.model.create(folder, replace(made, info=replace(made.info, name=name)))
             except InputError as error:
                 self.bench.notices.failed(error)
                 return
@@ -424,5 +423,4 @@ class ProjectActions(QObject):
         except InputError as error:
             self.bench.notices.failed(error)
             return
-        report = replace(made.report, language=spoken()) if spoken() in languages() else made.report
         self.close_project(create)

@@ -11,7 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import ProjectFile
 from core.files.project.keys import STEPS, left_to_do
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import printed, text_of, tr
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -95,6 +95,7 @@ class MeasuringAll(QObject):
             jobs.MEASURE_ALL,
             folder,
             self._model.file,
+            printed(),
             label=tr("Measure everything"),
             on_done=lambda whole: self._over(task, folder, whole),
             on_failed=lambda problem: self._over(task, folder, None, text_of(problem)),

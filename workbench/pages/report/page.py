@@ -119,6 +119,7 @@ class ReportPage(StepPage):
         grid = QGridLayout()
         grid.setColumnStretch(1, 1)
         self.paper.addItems(PAPERS)
+        self.language.addItem(tr("as the window"), "")
         for language in languages():
             self.language.addItem(own_name(language), language)
         for row, (box, title, tip) in enumerate(

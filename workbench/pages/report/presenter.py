@@ -11,7 +11,7 @@ from core.files.project.keys import finished, up_to_date
 from core.files.results.export_list import EXPORTS
 from core.report.template import SECTIONS
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import printed, text_of, tr
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.report.stage import Facts, Stage, WhyNot, stage_of, why_not_export, why_not_make
 from workbench.step_state import State
@@ -74,7 +74,7 @@ class ReportPresenter(StepPresenter):
         self.model.edit(tr("print on {paper}", paper=paper), replace(self.project, report=report))
 
     def choose_language(self, language: Any) -> None:
-        """English or German; undoable."""
+        """One of `languages`, or "": that of the window; undoable."""
         report = replace(self.project.report, language=language)
         self.model.edit(tr("language of the report"), replace(self.project, report=report))
 
@@ -229,7 +229,7 @@ class ReportPresenter(StepPresenter):
             self,
             jobs.MAKE_REPORT,
             folder,
-            project,
+            project.printed_in(printed()),
             label=tr("Making the report"),
             on_done=done,
             on_failed=ended,
@@ -244,7 +244,7 @@ class ReportPresenter(StepPresenter):
             self,
             jobs.EXPORT,
             self.model.folder,
-            self.project,
+            self.project.printed_in(printed()),
             kind,
             path,
             label=tr("Writing {name}", name=path.name),
@@ -305,7 +305,7 @@ class ReportPresenter(StepPresenter):
             self,
             jobs.PREVIEW_REPORT,
             self.model.folder,
-            self.project,
+            self.project.printed_in(printed()),
             PAGE_WIDTH_PX,
             label=tr("Drawing the pages"),
             on_done=lambda pages: self._show(wanted, pages, ""),

@@ -10,7 +10,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication, QLineEdit, QPushButton, QWidget
+from PySide6.QtWidgets import QLineEdit, QPushButton, QWidget
 
 from core.errors import InputError
 from core.files.pictures import write_picture
@@ -21,10 +21,8 @@ from core.files.project.keys import finished
 from core.files.project.lock import take_lock
 from core.files.project.people import Rules, person, write_rules
 from core.files.recording.unfinished import note_recording
-from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
-from workbench.language import choose
 from workbench.pages.project.actions import ProjectActions
 from workbench.pages.project.audit import AuditWindow
 from workbench.views import ask
@@ -535,20 +533,6 @@ def test_a_folder_that_is_in_the_samples_way_is_left_alone(projects: ProjectActi
     qtbot.waitUntil(lambda: projects.model.is_open)
     assert projects.model.folder == base / "Sample 2"
     assert list((base / "Sample").iterdir()) == []
-
-
-@pytest.mark.parametrize(("window_speaks", "expected"), [("de", "de"), ("zh_CN", "zh_CN"), (PSEUDO, "en")])
-def test_the_report_of_a_new_project_is_in_the_windows_language_if_it_can_be(
-    projects: ProjectActions, window_speaks: str, expected: str, qtbot: Any
-) -> None:
-    app = QApplication.instance()
-    assert app is not None
-    choose(language(window_speaks), app)
-    try:
-        projects.try_simulated()
-    finally:
-        choose(language("en"), app)
-    assert projects.model.project.report.language == expected
 
 
 def test_trying_the_simulated_rig_makes_a_project_of_its_own_each_time(projects: ProjectActions) -> None:

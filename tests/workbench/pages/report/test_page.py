@@ -150,7 +150,9 @@ def test_language_and_template_are_chosen(
     page: ReportPage, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     page.language.setFocus()
-    qtbot.keyClick(page.language, Qt.Key.Key_Down)
+    assert page.language.currentText() == "as the window"
+    page.language.setCurrentText("Deutsch")
+    page.language.activated.emit(page.language.currentIndex())
     assert page.presenter.project.report.language == "de"
     assert page.no_template.toolTip() == "No template is chosen."
     path = tmp_path / "project" / "house.toml"

@@ -9,6 +9,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
+from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError
 from core.files.project.data import KeptStudy, Project, Repeat, new_project
@@ -16,8 +17,10 @@ from core.files.project.keys import finished
 from core.files.results.export_list import EXPORTS
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
+from workbench.language import choose
 from workbench.pages.report.presenter import ReportPresenter
 from workbench.pages.report.stage import Stage
 from workbench.step_state import State
@@ -273,7 +276,26 @@ def test_the_language_is_chosen_and_taken_back(shown: ReportPresenter) -> None:
     shown.choose_language("de")
     assert shown.project.report.language == "de"
     shown.model.undo_stack.undo()
-    assert shown.project.report.language == "en"
+    assert shown.project.report.language == ""
+
+
+@pytest.mark.parametrize(("window_speaks", "printed"), [("de", "de"), ("zh_CN", "zh_CN"), (PSEUDO, "en")])
+def test_a_report_is_in_the_windows_language_unless_the_project_states_one(
+    report: ReportPresenter, drawing: Drawing, qtbot: Any, window_speaks: str, printed: str
+) -> None:
+    measured(report)
+    app = QApplication.instance()
+    assert app is not None
+    choose(language(window_speaks), app)
+    try:
+        report.do_run()
+        qtbot.waitUntil(lambda: len(drawing.made) == 1)
+        report.choose_language("en")
+        report.do_run()
+        qtbot.waitUntil(lambda: len(drawing.made) == 2)
+    finally:
+        choose(language("en"), app)
+    assert [project.report.language for project in drawing.made] == [printed, "en"]
 
 
 def test_a_template_brings_what_it_names_and_is_put_away_again(
