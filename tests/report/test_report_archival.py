@@ -59,6 +59,26 @@ def test_no_page_has_what_is_forbidden_and_links_are_printed(pdf):
     assert not pdf.is_encrypted
 
 
+def streams(pdf):
+    return [one for one in pdf.objects if isinstance(one, pikepdf.Stream)]
+
+
+def test_the_file_has_an_identity_and_nothing_of_it_is_encoded_or_kept_elsewhere(pdf):
+    first, second = pdf.trailer.ID
+    assert len(bytes(first)) == len(bytes(second)) == 16
+    filters = {str(one.get(Name.Filter, "")) for one in streams(pdf)}
+    assert not any(forbidden in said for said in filters for forbidden in ("LZW", "Crypt"))
+    assert not [one for one in streams(pdf) if {"/F", "/FFilter", "/FDecodeParms"} & set(one.keys())]
+
+
+def test_whatever_is_transparent_is_blended_in_a_stated_colour_space(pdf):
+    groups = [one.Group for one in (*streams(pdf), *(page.obj for page in pdf.pages)) if Name.Group in one]
+    assert all(Name.Transparency == group.S and Name.CS in group for group in groups)
+    modes = {str(one.get(Name.BM, Name.Normal)) for one in pdf.objects if isinstance(one, pikepdf.Dictionary)}
+    assert modes == {"/Normal"}
+    assert not [one for one in streams(pdf) if one.get(Name.Interpolate, False) or Name.Alternates in one]
+
+
 def test_every_font_is_embedded_with_the_widths_it_has(pdf):
     found = fonts(pdf)
     assert any("Mono" in name for name in found)

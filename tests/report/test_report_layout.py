@@ -70,3 +70,14 @@ def test_a_figure_that_fits_goes_before_one_that_does_not():
     assert heights_by_page(200, 100, 60, above=100) == [2, 1, 1]
     assert heights_by_page(150, 100, 60, above=10) == [1, 1, 2], "in their order where they fit"
     assert heights_by_page(250, 250, 20, above=0) == [1, 2, 1]
+
+
+def test_no_number_is_parted_from_its_unit_however_wide_its_column_is():
+    prepare_reportlab()
+    said = "17 × 12 corners, squares of 10 mm, off by 0.03 mm (95 % of points), at 20 °C"
+    for width in range(60, 240, 3):
+        paragraph = LOOK.text(said, "small")
+        paragraph.wrap(width, 1000)
+        lines = [" ".join(words) for _, words in paragraph.blPara.lines]
+        assert len(lines) > 1
+        assert not [line for line in lines if line.split()[0] in ("mm,", "mm", "%", "°C")]

@@ -90,13 +90,17 @@ def prepare_reportlab() -> None:
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
+WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?!\w))")
+"""The space between a number and its unit, which no line break may part."""
+
+
 def markup(text: str) -> str:
-    """`text` as markup of a Paragraph, nothing lost whatever its script.
+    """`text` as markup of a Paragraph, nothing lost whatever its script, no number parted from its unit.
 
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
     reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
     """
-    runs = _runs(re.sub(r"[ \t\r\n\f\v]+", " ", text))
+    runs = _runs(WITH_UNIT.sub("\u00a0", re.sub(r"[ \t\r\n\f\v]+", " ", text)))
     return "".join(f'<font name="{font}">{escape(part)}</font>' if font else escape(part) for font, part in runs)
 
 

@@ -8,7 +8,7 @@ from reportlab.platypus import Flowable
 from core.messages import label, plural_message
 from core.report.content import RepeatLine, ReportContent
 from core.report.layout.blocks import heads, more_line, ruled_table
-from core.report.layout.style import ReportLook
+from core.report.layout.style import SANS, ReportLook, words_width
 from core.report.wording import decimals_of
 from core.study.repeats import RepeatStatistics
 
@@ -17,6 +17,9 @@ WIDTHS = [shares * mm for shares in (7, 45, 29, 21, 17, 9, 18, 24)]
 
 NUMERIC = (3, 4, 5, 6)
 """Columns of numbers, to the right."""
+
+GAP = 4 * mm
+"""Between headings of the statistics."""
 
 
 def repeats_head(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -55,7 +58,10 @@ def _statistics_table(look: ReportLook, statistics: RepeatStatistics, width: flo
         [look.text(name, "head_number") for name in known],
         [look.text(value, "number_strong") for value in known.values()],
     ]
-    return ruled_table(rows, [width / len(known)] * len(known))
+    wide = [
+        words_width(name, SANS, look.style("head").fontSize) + GAP for name in known
+    ]  # in no heading a unit stands in a line of its own
+    return ruled_table(rows, [width * one / sum(wide) for one in wide])
 
 
 def repeats_table(look: ReportLook, content: ReportContent, most: int) -> list[Flowable]:
