@@ -144,8 +144,9 @@ def missing_sentence(judgement: ViewsJudgement | None) -> str:
 
 def with_sd(value: float, sd: float, unit: str) -> str:
     """A value ± its standard deviation, to two digits of it."""
-    text = f"{value:.{_digits(sd)}f}" + (f" ± {sd:.{_digits(sd)}f}" if sd > 0 else "")
-    return f"{text} {unit}".strip().replace("-", "−")
+    spec = f".{_digits(sd)}f"
+    text = number(value, spec) + (f" ± {number(sd, spec)}" if sd > 0 else "")
+    return f"{text} {unit}".strip()
 
 
 def _digits(sd: float) -> int:

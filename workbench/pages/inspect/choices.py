@@ -28,6 +28,9 @@ if TYPE_CHECKING:
 STEPS = 200
 """Of the slider from the smallest σ to the largest."""
 
+ARROW_PX = 48
+"""Of a list that folds out, beside its text."""
+
 Shape = Literal["points", "mesh", "both"]
 
 
@@ -49,10 +52,10 @@ class SurfaceChoices(QWidget):
         self._make_shapes(look)
         look.addSpacing(4)
         self._make_colours(look)
-        look.addStretch(1)
+        look.addStretch()
         limit.addStretch(1)
         self._make_limit(limit)
-        in_row(Folding(look, limit, spacing=4), on=self)
+        in_row(Folding(look, limit, spacing=4, share=2), on=self)
 
     @property
     def shape(self) -> Shape:
@@ -117,12 +120,16 @@ class SurfaceChoices(QWidget):
             ("plain", tr("nothing (plain)")),
         ):
             self.colours.addItem(text, name)
+        widest = max(
+            self.fontMetrics().horizontalAdvance(self.colours.itemText(n)) for n in range(self.colours.count())
+        )
+        self.colours.setMaximumWidth(widest + ARROW_PX)  # where there is room no choice is cut
         self.choose_colour("height")
         self.colours.currentIndexChanged.connect(lambda _: self.changed.emit())
         label = QLabel(tr("Colour"))
         label.setBuddy(self.colours)
         bar.addWidget(label)
-        bar.addWidget(self.colours)
+        bar.addWidget(self.colours, 1)
 
     def _make_limit(self, bar: QHBoxLayout) -> None:
         tip = tr(

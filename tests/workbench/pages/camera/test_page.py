@@ -10,7 +10,9 @@ from PySide6.QtWidgets import QApplication
 
 from core.messages import plain
 from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
+from core.translations import language
 from tests.workbench.hand_lane import HandLane
+from workbench.language import choose
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
 from workbench.pages.camera.page import CameraPage
@@ -271,3 +273,11 @@ def test_each_grade_of_a_calibration_is_told_with_its_limits(solved):
     used = int(text.split(" of ")[0])
     assert level == ("good" if used >= 10 else "warn") and tip.endswith("Good from 10 on, poor below 5")
     assert rows["Tilts"][1].endswith("Good from 30° on, poor below 15°")
+
+
+def test_a_parameter_is_written_with_the_decimal_sign_of_the_language(qapp: QApplication) -> None:
+    choose(language("de"), qapp)
+    try:
+        assert words.with_sd(-2495.187, 0.132, "px") == "−2495,19 ± 0,13 px"
+    finally:
+        choose(language("en"), qapp)

@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QAbstractButton, QComboBox, QDoubleSpinBox, QSlider
+from PySide6.QtWidgets import (
+    QAbstractButton,
+    QApplication,
+    QComboBox,
+    QDoubleSpinBox,
+    QSlider,
+    QStyle,
+    QStyleOptionComboBox,
+)
 
 from core.errors import InputError
 from core.messages import plain
@@ -570,3 +578,16 @@ def test_what_the_part_is_made_of_is_chosen_on_the_page(page, qtbot):
     assert page.presenter.model.project.rig.part.material == "plastic"
     page.refresh()
     assert "Plastic" in form.editor("material").currentText()
+
+
+def test_no_colour_that_is_chosen_is_cut_where_there_is_room(unmeasured):
+    box = unmeasured.surface.choices.colours
+    for place in range(box.count()):
+        box.setCurrentIndex(place)
+        QApplication.processEvents()
+        option = QStyleOptionComboBox()
+        box.initStyleOption(option)
+        field = box.style().subControlRect(
+            QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, box
+        )
+        assert box.fontMetrics().horizontalAdvance(box.currentText()) <= field.width(), box.currentText()

@@ -169,7 +169,7 @@ class FeaturesPanel(QWidget):
             tips += [words.used(result), *(words.tip(row) for row in rows)]
             self._mark(item, words.verdict(result))
             if not rows:
-                item.setText(1, tr("measured"))
+                item.setText(1, tr("has been measured"))
             item.addChildren(below)
         if outdated is not None:
             tips = [tips[0], tr("Out of date: the feature, or one that it rests on, was changed.")]
