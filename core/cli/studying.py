@@ -13,7 +13,7 @@ from core.cli.language import spoken, told, tr
 from core.cli.measuring import Shown, exit_code
 from core.cli.output import Rows, words
 from core.errors import InputError, WrongValue
-from core.files.project.folder import is_project, results_folder
+from core.files.project.folder import results_in
 from core.files.study.input import Repeats, read_crossed, read_readings, read_repeats
 from core.files.study.study_file import Study, study_values, write_study
 from core.messages import Message, plural_message
@@ -104,7 +104,7 @@ def series(
 ) -> SeriesStudy:
     """A series of a table, or of folders of results or projects in the order given."""
     _not_negative(u, "--u")
-    found = read_repeats([results_folder(path) if is_project(path) else path for path in files], name)
+    found = read_repeats([results_in(path) for path in files], name)
     nominal, limits = _asked(found, nominal, tolerance)
     lower, upper = (-math.inf, math.inf) if limits is None or nominal is None else (nominal + end for end in limits)
     stated = None

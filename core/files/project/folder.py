@@ -262,6 +262,13 @@ def results_folder(project_folder: Path) -> Path:
     return project_folder / RESULTS
 
 
+def results_in(path: Path) -> Path:
+    """The folder of results of a project (its folder, or the project.json in it); any other path as it is."""
+    if is_project(path):
+        return results_folder(path if path.is_dir() else path.parent)
+    return path
+
+
 def sources_of_set(folder: Path) -> Sources:
     """The folders of pictures in a recording set, in full; nothing for a part that is not there."""
     folders = {part: resolved(folder) / part for part in (*PARTS, CHECK)}

@@ -8,7 +8,7 @@ from typing import TypeVar
 
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
-from core.files.project.folder import results_folder
+from core.files.project.folder import results_in
 from core.files.project.results import ProjectResults
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import read_fan
@@ -28,12 +28,12 @@ _PARTS = 6
 
 
 def load_results(folder: Path, progress: Progress = silent) -> ProjectResults:
-    """Read what lies among the results of the project in `folder`.
+    """Read what lies among the results of the project in `folder`, which may be a folder of results itself.
 
     What is missing is None. What is damaged or was measured with another calibration is None, too, and a sentence says
     so; nothing is raised for it.
     """
-    reader = _Reader(results_folder(folder), progress)
+    reader = _Reader(results_in(folder), progress)
     camera = reader.read("camera", read_camera)
     calibration = reader.read("planes", lambda path: _calibration(path, camera))
     cloud = reader.read("cloud", lambda path: _cloud(path, calibration))

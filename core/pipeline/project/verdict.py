@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.project.folder import results_folder
+from core.files.project.folder import results_in
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
 from core.pipeline.steps.gauge_step import in_a_project
@@ -14,7 +14,7 @@ from core.progress import Progress, silent
 
 
 def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[Characteristic, ...]:
-    """Every characteristic among the results of the project in `folder`, the worst first.
+    """Every characteristic among the results of the project in `folder` (or of results), the worst first.
 
     Raises
     ------
@@ -23,7 +23,7 @@ def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[
     """
     progress("results", 0, 1)
     try:
-        found = results_content(results_folder(folder)).characteristics
+        found = results_content(results_in(folder)).characteristics
     except InputError as error:
         raise in_a_project(error) from error
     order = (*WORST_FIRST, Verdict.NONE)

@@ -12,7 +12,7 @@ from scipy.spatial import cKDTree
 from core.errors import InputError
 from core.files.atomic import make_folder, remove
 from core.files.exchange.surface_file import OtherSurface, read_surface
-from core.files.project.folder import is_project, results_folder
+from core.files.project.folder import is_project, results_in
 from core.files.results.comparison_file import (
     ComparisonFile,
     write_comparison,
@@ -127,7 +127,7 @@ def compare_step(
         As `compare_surfaces`, or if nothing can be written.
     """
     made = compare_surfaces(source, other, align, scales, progress)
-    folder = to or _results(source)
+    folder = to or results_in(source)
     if folder.is_file():
         folder = folder.parent
     paths = {name: make_folder(folder) / FILES[name] for name in ("comparison", "compared", "comparison_table")}
@@ -138,16 +138,9 @@ def compare_step(
     return made, paths
 
 
-def _results(path: Path) -> Path:
-    """The folder of results of a project, or the path itself."""
-    if is_project(path):
-        return results_folder(path if path.is_dir() else path.parent)
-    return path
-
-
 def _scan(path: Path) -> tuple[InspectedScan, Pose | None]:
     """A scan of ours, and its part coordinates into the camera frame, where it has any."""
-    scan = open_scan(_results(path))
+    scan = open_scan(results_in(path))
     return scan, None if scan.folder is None else read_part_frame(scan.folder / FILES["inspection"])
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.project.folder import is_project, read_project, results_folder
+from core.files.project.folder import is_project, read_project, results_folder, results_in
 from core.files.study.results import characteristics_in
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.temperature import expands
@@ -37,7 +37,7 @@ def measured_master(
         If there is no length among the results, or they are damaged.
     """
     progress("results", 0, 1)
-    results = results_folder(folder) if is_project(folder) else folder
+    results = results_in(folder)
     lengths = [one for one in characteristics_in(results) if expands(one)]
     if not lengths:
         raise InputError(

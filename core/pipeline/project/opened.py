@@ -1,0 +1,148 @@
+"""A project, or a folder of results, opened to be read: for Python programs and for the window's console."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
+from core.files.project.data import Project, ProjectFile
+from core.files.project.folder import PROJECT, is_project, read_project, results_in
+from core.files.project.results import ProjectResults
+from core.files.reading import resolved
+from core.files.results.inspection_file import InspectionFile, read_inspection
+from core.inspect.characteristic import Characteristic
+from core.inspect.results import GaugeResult
+from core.messages import Message
+from core.pipeline.project.results import load_results
+from core.pipeline.project.verdict import project_characteristics
+from core.pipeline.steps.workspace import FILES
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
+
+Stamps = dict[str, tuple[int, int]]
+"""When each file was written, in ns, and its size in bytes."""
+
+
+@dataclass(frozen=True, eq=False)
+class OpenedProject:
+    """What lies in a project's folder, read when it is asked for; nothing is ever written.
+
+    What is not there is None, or nothing. Once a file has changed since the project was opened, what was not read
+    before raises InputError: so all that is read belongs together.
+
+    Parameters
+    ----------
+    folder
+        Of the project, or of results (`trisect run SET --out FOLDER`).
+    """
+
+    folder: Path
+    _stamps: Stamps = field(repr=False)
+
+    @property
+    def changed(self) -> bool:
+        """Whether a file has been written, or has gone, since the project was opened."""
+        return _stamps(self.folder) != self._stamps
+
+    def opened_again(self) -> OpenedProject:
+        """The project as it lies on the disk now."""
+        return open_project(self.folder)
+
+    @cached_property
+    def results(self) -> ProjectResults:
+        """All that was measured and belongs together, and in `problems` why some of it does not."""
+        self._require_unchanged()
+        return load_results(self.folder)
+
+    @cached_property
+    def settings(self) -> Project | None:
+        """What was decided in the window: rig, options, plan; None in a folder of results."""
+        file = self._file
+        return file.project if file is not None else None
+
+    @property
+    def camera(self) -> CameraCalibration | None:
+        """The camera with its covariance."""
+        return self.results.camera
+
+    @property
+    def planes(self) -> FanCalibration | None:
+        """The fan's light planes with their covariance."""
+        return self.results.fan
+
+    @property
+    def cloud(self) -> Cloud | None:
+        """Points in mm in the camera frame, each with its σ."""
+        return self.results.cloud
+
+    @property
+    def mesh(self) -> Mesh | None:
+        """Corners in mm in the camera frame, and triangles."""
+        return self.results.mesh
+
+    @property
+    def gauge(self) -> GaugeResult | None:
+        """The thickness with its budget."""
+        return self.results.gauge
+
+    @cached_property
+    def inspection(self) -> InspectionFile | None:
+        """What the plan's features gave."""
+        self._require_unchanged()
+        path = results_in(self.folder) / FILES["inspection"]
+        return read_inspection(path) if path.exists() else None
+
+    @cached_property
+    def characteristics(self) -> tuple[Characteristic, ...]:
+        """Every value with U and verdict, the worst first; nothing without a scan."""
+        self._require_unchanged()
+        return project_characteristics(self.folder) if (results_in(self.folder) / FILES["cloud"]).exists() else ()
+
+    @cached_property
+    def _file(self) -> ProjectFile | None:
+        self._require_unchanged()
+        return read_project(self.folder) if is_project(self.folder) else None
+
+    def _require_unchanged(self) -> None:
+        if self.changed:
+            raise InputError(
+                Message("project.changed_since_opened", "has been changed since it was opened here"),
+                where=self.folder,
+                todo=Message("advice.open_again", "open it again: project = project.opened_again()"),
+            )
+
+
+def open_project(path: str | Path) -> OpenedProject:
+    """Open a project, or a folder of results, to be read.
+
+    Raises
+    ------
+    InputError
+        If there is neither.
+    """
+    given = resolved(Path(path))
+    folder = given.parent if given.name == PROJECT else given
+    stamps = _stamps(folder)
+    if not stamps:
+        raise InputError(
+            Message("project.nothing_to_open", "there is neither a project nor a result here"),
+            where=given,
+            todo=Message("advice.choose_project_or_results", "choose the folder of a project, or one of results"),
+        )
+    return OpenedProject(folder, stamps)
+
+
+def _stamps(folder: Path) -> Stamps:
+    """Of project.json and of each result that is there."""
+    results = results_in(folder)
+    found = {}
+    for path in (folder / PROJECT, *(results / name for name in FILES.values())):
+        try:
+            about = path.stat()
+        except OSError:
+            continue
+        found[path.name] = (about.st_mtime_ns, about.st_size)
+    return found
