@@ -52,6 +52,20 @@ def next_part(
 
 
 @commands.command(rich_help_panel=Panel.PROJECTS)
+def script(
+    project: Annotated[Path, typer.Argument(metavar="PROJECT", help="The folder of a project.")],
+    out: Annotated[Path, typer.Option("--out", "-o", metavar="FILE", help="The Python script to write: NAME.py.")],
+    json: Json = False,
+) -> None:
+    """Write what was done in a project as a script of these commands, which gives the same results."""
+    from core.cli.measuring import Shown
+    from core.pipeline.project.script import write_script
+
+    path = write_script(project, out, spoken().name)
+    Shown([], {}, files={"script": path}).show(as_json=json)
+
+
+@commands.command(rich_help_panel=Panel.PROJECTS)
 def unpack(
     file: Annotated[Path, typer.Argument(metavar="FILE", help="A packed project: NAME.trisectz.")],
     out: Annotated[Path, typer.Option("--out", "-o", metavar="FOLDER", help="The folder to make.")],

@@ -1,4 +1,4 @@
-"""What becomes of an open project: a copy that can be written, the next part of its series, or one packed file."""
+"""What becomes of an open project: a copy, the next part, a script of what was done, or one packed file."""
 
 from __future__ import annotations
 
@@ -9,12 +9,14 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QWidget
 
 from core.files.project.next_part import drawn_in_picture
+from core.translations import languages
 from workbench.bench import Bench
-from workbench.language import tr
+from workbench.language import spoken, tr
 from workbench.views import ask
 from workbench.work import jobs
 
 PACKED = ".trisectz"
+SCRIPT = "session.py"
 
 
 class ProjectCopies(QObject):
@@ -94,6 +96,28 @@ class ProjectCopies(QObject):
         else:
             self._model.close()  # what was changed goes along
             go_on()
+
+    # ---- a script
+
+    def save_script(self) -> None:
+        """Ask for a file, and write what was done in the project as a script of commands."""
+        folder = self._folder(tr("Stop the recording first; then the script can be written."))
+        if folder is None:
+            return
+        kinds = tr("Python scripts (*.py)")
+        path = ask.choose_file_to_save(self._window, tr("Save as a script"), Path.home() / SCRIPT, kinds)
+        if path is None or not self._saved():
+            return
+        self._bench.run_quick(
+            self,
+            jobs.WRITE_SCRIPT,
+            folder,
+            path,
+            spoken() if spoken() in languages() else "en",
+            label=tr("Writing the script"),
+            on_done=lambda done: self._bench.notices.info(tr("The script was written to {path}.", path=done)),
+            offers={},
+        )
 
     # ---- the next part
 
