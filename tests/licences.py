@@ -38,7 +38,8 @@ Written by `make notice`.
 Some of them carry shared libraries of others, linked dynamically and unchanged: opencv-python-headless FFmpeg
 (LGPL-2.1); numpy, scipy and opencv-python-headless libquadmath (LGPL-2.1) and libgfortran, fast-simplification libgomp,
 pikepdf those of GCC (GPL-3.0 with the GCC runtime library exception, which binds no program that uses them), cascadio
-Open CASCADE (LGPL-2.1 with its own exception).
+Open CASCADE (LGPL-2.1 with its own exception), pyzmq libzmq (MPL-2.0) and libsodium (ISC). debugpy, which ipykernel
+asks for and the console does not use, holds pydevd (EPL-1.0, which binds changes to itself), unchanged.
 """
 
 

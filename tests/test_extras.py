@@ -25,6 +25,8 @@ def test_the_command_line_is_imported_without_any_extra():
         "trimesh",
         "cascadio",
         "pypylon",
+        "qtconsole",
+        "ipykernel",
     )
     program = (
         "import sys, core.cli.measuring, core.cli.preparing, core.cli.results, core.cli.studying, core.cli.importing; "

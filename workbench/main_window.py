@@ -30,6 +30,7 @@ from workbench.notices import Notice
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.project.actions import ProjectActions
 from workbench.pages.project.audit import ask_reason
+from workbench.pages.project.console import ProjectConsole
 from workbench.pages.project.double_click import choose_double_click
 from workbench.pages.project.operator import OperatorMode
 from workbench.pages.project.operator_page import OperatorPage
@@ -40,6 +41,7 @@ from workbench.refresh import Refresh
 from workbench.steps import STEPS
 from workbench.theme import apply_theme, icon
 from workbench.views import ask
+from workbench.views.console import console_missing
 from workbench.views.instruction_bar import InstructionBar
 from workbench.views.layouts import Elided, UpAndDown, enable, in_column, in_row, keep_focus, resize_on_screen
 from workbench.views.lists.notice_list import Banner, NoticeList
@@ -101,6 +103,7 @@ class MainWindow(QMainWindow):
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
         self.manual = ManualWindow(self)
+        self.console, self._no_console = ProjectConsole(self.model, self), console_missing()
         self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
         self.operator = OperatorPage(self.operator_mode, self.model)
         self._stack.addWidget(self.operator)
@@ -195,6 +198,7 @@ class MainWindow(QMainWindow):
     def _close_pages(self) -> None:
         keep_layout(self, self.pages, self.bench.settings)
         self.bench.settings.flush()
+        self.console.end(wait=True)
         for page in self.pages.values():
             page.close()
 
@@ -292,6 +296,8 @@ class MainWindow(QMainWindow):
             "manual": self._open_manual,
             "first measurement": projects.begin_first_measurement,
             "quick card": self._print_quick_card,
+            "console": self.console.open,
+            "script": projects.copies.save_script,
             "operator mode": self.enter_operator_mode,
             "double click": partial(choose_double_click, self, self.bench.notices),
             "log": self._open_log,
@@ -425,7 +431,9 @@ class MainWindow(QMainWindow):
     def _menu_facts(self) -> MenuFacts:
         page = self.presenters.get(self._current)
         does = frozenset(name for name in OF_A_PAGE if hasattr(page, f"do_{name}"))
-        return MenuFacts(self._current, does, job=self._task is not None, operator=self._operator_seen)
+        return MenuFacts(
+            self._current, does, job=self._task is not None, operator=self._operator_seen, no_console=self._no_console
+        )
 
     def _toggle_messages(self) -> None:
         self.messages.setVisible(not self.messages.isVisible())

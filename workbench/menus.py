@@ -70,6 +70,8 @@ NEED_A_PROJECT = (
     "audit",
     "sign in",
     "operator mode",
+    "console",
+    "script",
     "close",
     "back",
     "next",
@@ -93,6 +95,8 @@ class MenuFacts(NamedTuple):
     """A long job runs."""
     operator: bool = False
     """The operator mode is on: nothing but the part is to be changed."""
+    no_console: bool = False
+    """What the Python console needs is not installed."""
 
 
 def why_not(name: str, facts: MenuFacts) -> str:
@@ -105,6 +109,8 @@ def why_not(name: str, facts: MenuFacts) -> str:
         return ""
     if not facts.page:
         return tr("Open a project first.")
+    if name == "console" and facts.no_console:
+        return tr("The console needs an extra: pip install 'trisect[console]'.")
     if name in OF_A_PAGE and name not in facts.does:
         return tr("There is nothing of the kind on this page.")
     if name == "back" and facts.page == STEPS[0].name:
@@ -206,6 +212,11 @@ class Menus(QObject):
         self._add(view, "full", tr("&Full screen"), self._full_screen)
         self._add(view, "operator mode", tr("&Operator mode"))
         view.addMenu(self._languages())
+
+        tools = bar.addMenu(tr("&Tools"))
+        tools.setToolTipsVisible(True)
+        self._add(tools, "console", tr("Python &console"))
+        self._add(tools, "script", tr("Save what was done as a &script …"))
 
         help_menu = bar.addMenu(tr("&Help"))
         self._add(help_menu, "manual", tr("&Manual"))

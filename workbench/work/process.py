@@ -1,4 +1,4 @@
-"""A worker process of the window: a QProcess, and what goes through its pipes.
+"""Processes of the window: a QProcess each, and what goes through the pipes of those that run jobs.
 
 All of it happens in the GUI thread: Qt reads the pipes, and tells when a whole message may be there. No Python thread
 of the window ever holds an object of Qt's, so the garbage collector may run whenever Python likes.
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import os
 import sys
+from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Qt, QTimer, Signal
@@ -20,26 +21,22 @@ ENDS_WITHIN_MS = 3000
 """A process that was killed is gone after milliseconds; the program's end waits for it no longer than this."""
 
 
-class WorkerProcess(QObject):
-    """One process that runs jobs, from its start to its end.
+class ChildProcess(QObject):
+    """A Python process that ends with this one: its standard input is a pipe from here, which it reads until the end.
 
-    `received` brings the kind of each message, the number of its job, and its body, to be read with `wire.value_of` or
-    `wire.forget`. `gone` comes once, with why: the process could not be started, or ended by itself. After `end`
-    neither comes.
+    `gone` comes once, with why: the process could not be started, or ended by itself. After `end` it does not come.
+
+    Parameters
+    ----------
+    module, arguments
+        What Python runs: `-m module arguments`.
     """
 
-    received = Signal(int, int, object)
     gone = Signal(str)
 
-    def __init__(self, name: str, warm: tuple[Job, ...], ahead: Job | None, parent: QObject) -> None:
+    def __init__(self, module: str, arguments: Sequence[str], parent: QObject) -> None:
         super().__init__(parent)
-        self._folder = wire.memory_folder()
-        self._head: tuple[int, int, int] | None = None
         self._ended = False
-        self._more = QTimer(self)
-        self._more.setSingleShot(True)
-        self._more.setInterval(0)
-        self._more.timeout.connect(self._read)
         self._process = QProcess(self)
         self._process.setProcessChannelMode(QProcess.ProcessChannelMode.ForwardedErrorChannel)
         self._process.setProcessEnvironment(_environment())
@@ -48,8 +45,7 @@ class WorkerProcess(QObject):
         self._process.finished.connect(self._finished, Qt.ConnectionType.QueuedConnection)
         self._process.errorOccurred.connect(self._failed, Qt.ConnectionType.QueuedConnection)
         # -P: a module that lies in the current folder by chance is not taken for one of Python's
-        self._process.start(sys.executable, ["-P", "-m", "workbench.work.worker", name, self._folder.name])
-        self.send(Kind.SETUP, 0, (warm, ahead))
+        self._process.start(sys.executable, ["-P", "-m", module, *arguments])
 
     @property
     def pid(self) -> int:
@@ -60,10 +56,6 @@ class WorkerProcess(QObject):
     def is_over(self) -> bool:
         """Whether it has ended, or could not be started, told or not."""
         return self._process.state() == QProcess.ProcessState.NotRunning
-
-    def send(self, kind: Kind, number: int, value: Any = None) -> None:
-        """Send a message; it is written when the process can take it. Raises what pickle raises."""
-        self._process.write(wire.frame(kind, number, value))
 
     def end(self) -> None:
         """Kill the process, wait for nothing, and tell of nothing more; this object deletes itself."""
@@ -79,6 +71,52 @@ class WorkerProcess(QObject):
         """Wait until a process that was ended is gone: at the program's end, when no event comes any more."""
         if self._process.state() != QProcess.ProcessState.NotRunning:
             self._process.waitForFinished(ENDS_WITHIN_MS)
+        self._clean_up()
+
+    def _read(self) -> None:
+        """Take what the process has written; nothing is wanted of it here."""
+        self._process.readAllStandardOutput()
+
+    def _clean_up(self) -> None:
+        """Remove what the process needed on the disk."""
+
+    def _failed(self, error: QProcess.ProcessError) -> None:
+        if error is QProcess.ProcessError.FailedToStart:
+            self._finished()
+
+    def _finished(self, *_: Any) -> None:
+        self._read()
+        told, self._ended = self._ended, True
+        self._clean_up()
+        if not told:
+            self.gone.emit(self._process.errorString())
+        self.deleteLater()
+
+
+class WorkerProcess(ChildProcess):
+    """One process that runs jobs, from its start to its end.
+
+    `received` brings the kind of each message, the number of its job, and its body, to be read with `wire.value_of` or
+    `wire.forget`; it does not come after `end`.
+    """
+
+    received = Signal(int, int, object)
+
+    def __init__(self, name: str, warm: tuple[Job, ...], ahead: Job | None, parent: QObject) -> None:
+        self._folder = wire.memory_folder()
+        super().__init__("workbench.work.worker", [name, self._folder.name], parent)
+        self._head: tuple[int, int, int] | None = None
+        self._more = QTimer(self)
+        self._more.setSingleShot(True)
+        self._more.setInterval(0)
+        self._more.timeout.connect(self._read)
+        self.send(Kind.SETUP, 0, (warm, ahead))
+
+    def send(self, kind: Kind, number: int, value: Any = None) -> None:
+        """Send a message; it is written when the process can take it. Raises what pickle raises."""
+        self._process.write(wire.frame(kind, number, value))
+
+    def _clean_up(self) -> None:
         self._folder.cleanup()
 
     def _read(self) -> None:
@@ -94,18 +132,6 @@ class WorkerProcess(QObject):
             if self._process.bytesAvailable():
                 self._more.start()  # what is there already is told of by no signal of Qt's, if a question comes now
             self.received.emit(kind, number, body)
-
-    def _failed(self, error: QProcess.ProcessError) -> None:
-        if error is QProcess.ProcessError.FailedToStart:
-            self._finished()
-
-    def _finished(self, *_: Any) -> None:
-        self._read()
-        told, self._ended = self._ended, True
-        self._folder.cleanup()
-        if not told:
-            self.gone.emit(self._process.errorString())
-        self.deleteLater()
 
 
 def _environment() -> QProcessEnvironment:

@@ -36,6 +36,9 @@ HEAD = struct.Struct("<BqQ")
 PIPE_CHUNK = 1 << 20
 """A pipe is read in pieces of at most so many bytes."""
 
+INTERRUPT = b"i"
+"""What the window writes to the console's process to stop a calculation."""
+
 
 class Kind(IntEnum):
     """What a frame says; the first five go to the worker, the others come from it."""

@@ -1,0 +1,171 @@
+"""The Python console: it reads the open project, calculates elsewhere, tells of changes, and leaves nothing behind."""
+
+from __future__ import annotations
+
+import itertools
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from PySide6.QtCore import QTimer
+from PySide6.QtGui import QCloseEvent
+
+from core.files.project.data import new_project
+from core.files.results.rig_history import DATA
+from tests.workbench.technician import Technician
+from workbench.main_window import MainWindow
+from workbench.menus import MenuFacts, why_not
+from workbench.views import console as console_view
+from workbench.views.console import ConsoleWindow
+
+LONGEST_TURN_S = 0.5
+"""Of processor time between two turns of the event loop: drawing 500 new lines takes a tenth of a second."""
+
+
+def ready(console: ConsoleWindow) -> bool:
+    return console.console is not None and bool(console.console.isEnabled())
+
+
+@pytest.fixture
+def threads() -> set[threading.Thread]:
+    """Those that were there before the console."""
+    return set(threading.enumerate())
+
+
+@pytest.fixture
+def console(technician: Technician, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[ConsoleWindow]:
+    """The console of a project, ready to be typed into."""
+    pytest.importorskip("qtconsole", reason="of the extra `console`, which is not installed")
+    monkeypatch.setenv(DATA, str(tmp_path / "data"))
+    technician.model.create(tmp_path / "block", new_project("block"))
+    technician.window.menus.actions["console"].trigger()
+    shown = technician.window.console.window
+    assert shown is not None
+    technician.until(lambda: ready(shown), "the console to be ready")
+    yield shown
+    technician.window.console.end(wait=True)
+
+
+def answer(t: Technician, console: ConsoleWindow, code: str, awaited: str) -> None:
+    """Have it calculated; ends when `awaited` is shown."""
+    console.console.execute(code)
+    t.until(lambda: not console.interrupt.isEnabled(), "the answer")
+    shown = console.console._control.toPlainText()
+    assert awaited in shown, shown
+
+
+def test_the_console_has_the_project_and_numpy_and_no_thread_in_the_window(
+    technician: Technician, threads: set[threading.Thread], console: ConsoleWindow
+) -> None:
+    answer(technician, console, "project.settings.info.name, np.pi > 3", "('block', True)")
+    assert set(threading.enumerate()) <= threads
+
+
+def test_what_is_written_meanwhile_is_told_and_read_when_it_is_opened_anew(
+    technician: Technician, console: ConsoleWindow
+) -> None:
+    answer(technician, console, "project.changed", "Out[1]: False")
+    assert not console.anew.isEnabled()
+    project = technician.model.project
+    technician.model.edit("name", replace(project, info=replace(project.info, name="other")))
+    assert console.anew.isEnabled() and "has changed" in console.state.text()
+    technician.model.save()
+    answer(technician, console, "project.settings.info.name", "open it again: project = project.opened_again()")
+    console.anew.click()
+    technician.until(lambda: not console.interrupt.isEnabled(), "the project to be opened")
+    answer(technician, console, "project.settings.info.name", "'other'")
+    assert not console.anew.isEnabled()
+
+
+@pytest.mark.parametrize("code", ["for i in range(10**12): print(i)", "import time; time.sleep(1000)"])
+def test_a_calculation_neither_blocks_the_window_nor_cannot_be_stopped(
+    technician: Technician, console: ConsoleWindow, code: str
+) -> None:
+    turns: list[float] = []
+    clock = QTimer(interval=1)
+    clock.timeout.connect(lambda: turns.append(time.thread_time()))
+    clock.start()
+    console.console.execute(code)
+    technician.until(lambda: console.interrupt.isEnabled(), "the calculation to begin")
+    begun = time.perf_counter()
+    technician.until(lambda: time.perf_counter() > begun + 1, "a second")
+    clock.stop()
+    longest = max(later - sooner for sooner, later in itertools.pairwise(turns))
+    assert longest < LONGEST_TURN_S
+    console.interrupt.click()
+    technician.until(lambda: "KeyboardInterrupt" in console.console._control.toPlainText(), "the calculation to stop")
+    answer(technician, console, "6 * 7", "42")
+
+
+def test_a_process_that_dies_takes_nothing_with_it_and_another_can_be_started(
+    technician: Technician, console: ConsoleWindow
+) -> None:
+    assert console.kernel is not None
+    os.kill(console.kernel.pid, signal.SIGKILL)
+    technician.until(lambda: "has ended" in console.state.text(), "its end to be told")
+    assert not console.interrupt.isEnabled() and not console.console.isEnabled()
+    console.restart.click()
+    technician.until(lambda: ready(console), "another process")
+    answer(technician, console, "1 + 41", "42")
+
+
+def gone(pid: int) -> bool:
+    try:
+        os.kill(pid, 0)
+    except ProcessLookupError:
+        return True
+    return False
+
+
+def test_the_process_ends_with_its_window_and_with_the_project(technician: Technician, console: ConsoleWindow) -> None:
+    assert console.kernel is not None
+    first = console.kernel.pid
+    console.closeEvent(QCloseEvent())
+    technician.until(lambda: gone(first), "the process to end")
+    assert technician.window.console.window is None
+    technician.window.menus.actions["console"].trigger()
+    other = technician.window.console.window
+    assert other is not None
+    technician.until(lambda: other.kernel is not None, "the next process")
+    assert other.kernel is not None
+    second = other.kernel.pid
+    technician.window.projects.close_project()
+    technician.until(lambda: gone(second), "the process to end")
+    assert technician.window.console.window is None
+
+
+def test_without_its_extra_the_entry_is_grey_and_says_what_to_install(window: MainWindow, tmp_path: Path) -> None:
+    assert why_not("console", MenuFacts("", frozenset(), job=False)) == "Open a project first."
+    facts = MenuFacts("scan", frozenset(), job=False)
+    assert why_not("console", facts) == ""
+    assert "pip install 'trisect[console]'" in why_not("console", facts._replace(no_console=True))
+    assert not window.menus.actions["console"].isEnabled()
+
+
+def test_the_window_opens_without_the_consoles_libraries() -> None:
+    import subprocess
+    import sys
+
+    code = (
+        "import sys, workbench.app, workbench.main_window; print([n for n in ('qtconsole', 'zmq') if n in sys.modules])"
+    )
+    answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert answer.stdout.strip() == "[]"
+
+
+def test_a_window_closed_while_the_libraries_are_imported_starts_nothing(
+    technician: Technician, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(console_view, "import_module", lambda name: None)
+    technician.model.create(tmp_path / "block", new_project("block"))
+    technician.window.console.open()
+    shown = technician.window.console.window
+    assert shown is not None
+    shown.closeEvent(QCloseEvent())
+    technician.until(lambda: technician.window.console.window is None, "it to be gone")
+    assert shown.kernel is None

@@ -1,0 +1,56 @@
+"""The Python console of the open project: one window, which ends with the project and says when that has changed."""
+
+from __future__ import annotations
+
+from PySide6.QtCore import QObject
+from PySide6.QtWidgets import QWidget
+
+from core.files.project.data import ProjectFile
+from workbench.project_model import ProjectModel
+from workbench.views.console import ConsoleWindow
+
+
+class ProjectConsole(QObject):
+    """Opens the console's window and keeps it true.
+
+    Parameters
+    ----------
+    parent
+        The window that the console belongs to.
+    """
+
+    def __init__(self, model: ProjectModel, parent: QWidget) -> None:
+        super().__init__(parent)
+        self._model, self._parent = model, parent
+        self.window: ConsoleWindow | None = None
+        self._read: ProjectFile | None = None
+        model.opened.connect(self.end)
+        model.changed.connect(self._look)
+        model.results_changed.connect(self._look)
+
+    def open(self) -> None:
+        """Show the console; it is started if it is not there."""
+        folder = self._model.folder
+        if folder is None:
+            return
+        if self.window is None:
+            self.window = ConsoleWindow(folder, self._put_on_disk, self._parent)
+            self.window.ended.connect(self._gone)
+        self.window.begin()
+
+    def end(self, *, wait: bool = False) -> None:
+        """End the console, if it is open; `wait` until its process is gone where no event comes any more."""
+        kernel = self.window.end() if self.window is not None else None
+        if wait and kernel is not None:
+            kernel.wait()
+
+    def _put_on_disk(self) -> None:
+        self._model.save_by_itself()
+        self._read = self._model.file
+
+    def _look(self, *_: object) -> None:
+        if self.window is not None and self._read is not None:
+            self.window.set_outdated(self._model.file != self._read)
+
+    def _gone(self) -> None:
+        self.window = None

@@ -1,0 +1,143 @@
+"""The kernel of the Python console seen from the window: its process, and the messages of Jupyter's protocol.
+
+Jupyter's own client for Qt reads its sockets in a Python thread that holds objects of Qt's. Here Qt tells in the GUI
+thread when there is something to read, so the window stays without such threads. Of the extra `console`: import late.
+"""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import zmq
+from jupyter_client.channels import ZMQSocketChannel
+from jupyter_client.client import KernelClient
+from jupyter_client.connect import write_connection_file
+from PySide6.QtCore import QObject, QSocketNotifier, QTimer, Signal
+from qtconsole.kernel_mixins import QtKernelClientMixin
+from qtconsole.util import SuperQObject
+from traitlets import Type
+
+from workbench.work import wire
+from workbench.work.process import ChildProcess
+
+TURN_S = 0.01
+"""Messages are taken for so long in a row: a flood of them leaves the window its turns."""
+PAUSE_MS = 1
+"""And so long after that go on: what waits for 0 ms Qt does before anything else."""
+
+
+class Channel(ZMQSocketChannel, SuperQObject):  # type: ignore[misc]
+    """A socket to the kernel that tells of each message in the GUI thread."""
+
+    message_received = Signal(object)
+
+    def start(self) -> None:
+        """Listen from now on."""
+        self._more = QTimer(self, singleShot=True, interval=PAUSE_MS)
+        self._more.timeout.connect(self._read)
+        self._notifier = QSocketNotifier(self.socket.getsockopt(zmq.FD), QSocketNotifier.Type.Read, self)
+        self._notifier.activated.connect(self._read)
+        self._more.start()
+
+    def send(self, message: dict[str, Any]) -> None:
+        """Send a message."""
+        super().send(message)
+        self._more.start()  # sending may take the notice of an answer with it
+
+    def stop(self) -> None:
+        """Listen no more, and close the socket."""
+        if self.socket is not None:
+            self._notifier.setEnabled(False)
+            self._more.stop()
+            self.close()
+
+    def closed(self) -> bool:
+        """Whether the socket is closed."""
+        return self.socket is None
+
+    def flush(self, timeout: float = 1.0) -> None:
+        """Take what has come."""
+        self._read()
+
+    def _read(self) -> None:
+        until = time.perf_counter() + TURN_S
+        while self.socket is not None and self.socket.getsockopt(zmq.EVENTS) & zmq.POLLIN:
+            if time.perf_counter() > until:
+                self._more.start()
+                return
+            self.message_received.emit(self._recv())
+
+
+class Heartbeat(SuperQObject):  # type: ignore[misc]
+    """Stands where Jupyter's thread asks whether the kernel lives: the process's end is told by Qt."""
+
+    kernel_died = Signal(object)
+
+    def __init__(self, *_: Any, **__: Any) -> None:
+        super().__init__()
+        self._alive = False
+
+    def start(self) -> None:
+        """From now on the kernel counts as alive."""
+        self._alive = True
+
+    def stop(self) -> None:
+        """The kernel is not asked for any more."""
+        self._alive = False
+
+    pause = unpause = stop
+
+    def is_alive(self) -> bool:
+        """Whether it was started."""
+        return self._alive
+
+
+class Client(QtKernelClientMixin, KernelClient):  # type: ignore[misc]
+    """What the console's widget talks to."""
+
+    iopub_channel_class = Type(Channel)
+    shell_channel_class = Type(Channel)
+    stdin_channel_class = Type(Channel)
+    control_channel_class = Type(Channel)
+    hb_channel_class = Type(Heartbeat)
+
+
+class Kernel(ChildProcess):
+    """The process, and the client that is connected to it: on this computer only, encrypted with keys of its own.
+
+    Parameters
+    ----------
+    project
+        The folder of the project that it has open.
+    colours
+        What IPython calls those of its messages: "linux" on dark ground, "lightbg" on light.
+    """
+
+    def __init__(self, project: Path, colours: str, parent: QObject) -> None:
+        self._folder = wire.memory_folder()
+        self.client = Client()
+        public, secret = zmq.curve_keypair()
+        path = str(Path(self._folder.name) / "connection.json")
+        file, _ = write_connection_file(path, curve_publickey=public, curve_secretkey=secret)
+        self.client.load_connection_file(file)
+        super().__init__("workbench.work.console_kernel", [file, str(project), colours], parent)
+        self.client.start_channels()
+
+    def interrupt(self) -> None:
+        """Stop what it calculates."""
+        self._process.write(wire.INTERRUPT)
+
+    def end(self) -> None:
+        """Close the sockets and end the process, as :class:`ChildProcess`."""
+        self._close_sockets()
+        super().end()
+
+    def _close_sockets(self) -> None:
+        if self.client.channels_running:  # else ZeroMQ would wait for ever, at the end, for messages to be taken
+            self.client.stop_channels()
+
+    def _clean_up(self) -> None:
+        self._close_sockets()
+        self._folder.cleanup()
