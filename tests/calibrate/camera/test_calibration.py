@@ -298,9 +298,19 @@ def test_principal_deviations_carry_the_covariance():
     steps = np.array([parameters_of(camera) - parameters_of(calibration.camera) for camera in deviations])
     assert len(deviations) == 9
     assert steps.T @ steps == pytest.approx(calibration.covariance, rel=1e-6, abs=1e-12)
+    assert_rays_scatter_as_stated(calibration, seeds=5)
+
+
+@pytest.mark.accuracy
+def test_principal_deviations_are_as_rays_of_twenty_calibrations_scatter():
+    assert_rays_scatter_as_stated(calibrated(0), seeds=20)
+
+
+def assert_rays_scatter_as_stated(calibration: CameraCalibration, seeds: int) -> None:
     uv = np.array([[100.0, 100.0]])
+    deviations = principal_deviations(calibration)
     spread = sum((camera.rays(uv) - calibration.camera.rays(uv)) ** 2 for camera in deviations) ** 0.5
-    sampled = [calibrated(seed).camera.rays(uv)[0] for seed in range(20)]
+    sampled = [calibrated(seed).camera.rays(uv)[0] for seed in range(seeds)]
     assert np.std(sampled, axis=0)[:2] == pytest.approx(spread[0, :2], rel=0.8)
 
 
