@@ -122,6 +122,12 @@ def gone(pid: int) -> bool:
     return False
 
 
+def opened(technician: Technician) -> ConsoleWindow:
+    window = technician.window.console.window
+    assert window is not None
+    return window
+
+
 def test_the_process_ends_with_its_window_and_with_the_project(technician: Technician, console: ConsoleWindow) -> None:
     assert console.kernel is not None
     first = console.kernel.pid
@@ -129,8 +135,7 @@ def test_the_process_ends_with_its_window_and_with_the_project(technician: Techn
     technician.until(lambda: gone(first), "the process to end")
     assert technician.window.console.window is None
     technician.window.menus.actions["console"].trigger()
-    other = technician.window.console.window
-    assert other is not None
+    other = opened(technician)
     technician.until(lambda: other.kernel is not None, "the next process")
     assert other.kernel is not None
     second = other.kernel.pid

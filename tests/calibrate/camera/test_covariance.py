@@ -18,7 +18,7 @@ def independent(rng: np.random.Generator, seen: np.ndarray) -> SharedErrorFactor
     left = noise - stacked @ np.linalg.lstsq(stacked, noise, rcond=None)[0]
     shares = (design * left.reshape(views, -1, 1)).reshape(views, CORNERS, 2, FREE).sum(axis=2)
     normal = Normal(np.swapaxes(design, 1, 2) @ design, tuple(shares), float(left @ left))
-    board = [np.column_stack([np.arange(CORNERS), np.zeros((CORNERS, 2))])] * views
+    board = [np.pad(np.arange(CORNERS, dtype=np.float64)[:, None], ((0, 0), (0, 2)))] * views
     cells = [np.arange(CORNERS) % 6] * views
     return free_covariance(normal, board, cells, len(left) - FREE)[1]
 
