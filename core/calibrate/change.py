@@ -50,7 +50,7 @@ CHANGED = Message(
 )
 MAY_HAVE_CHANGED = Message(
     "inspection.rig_may_have_changed",
-    "Laser or camera seem to have changed since they were calibrated, and no check of the day has passed: nothing "
+    "Laser or camera seem to have changed since they were calibrated, and no check of the day is in order: nothing "
     "measured proves conformity. Check with one to three pictures of the plane target in the fan.",
 )
 

@@ -102,7 +102,7 @@ def datum_frames(plan: InspectionPlan) -> dict[str, Frame]:
 
 
 def frames_of(spec: FeatureSpec, plan: InspectionPlan) -> list[Frame]:
-    """The letter of a feature if it is a datum, and what is asked of its form and lie."""
+    """Frames of a feature: its letter if it is a datum, and the requirements on its form, lie and place."""
     asked, datum = asked_frames(plan), datum_frames(plan).get(spec.name)
     own = [asked[name] for result in results_of(spec) if (name := f"{spec.name} {result}") in asked]
     return own if datum is None else [datum, *own]
