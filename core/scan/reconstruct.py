@@ -18,6 +18,7 @@ from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
 from core.scan.fan_watch import LEAST_FRAMES, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
+from core.scan.features.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
@@ -136,6 +137,7 @@ def reconstruct(
         notes=bounces.notes
         + _ordered(features.notes, solved)
         + (() if too_bright is None else (too_bright,))
+        + notes_on_blur(exposure_blurs(features.frames, features.image_size))
         + _unsure(found, cloud, solved, options)
         + _fan_notes(lines),
         datum=solved.datum,

@@ -3,6 +3,7 @@
 Whole sets at a quarter of the full size, with calibrations of their own, measured as a user would.
 """
 
+import numpy as np
 import pytest
 
 from core.errors import InputError
@@ -17,6 +18,7 @@ SWITCHES = {
     "hand at 14 mm/s": {"readout_ms": 71.0, "hand_mm_s": 14.0},
     "hand at 28 mm/s with tremor": {"readout_ms": 71.0, "hand_mm_s": 28.0, "tremor_mm": 0.35},
     "hand at 28 mm/s, exposed for 10 ms": {"exposure_ms": 10.0, "hand_mm_s": 28.0, "tremor_mm": 0.35},
+    "hand at 28 mm/s, exposed for 40 ms": {"exposure_ms": 40.0, "hand_mm_s": 28.0, "tremor_mm": 0.35},
     "part lifted by 0.4 mm": {"lifted_mm": 0.4, "moved_frame": 22},
 }
 
@@ -49,3 +51,6 @@ def test_no_movement_makes_a_thickness_wrong_beyond_u_without_a_word(switch, see
         assert "scan.fan_shifted" in told
     if "readout_ms" in SWITCHES[switch]:
         assert "scan.hand_moved" in told
+    assert ("scan.exposure_blur" in told) is (SWITCHES[switch].get("exposure_ms") == 40.0)
+    off = measured.depth_errors() / np.hypot(measured.cloud.sigma, measured.cloud.sigma_common)
+    assert np.mean(np.abs(off[np.isfinite(off)]) < 2) > 0.93

@@ -1,0 +1,90 @@
+"""How much the hand's motion within an exposure has blurred each frame, by the widths of its stripes.
+
+A stripe that moves while a frame is exposed is seen at all the places it passes: its section is as wide as at rest, and
+as the spread of these places, in squares. Where the sweeps of several frames pass the same part of the picture, their
+sections at rest are about alike, so the narrowest of them tell how wide a stripe is there, and the others by how much
+they are blurred. What blurs all frames alike, a hand at a steady speed, is not seen: it displaces nothing either.
+
+σ of a centreline is that of its own, wider sections (`core.image.stripes.precision`). Where a hand speeds up or turns
+back within an exposure the section is not symmetric either; on simulated scans exposed for 20 and 40 ms by a hand at
+28 mm/s that trembles by 0.35 mm that was to be seen in one of four, in frames blurred by more than 1.4 px: twice the
+usual errors, 96 % within 2σ, and the thickness no worse. So nothing is added to σ (tests/accuracy/test_motion.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from core.messages import Message, plural_message
+from core.model.arrays import Array
+from core.model.residuals import over_picture
+from core.scan.features.frames import FrameFeatures
+
+GRID = (16, 12)
+"""Columns and rows of the parts of a picture in which sections at rest are taken for alike."""
+FEWEST_FRAMES = 4
+"""Frames that pass a part at least, or it does not tell the width at rest."""
+FEWEST_PARTS = 4
+"""Parts in which a frame is compared at least, or nothing is said of it."""
+AT_REST = 0.25
+"""Quantile of the frames' widths in a part that is that at rest: a hand that trembles stands still now and then."""
+MATTERS = 0.5
+"""A blur of so many widths at rest counts: it makes sections an eighth wider. Frames of hands at rest reach 0.35."""
+WORTH_A_NOTE = 0.1
+"""Share of the frames that are blurred so, from which on it is told."""
+
+
+def exposure_blurs(frames: Sequence[FrameFeatures], image_size: tuple[int, int]) -> Array:
+    """Spread (F, 2) in px of the stripe's places within each frame's exposure, and the σ of its section at rest.
+
+    NaN for frames that pass too few parts of the picture where others pass, too.
+    """
+    rows: list[tuple[int, int, float]] = []
+    for number, frame in enumerate(frames):
+        lines = [line for line in frame.centrelines if not line.saturated.all()]
+        if not lines:
+            continue
+        uv = np.vstack([line.uv[~line.saturated] for line in lines])
+        square = np.concatenate([line.width[~line.saturated] for line in lines]) ** 2
+        part = over_picture(uv, image_size, GRID)
+        rows += [(number, int(one), float(np.median(square[part == one]))) for one in np.unique(part)]
+    found = np.full((len(frames), 2), np.nan)
+    if not rows:
+        return found
+    of_frame, part, square = (np.array(column) for column in zip(*rows, strict=True))
+    rest = np.full(len(square), np.nan)
+    for one in np.unique(part):
+        mine = part == one
+        if mine.sum() >= FEWEST_FRAMES:
+            rest[mine] = np.quantile(square[mine], AT_REST)
+    for number in np.unique(of_frame):
+        mine = (of_frame == number) & np.isfinite(rest)
+        if mine.sum() >= FEWEST_PARTS:
+            more, at_rest = float(np.median(square[mine] - rest[mine])), float(np.median(rest[mine]))
+            found[number] = np.sqrt(max(more, 0.0)), np.sqrt(at_rest)
+    return found
+
+
+def notes_on_blur(blurs: Array) -> tuple[Message, ...]:
+    """A note if the hand moved so fast in many exposures that points are less sure by it."""
+    blur, at_rest = blurs.T
+    known, blurred = np.isfinite(blur), blur > MATTERS * at_rest
+    if blurred.sum() < max(1.0, WORTH_A_NOTE * known.sum()):
+        return ()
+    return (
+        plural_message(
+            "scan.exposure_blur",
+            "In {n} of {known} frames the stripe is blurred by the hand's motion or tremor within the exposure, by up "
+            "to {blur_px:.1f} px (σ; at rest it is {at_rest_px:.1f} px). σ holds how much less sure these points are. "
+            "Expose shorter, with more light or gain, or move slower and rest the hand.",
+            "In {n} of {known} frames the stripe is blurred by the hand's motion or tremor within the exposure, by up "
+            "to {blur_px:.1f} px (σ; at rest it is {at_rest_px:.1f} px). σ holds how much less sure these points are. "
+            "Expose shorter, with more light or gain, or move slower and rest the hand.",
+            n=int(blurred.sum()),
+            known=int(known.sum()),
+            blur_px=float(blur[blurred].max()),
+            at_rest_px=float(np.median(at_rest[known])),
+        ),
+    )
