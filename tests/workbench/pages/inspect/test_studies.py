@@ -7,6 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QStyle
 
 from core.errors import InputError
 from core.files.study.study_file import study_path
@@ -68,6 +69,8 @@ def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presente
     made(studies, qtbot)
     tab.window().refreshing.at_once()
     assert tab.stack.currentIndex() == 0 and tab.list.topLevelItem(0).text(1) == "10 parts × 3 operators × 3 repeats"
+    words = tab.list.fontMetrics().horizontalAdvance(tab.list.topLevelItem(0).text(0))
+    assert tab.list.columnWidth(0) > words + tab.list.style().pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth) + 8
     assert tab.rows.text_of("%GRR of the total") == "27.9 %" and tab.rows.text_of("ndc") == "4"
     assert len(tab.table.rows()) == 7 and "gauge R&R" in tab.table.copied()
     undo(presenter)

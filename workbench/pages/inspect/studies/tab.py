@@ -32,6 +32,8 @@ LIST_HEIGHT = 150
 """Pixels of the list of studies; what does not fit is scrolled to."""
 LEAST_TABLE_PX, ROWS_PX = 300, 250
 """Widths; where there is less than both the numbers stand below the table."""
+BESIDE_PX = 24
+"""Left and right of a study's kind and the box before it."""
 
 
 class StudiesTab(QWidget):
@@ -89,7 +91,7 @@ class StudiesTab(QWidget):
         self.list.setObjectName("roomy")
         self.list.setRootIsDecorated(False)
         self.list.setFixedHeight(LIST_HEIGHT)
-        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.ResizeToContents)
+        self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
         self.list.currentItemChanged.connect(lambda item: self._studies.choose(_id(item)))
         self.list.itemChanged.connect(
             lambda item: self._studies.include(_id(item), item.checkState(0) is Qt.CheckState.Checked)
@@ -139,6 +141,8 @@ class StudiesTab(QWidget):
                 item.setToolTip(0, tr("Ticked studies are printed in the report"))
                 if one.id == studies.chosen:
                     self.list.setCurrentItem(item)
+            # Qt's own width of a column forgets the room that the style leaves beside a box to tick.
+            self.list.setColumnWidth(0, self.list.sizeHintForColumn(0) + BESIDE_PX)
             self.list.blockSignals(False)
         self.list.setVisible(bool(studies.all))
         self.words.setText(
