@@ -41,6 +41,9 @@ Kind = Literal["camera", "fan"]
 _FILES: Mapping[Kind, str] = {"camera": "camera", "fan": "planes"}
 _KEPT = ".kept.json"
 
+IMPORTED = "imported"
+"""Among the settings of a camera taken from another program: its file."""
+
 
 @dataclass(frozen=True, slots=True)
 class StoredCalibration:
@@ -86,11 +89,15 @@ class StoredCalibration:
 
 
 def keep_camera(
-    project_folder: Path, calibration: CameraCalibration, options: Options, inputs: Mapping[str, str] | None = None
+    project_folder: Path,
+    calibration: CameraCalibration,
+    options: Options,
+    inputs: Mapping[str, str] | None = None,
+    imported: str = "",
 ) -> str:
     """Put a camera's calibration into the history; one that is there already becomes the newest. Returns its id.
 
-    `inputs` are the hashes of the pictures it was made from.
+    `inputs` are the hashes of what it was made from: pictures, or the file of another program that `imported` names.
 
     Raises
     ------
@@ -104,7 +111,7 @@ def keep_camera(
         **_counts([view.used for view in calibration.views]),
         "rms_px": calibration.rms_px,
         "expected_error_mm": calibration.cross_validation_mm,
-        "settings": options.camera_settings,
+        "settings": {IMPORTED: imported} if imported else options.camera_settings,
         "inputs": inputs or {},
     }
     _write_about(folder, "camera", id_, about)

@@ -10,10 +10,11 @@ from core.calibrate.results import CameraCalibration
 from core.files.atomic import make_folder, write_bytes
 from core.files.exchange.opencv_calibration import read_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
+from core.files.project.calibration_store import keep_camera
 from core.files.project.data import Project, ReportChoices
 from core.files.project.folder import can_be_saved, results_folder, stored_source
 from core.files.project.report_template import read_report_template
-from core.files.reading import read_bytes
+from core.files.reading import file_hash, read_bytes, resolved
 from core.files.results.camera_file import write_camera
 from core.pipeline.project.report import project_content, report_bytes
 from core.pipeline.steps.export_kinds import Results, export_kind, write_export
@@ -128,11 +129,24 @@ def import_camera(path: Path, out: Path) -> CameraCalibration:
     InputError
         If it cannot be read, or is no camera that is modelled here.
     """
-    calibration = read_opencv(path) if _of_opencv(path) else read_camera_info(path)
+    calibration = _read_camera(path)
     with made_beside(make_folder(out)) as beside:
         write_camera(beside / FILES["camera"], calibration)
         renew(out, beside, "camera")
     return calibration
+
+
+def keep_imported_camera(folder: Path, project: Project, path: Path) -> str:
+    """Keep a camera calibrated by OpenCV or ROS in the project and return its id; InputError as :func:`import_camera`.
+
+    The caller makes it the accepted one.
+    """
+    place = resolved(path)
+    return keep_camera(folder, _read_camera(path), project.options, {path.name: file_hash(path)}, place.as_posix())
+
+
+def _read_camera(path: Path) -> CameraCalibration:
+    return read_opencv(path) if _of_opencv(path) else read_camera_info(path)
 
 
 def _of_opencv(path: Path) -> bool:

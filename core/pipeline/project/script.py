@@ -16,6 +16,7 @@ from typing import Any
 from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.plan.translation import plan_tables
+from core.files.project.calibration_store import IMPORTED
 from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import read_project, results_folder, source_folder
 from core.files.project.keys import changed, relocated, rests_on
@@ -101,6 +102,10 @@ def _lines(folder: Path, file: ProjectFile, record: RunRecord, there: set[str], 
     settings, channel = record.settings, _option("--channel", project.options.channel or "")
     at = (SET, "--out", OUT)
     if "camera" in there and "camera" in settings:
+        told = settings["camera"]
+        if IMPORTED in told:
+            yield _Line(("import-camera", told[IMPORTED], "--out", OUT))
+    if "camera" in there and IMPORTED not in settings.get("camera", {IMPORTED: ""}):
         told = settings["camera"]
         skew = () if told.get("skew") is None else ("--skew",) if told["skew"] else ("--no-skew",)
         k3 = ("--k3",) if told.get("k3") else ()

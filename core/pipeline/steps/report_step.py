@@ -16,6 +16,7 @@ from core import __version__
 from core.errors import InputError
 from core.files.arrays_file import read_arrays
 from core.files.atomic import write_bytes
+from core.files.project.calibration_store import IMPORTED
 from core.files.reading import file_hash, read_json
 from core.files.recording.recording_set import RIG, RecordingSet
 from core.files.recording.rig import Rig, rig_to_toml
@@ -266,7 +267,7 @@ def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Mes
     if "sigma_cut_mm" in scan:
         limit = scan["sigma_cut_mm"]
         words[label("Points kept")] = Message("report.points_kept", "σ up to {limit_mm:g} mm", limit_mm=limit)
-    if camera:
+    if camera and IMPORTED not in camera:
         fixed = {"γ"} - ({"γ"} if camera.get("skew") else set()) | set(camera.get("fixed", ()))
         free = [name for name in ("α", "β", "γ", "u0", "v0", "k1", "k2", "p1", "p2") if name not in fixed]
         words[label("Free camera parameters")] = ", ".join(free + (["k3"] if camera.get("k3") else []))

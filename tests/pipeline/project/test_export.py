@@ -10,10 +10,13 @@ from pypdf import PdfReader
 
 from core.errors import Cancelled, InputError
 from core.files.atomic import write_bytes
-from core.files.project.data import ReportChoices
+from core.files.project.data import Accepted, ReportChoices
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud, read_mesh
-from core.pipeline.project.export import export, preview_report
+from core.files.results.run_file import read_run
+from core.pipeline.project.calibration import accept_fan, find_poses, solve_poses
+from core.pipeline.project.export import export, keep_imported_camera, preview_report
+from core.pipeline.project.measuring import measure_scan
 from core.pipeline.project.report import make_report, report_bytes
 from core.report.template import SECTIONS
 from tests.simulated import copy_of
@@ -34,6 +37,21 @@ def test_the_preview_is_the_report_and_writes_nothing(done, folder):
         assert page.shape[0] == pytest.approx(300 * 297 / 210, abs=2)
         assert page.mean() > 200, "a page is mostly white"
         assert page.std() > 5, "and not empty"
+
+
+def test_a_project_measures_with_a_camera_of_another_program(done, folder, tmp_path):
+    file = export(folder, done.project, "opencv", tmp_path / "camera.yaml")
+    bare = replace(done.project, sources=replace(done.project.sources, camera=""), accepted=Accepted())
+    id_ = keep_imported_camera(folder, bare, file)
+    bare = replace(bare, accepted=Accepted(camera=id_))
+    poses = find_poses(folder, bare)
+    fan = accept_fan(folder, bare, solve_poses(folder, bare, poses), poses)
+    bare = replace(bare, accepted=Accepted(camera=id_, fan=fan))
+    measured = measure_scan(folder, bare)
+    assert measured.gauge.thickness_mm == pytest.approx(done.summary.gauge.thickness_mm, abs=done.summary.gauge.U_mm)
+    assert read_run(results_folder(folder) / "run.json").settings["camera"]["imported"] == file.resolve().as_posix()
+    words = "".join(page.extract_text() for page in PdfReader(make_report(folder, bare)).pages)
+    assert "Free camera parameters" not in words, "nobody here knows which were free"
 
 
 def test_the_preview_follows_sections_and_paper(done, folder):

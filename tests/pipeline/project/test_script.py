@@ -67,6 +67,16 @@ def test_pictures_left_out_and_stated_stripes_are_told_as_they_were_and_not_as_c
     assert "--stripe-width" not in told["scan"]
 
 
+def test_a_camera_of_another_program_is_taken_from_its_file(project, tmp_path):
+    run = results_folder(project) / "run.json"
+    record = json.loads(run.read_text())
+    record["settings"]["camera"] = {"imported": "/lab/camera.yaml", "skew": False}
+    run.write_text(json.dumps(record))
+    said = commands(write_script(project, tmp_path / "session.py"))
+    assert said[1] == ["import-camera", "/lab/camera.yaml", "--out", "results"]
+    assert [words[0] for words in said].count("camera") == 0
+
+
 def test_what_no_command_takes_is_said_beside_it(project, done, tmp_path):
     text = write_script(project, tmp_path / "session.py").read_text(encoding="utf-8")
     assert "no option of the command: remarks" in text

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from dataclasses import replace
+from pathlib import Path
 from typing import Any, ClassVar, Literal
 
 from PySide6.QtCore import QObject, Signal
@@ -102,10 +103,13 @@ class StoredCalibrations(QObject):
 
     def restore(self) -> None:
         """Accept the chosen one again; undoable."""
-        if self.why_not_restore():
-            return
-        project, changed = self._model.project, {CALIBRATIONS[self.STEP]: self.chosen}
-        self._model.edit(self._labels()[1], replace(project, accepted=replace(project.accepted, **changed)))
+        if not self.why_not_restore():
+            self._accept(self.chosen, self._labels()[1])
+
+    def _accept(self, id_: str, label: str) -> None:
+        """Measure with this one from now on; `label` is what undo calls that."""
+        project, changed = self._model.project, {CALIBRATIONS[self.STEP]: id_}
+        self._model.edit(label, replace(project, accepted=replace(project.accepted, **changed)))
         self._model.record(self.STEP, finished(self.STEP, self._model.project, self._model.results))
 
     @abstractmethod
@@ -136,6 +140,36 @@ class CameraHistory(StoredCalibrations):
             if self.chosen:
                 self._choice_changed()
                 self.changed.emit()
+
+    def why_not_import(self) -> str:
+        """Why no calibration of another program can be taken now, or ""."""
+        job = self._bench.measuring.current
+        running = self._acceptance.label if self._acceptance.keeping else job.label if job is not None else ""
+        if self._live.running:
+            return tr("Stop the live source first.")
+        return tr("A job is not finished yet: {job}.", job=running) if running else self._bench.cannot_write
+
+    def take(self, path: Path) -> None:
+        """Take a camera that OpenCV or ROS has calibrated for the accepted one; undoable."""
+        folder = self._model.folder
+        if folder is None or self.why_not_import():
+            return
+
+        def kept(id_: str) -> None:
+            if folder == self._model.folder:
+                self._accept(id_, tr("take a camera calibration from a file"))
+                self.refresh()
+
+        self._bench.run_quick(
+            self,
+            jobs.KEEP_IMPORTED_CAMERA,
+            folder,
+            self._model.project,
+            path,
+            label=tr("Reading the calibration"),
+            on_done=kept,
+            offers={},
+        )
 
     def _sentences(self) -> dict[WhyNotRestore, str]:
         return {

@@ -26,7 +26,7 @@ class HistoryTab(QWidget):
         self.table.set_headers(headers)
         self.restore.clicked.connect(lambda: presenter.history.restore())
         self.table.current_row_changed.connect(self._chosen)
-        row = in_row((self.words, 1), self.restore)
+        row = self.row = in_row((self.words, 1), self.restore)
         self.column = in_column((self.table, 1), row, on=self, margins=(6, 6, 6, 6))
         self._rows: Any = None
 

@@ -5,15 +5,17 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtWidgets import QComboBox, QPushButton, QWidget
 
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
+from workbench.theme import icon
+from workbench.views import ask
 from workbench.views.colours import CORNER
 from workbench.views.image.view import ImageView
-from workbench.views.layouts import heading, in_column, in_row, muted
+from workbench.views.layouts import enable, heading, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
 from workbench.views.plots.map import HeatMap
 from workbench.views.plots.residuals import ResidualPlot
@@ -136,6 +138,9 @@ class CameraHistoryTab(HistoryTab):
             [(title, "") for title in (tr("Parameter"), tr("Chosen"), tr("Shown"), tr("Change"), "sd")]
         )
         self.column.addWidget(self.changes, 1)
+        self.take = QPushButton(icon("mdi6.file-import-outline"), tr("From a file …"))
+        self.take.clicked.connect(self._take)
+        self.row.addWidget(self.take)
         self.refresh()
 
     def refresh(self) -> None:
@@ -143,6 +148,15 @@ class CameraHistoryTab(HistoryTab):
         changes = self._presenter.history.changes
         self.changes.set_rows(words.change_rows(changes))
         self.changes.setVisible(changes is not None)
+        enable(
+            self.take, self._presenter.history.why_not_import(), tr("Take a camera that OpenCV or ROS has calibrated")
+        )
+
+    def _take(self) -> None:
+        kinds = tr("Calibrations of OpenCV or ROS (*.yaml *.yml *.json *.xml)")
+        path = ask.choose_file_to_open(self, tr("Camera calibration from a file"), None, kinds)
+        if path is not None:
+            self._presenter.history.take(path)
 
     def _listed(self) -> list[tuple[str, ...]]:
         return words.history_rows(self._presenter.history.entries, self._presenter.history.accepted)

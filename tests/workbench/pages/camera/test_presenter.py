@@ -1,5 +1,6 @@
 """Decisions of the camera page."""
 
+import json
 from dataclasses import replace
 from pathlib import Path
 
@@ -280,6 +281,36 @@ def test_a_kept_calibration_is_compared_and_restored(accepted, qtbot):
     accepted.model.undo_stack.undo()
     assert accepted.stage is Stage.ACCEPTED
     assert accepted.project.accepted.camera == second
+
+
+def test_a_camera_of_another_program_is_taken_and_undone(presenter, tmp_path, qtbot):
+    matrix = {"rows": 3, "cols": 3, "dt": "d", "data": [800.0, 0, 320.0, 0, 800.0, 240.0, 0, 0, 1.0]}
+    distortion = {"rows": 1, "cols": 5, "dt": "d", "data": [0.01, 0, 0, 0, 0]}
+    size = {"image_width": 640, "image_height": 480}
+    file = {**size, "camera_matrix": matrix, "distortion_coefficients": distortion}
+    (tmp_path / "camera.json").write_text(json.dumps(file))
+    presenter.history.take(tmp_path / "camera.json")
+    qtbot.waitUntil(lambda: presenter.project.accepted.camera != "")
+    assert presenter.stage is Stage.ACCEPTED and presenter.blocker() == "", "no picture is needed"
+    qtbot.waitUntil(lambda: len(presenter.history.entries) == 1)
+    presenter.model.undo_stack.undo()
+    assert presenter.project.accepted.camera == ""
+    presenter.history.choose(presenter.history.entries[0].id)
+    presenter.history.restore()
+    assert presenter.project.accepted.camera != ""
+
+
+def test_no_camera_is_taken_from_a_file_while_a_job_rests_on_the_one_in_use_or_nothing_can_be_written(
+    presenter, monkeypatch
+):
+    lane = presenter.bench.measuring
+    lane.held.add(jobs.MEASURE_SCAN)
+    scan = presenter.bench.run_long(presenter, jobs.MEASURE_SCAN, label="Measure", on_done=print)
+    assert presenter.history.why_not_import() == "A job is not finished yet: Measure."
+    scan.cancel()
+    assert presenter.history.why_not_import() == ""
+    monkeypatch.setattr(type(presenter.model), "is_read_only", property(lambda _: True))
+    assert "read-only" in presenter.history.why_not_import()
 
 
 def test_reopening_shows_the_accepted_calibration_and_solves_it_without_searching(accepted, qtbot):
