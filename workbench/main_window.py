@@ -35,6 +35,7 @@ from workbench.pages.project.double_click import choose_double_click
 from workbench.pages.project.operator import OperatorMode
 from workbench.pages.project.operator_page import OperatorPage
 from workbench.pages.project.presenter import ProjectPresenter
+from workbench.pages.project.rig_plan import RigPlans
 from workbench.pages.project.welcome_page import WelcomePage
 from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
@@ -103,6 +104,7 @@ class MainWindow(QMainWindow):
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
         self.manual = ManualWindow(self)
+        self.rig_plans = RigPlans(bench, self)
         self.console, self._no_console = ProjectConsole(self.model, self), console_missing()
         self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
         self.operator = OperatorPage(self.operator_mode, self.model)
@@ -297,6 +299,7 @@ class MainWindow(QMainWindow):
             "first measurement": projects.begin_first_measurement,
             "quick card": self._print_quick_card,
             "console": self.console.open,
+            "plan rig": self.rig_plans.choose,
             "script": projects.copies.save_script,
             "operator mode": self.enter_operator_mode,
             "double click": partial(choose_double_click, self, self.bench.notices),

@@ -216,6 +216,7 @@ class Menus(QObject):
         tools = bar.addMenu(tr("&Tools"))
         tools.setToolTipsVisible(True)
         self._add(tools, "console", tr("Python &console"))
+        self._add(tools, "plan rig", tr("&Plan a rig …"))
         self._add(tools, "script", tr("Save what was done as a &script …"))
 
         help_menu = bar.addMenu(tr("&Help"))

@@ -6,10 +6,8 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import cast
 
-import numpy as np
-
 from core.cli import output
-from core.cli.language import told, tr
+from core.cli.language import spoken, tr
 from core.cli.measuring import Shown
 from core.cli.options import one_of
 from core.errors import InputError, WrongValue
@@ -18,14 +16,13 @@ from core.files.recording.rig import read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
-from core.pipeline.steps.plan_step import PlanResult, plan, plan_values, write_plan
+from core.pipeline.steps.plan_step import plan, plan_values, write_plan
+from core.pipeline.steps.plan_words import plan_rows
 from core.pipeline.steps.prints import write_quick_card
-from core.plan.bounds import Bound
-from core.plan.predict import Prediction
 from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
-from core.report.wording import grouped, target_in_words
+from core.report.wording import Words, target_in_words
 
 
 def target_of_words(
@@ -161,51 +158,4 @@ def run_plan(
         )
     result = plan(rig, scans=scans, changes=changes, sigma_cut_mm=sigma_cut, bounds=bounds, progress=progress)
     files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
-    return Shown(_rows(result), plan_values(result), files=files)
-
-
-def _rows(result: PlanResult) -> output.Rows:
-    rows: output.Rows = []
-    for prediction in result.predictions:
-        said = tr("U = {U:.3f} mm (k = {k:g})", U=prediction.U_mm, k=prediction.k)
-        rows.append((tr("block {height:g} mm", height=prediction.height_mm), said))
-    shown = result.largest
-    rows += [(tr("u from"), _budget(shown)), (tr("σ of a depth"), _sigma(shown))]
-    rows += [(tr("not foretold"), told(result.not_foretold))] if result.not_foretold else []
-    counts = {"used": shown.sweeps_used, "all": result.design.sweeps, "points": grouped(shown.points)}
-    rows.append((tr("sweeps"), tr("{used} of {all} give {points} points", **counts)))
-    for effect in result.effects:
-        value = (
-            tr("U {U:.3f} mm ({share:+.0%})", U=effect.U_mm, share=effect.share - 1)
-            if effect.U_mm is not None
-            else told(effect.reason or "")
-        )
-        rows.append((tr("change"), f"{told(effect.change)} ({told(effect.to)}): {value}"))
-    rows += [(tr("advice"), told(result.advice))] if result.advice else []
-    return rows + [(tr("no program below"), _bound(bound)) for bound in result.bounds]
-
-
-def _bound(bound: Bound) -> str:
-    quantity, unit = told(bound.quantity), bound.unit
-    said = tr("{quantity}: u {u:.2g} {unit}", quantity=quantity, u=bound.with_speckle, unit=unit)
-    if bound.without == bound.with_speckle:
-        return said
-    return f"{said}, {tr('{u:.2g} {unit} without speckle', u=bound.without, unit=unit)}"
-
-
-def _budget(prediction: Prediction) -> str:
-    largest = sorted(prediction.budget, key=lambda row: -row.u_mm)
-    return ", ".join(
-        tr("{source} {u:.3f} mm", source=told(row.source), u=row.u_mm)
-        for row in largest
-        if row.u_mm >= 0.1 * prediction.u_mm
-    )
-
-
-def _sigma(prediction: Prediction) -> str:
-    own, common = (float(np.nanmedian(part)) for part in (prediction.sigma.own, prediction.sigma.common))
-    return tr(
-        "{own:.3f} mm of each point, {common:.3f} mm common to the scan (medians over the picture)",
-        own=own,
-        common=common,
-    )
+    return Shown(plan_rows(result, Words(spoken())), plan_values(result), files=files)

@@ -5,6 +5,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import read_picture
+from core.pipeline.project import rig_plan
 from core.pipeline.steps.plan_step import plan, write_plan
 from core.report.plots.plan_map import plan_map_png
 from tests.plan.small import CUT_MM, SMALL, TOML
@@ -41,6 +42,15 @@ def test_every_height_gets_its_u_and_a_budget(told):
         assert row["u_mm"] == pytest.approx(np.sqrt(sum(part["u_mm"] ** 2 for part in row["budget"])))
     assert values["design"]["sweeps"] == SMALL.sweeps
     assert values["changes"] == []
+
+
+def test_the_window_is_given_the_same_rows_in_its_language_and_the_whole_sigma(rig, result, monkeypatch):
+    monkeypatch.setattr(rig_plan, "plan", lambda *_, **__: result)
+    shown = rig_plan.foretell_rig(rig, "de")
+    assert shown.rows[0][0] == "Block 40 mm" and "," in shown.rows[0][1]
+    assert shown.image_size == result.design.pixels
+    own = result.largest.sigma.own
+    assert shown.sigma_mm.shape == own.shape and np.nanmin(shown.sigma_mm - own) >= 0
 
 
 def test_what_is_known_of_the_part_beforehand_is_in_the_budget(rig, told, tmp_path):

@@ -36,7 +36,7 @@ from workbench.views.plots.base import Plot
 
 OPENED = (
     "new", "open", "open set", "import", "next part", "copy", "pack", "unpack", "audit", "sign in", "quick card",
-    "script", "keys", "double click", "about",
+    "plan rig", "script", "keys", "double click", "about",
 )  # fmt: skip
 """The entries of the menus that open a dialog."""
 ALIKE = (

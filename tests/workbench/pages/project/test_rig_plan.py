@@ -1,0 +1,73 @@
+"""Tools, Plan a rig: what is foretold is shown, and written where one wants it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+import pytest
+from PySide6.QtWidgets import QMainWindow
+
+from core.errors import InputError
+from core.messages import Message
+from core.pipeline.project.rig_plan import ForetoldRig
+from tests.workbench.hand_lane import HandLane
+from workbench.bench import Bench
+from workbench.pages.project.rig_plan import RigPlans
+from workbench.views import ask
+from workbench.work import jobs
+
+ROWS = [("block 50 mm", "U = 0.017 mm (k = 2)"), ("sweeps", "58 of 60 give 40 000 points")]
+
+
+@pytest.fixture
+def plans(hand_bench: Bench, qtbot: Any) -> RigPlans:
+    window = QMainWindow()
+    qtbot.addWidget(window)
+    made = RigPlans(hand_bench, window)
+    made.setProperty("window", window)
+    return made
+
+
+def foretold(*_: Any, **__: Any) -> ForetoldRig:
+    return ForetoldRig(ROWS, np.full((4, 6), 0.03), (1920, 1374), cast(Any, "the plan"))
+
+
+def test_a_chosen_rig_is_planned_shown_and_written(
+    plans: RigPlans, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    bench = plans._bench
+    cast(HandLane, bench.measuring).answers[jobs.FORETELL_RIG] = foretold
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "rig.toml")
+    plans.choose()
+    qtbot.waitUntil(lambda: plans.shown is not None)
+    shown = plans.shown
+    assert shown is not None and shown.isVisible() and shown.windowTitle() == "Plan of rig.toml"
+    assert [tuple(row) for row in shown.table.rows()] == ROWS
+    written: list[tuple[Any, ...]] = []
+    cast(HandLane, bench.quick).answers[jobs.WRITE_RIG_PLAN] = lambda *words: written.append(words)
+    monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path / "plan")
+    shown.save.click()
+    qtbot.waitUntil(lambda: written == [("the plan", tmp_path / "plan")])
+    qtbot.waitUntil(lambda: str(tmp_path / "plan") in bench.notices.all[-1].text)
+    shown.close()
+    qtbot.waitUntil(lambda: plans.shown is None)
+
+
+def test_a_rig_that_cannot_be_planned_is_told_and_nothing_is_shown(
+    plans: RigPlans, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    def refused(*_: Any, **__: Any) -> ForetoldRig:
+        raise InputError(Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=0))
+
+    cast(HandLane, plans._bench.measuring).answers[jobs.FORETELL_RIG] = refused
+    plans.plan(tmp_path / "rig.toml")
+    qtbot.waitUntil(lambda: bool(plans._bench.notices.all))
+    assert "cannot be drawn" in plans._bench.notices.all[-1].text and plans.shown is None
+
+
+def test_without_an_answer_nothing_is_planned(plans: RigPlans, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: None)
+    plans.choose()
+    assert cast(HandLane, plans._bench.measuring).ran == []
