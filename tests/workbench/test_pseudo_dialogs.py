@@ -96,10 +96,11 @@ class Opened:
             told = [window.windowTitle(), *(re.sub(r"\(\*[^)]*\)", "", kind) for kind in window.nameFilters())]
             self.past |= {text: name for text in told if english(self._foreign.sub(" ", text))}
             return
+        qts = of_qt(window)
         self.past |= {
             text: f"{name}: {where}"
             for text, where in told_past_the_catalogues(window, self._foreign).items()
-            if text.replace("&", "") not in of_qt(window)
+            if text.replace("&", "") not in qts
         }
         if isinstance(window, QMenu):
             if window.sizeHint().height() > SCREEN.height() or window.sizeHint().width() > SCREEN.width():
