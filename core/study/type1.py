@@ -103,11 +103,6 @@ class Type1Study:
         return None if self.resolution_share is None else self.resolution_share <= RESOLUTION_SHARE * (1 + 1e-9)
 
     @property
-    def band(self) -> tuple[float, float]:
-        """Reference ± 0.1 T: the lines of the run chart."""
-        return self.reference - 0.1 * self.tolerance, self.reference + 0.1 * self.tolerance
-
-    @property
     def smallest_tolerance(self) -> float:
         """Smallest T for which Cgk, and so Cg, reaches the limit: 10 (|bias| + 3 · 1.33 s)."""
         return 10 * (abs(self.bias) + 3 * LIMIT * self.s)

@@ -10,7 +10,6 @@ from core.calibrate.fan.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
-from core.image.targets.target_view import TargetView
 from core.messages import plain
 from core.model import Pose
 from tests.calibrate.fan_scenes import (
@@ -55,13 +54,6 @@ def without_lines(pose: PoseFeatures, *missing: int) -> PoseFeatures:
     """The pose with lines taken out, counted from the top of the picture."""
     ordered = sorted(pose.centrelines, key=lambda line: float(line.uv[:, 1].mean()))
     return replace(pose, centrelines=tuple(line for index, line in enumerate(ordered) if index not in missing))
-
-
-def shifted_corner(pose: PoseFeatures, by: tuple[float, float]) -> PoseFeatures:
-    assert pose.view is not None
-    uv = pose.view.uv.copy()
-    uv[0] += by
-    return replace(pose, view=TargetView(pose.view.points, uv, pose.view.sigma, pose.view.name))
 
 
 def test_exact_features_give_the_exact_fan():
