@@ -6,6 +6,7 @@ import random
 import shutil
 import tempfile
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -98,3 +99,25 @@ def _measure(simulated: Path, out: Path) -> None:
 
     said = trisect("run", simulated, "--out", out, *CUT)
     assert said.code in (0, 1), said.err
+
+
+@pytest.fixture(scope="session")
+def finished_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A project with every step done, its pictures within, made once for all test processes; do not change it."""
+    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, simulated))
+
+
+def _finish_project(folder: Path, pictures: Path) -> None:
+    from core.files.project.folder import create_project, project_from_set, stored_source
+    from core.pipeline.project.sample_project import finished_project
+
+    recordings = Path(shutil.copytree(pictures, folder / "recordings"))
+    project = project_from_set(recordings, "Block")
+    inside = {part: stored_source(folder, recordings / part) for part in ("camera", "planes", "scan")}
+    project = replace(
+        project,
+        info=replace(project.info, part="Gauge block", operator="Somebody"),
+        sources=replace(project.sources, **inside),
+        options=replace(project.options, sigma_cut_mm=0.3),
+    )
+    create_project(folder, finished_project(folder, project))

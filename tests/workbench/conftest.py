@@ -10,7 +10,6 @@ import shutil
 import threading
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +21,7 @@ import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
-from tests.shared import SAID_ALOUD, made_once
+from tests.shared import SAID_ALOUD
 from tests.workbench import screen
 from tests.workbench.technician import Technician
 from workbench.app import build_window
@@ -151,32 +150,10 @@ def technician(window: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch) 
     return Technician(window, qtbot, monkeypatch)
 
 
-@pytest.fixture(scope="session")
-def finished_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A project with every step done, its pictures within, made once for all test processes; do not change it."""
-    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, simulated))
-
-
 @pytest.fixture
 def measured_project(finished_project_folder: Path, tmp_path: Path) -> Path:
     """A copy of a finished project on a small simulated set, to be opened and changed."""
     return Path(shutil.copytree(finished_project_folder, tmp_path / "measured"))
-
-
-def _finish_project(folder: Path, pictures: Path) -> None:
-    from core.files.project.folder import create_project, project_from_set, stored_source
-    from core.pipeline.project.sample_project import finished_project
-
-    recordings = Path(shutil.copytree(pictures, folder / "recordings"))
-    project = project_from_set(recordings, "Block")
-    inside = {part: stored_source(folder, recordings / part) for part in ("camera", "planes", "scan")}
-    project = replace(
-        project,
-        info=replace(project.info, part="Gauge block", operator="Somebody"),
-        sources=replace(project.sources, **inside),
-        options=replace(project.options, sigma_cut_mm=0.3),
-    )
-    create_project(folder, finished_project(folder, project))
 
 
 # ---- nothing is left behind

@@ -3,24 +3,24 @@
 from __future__ import annotations
 
 import json
+import shutil
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 from core.files.project.data import ProjectFile
-from core.files.project.folder import create_project, project_from_set, read_project
+from core.files.project.folder import read_project
 from core.files.project.next_part import next_part
-from core.pipeline.project.sample_project import finished_project
 from core.pipeline.project.whole import measure_all
 from core.pipeline.steps.workspace import FILES
 
 
 @pytest.mark.slow
-def test_the_same_scan_gives_the_same_thickness_and_nothing_is_calibrated_anew(simulated: Path, tmp_path: Path) -> None:
-    first = tmp_path / "Block 1"
-    first.mkdir()
-    create_project(first, finished_project(first, project_from_set(simulated, "Block 1")))
+def test_the_same_scan_gives_the_same_thickness_and_nothing_is_calibrated_anew(
+    finished_project_folder: Path, simulated: Path, tmp_path: Path
+) -> None:
+    first = Path(shutil.copytree(finished_project_folder, tmp_path / "Block 1"))
     to = next_part(first, tmp_path / "Block 2", "2", "Ada")
     file = read_project(to)
     project = replace(file.project, sources=replace(file.project.sources, scan=str(simulated / "scan")))
