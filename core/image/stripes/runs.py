@@ -21,12 +21,14 @@ _END_HEIGHT = 0.5  # an end is where the response falls to this share of what it
 _FURTHER_IN = (3.0, 9.0)  # which is its median so many filter σ from the end
 
 # Stripes that leave the picture: their ends are no ends. Held by the same tests (where the filter leaves the picture).
-_BORDER_PX = 3.0  # px from where the filter would leave the picture: a run that stops so near stops for that
+BORDER_PX = 3.0
+"""Px from where the filter would leave the picture: a run that stops so near stops for that."""
 _UNDIMMED = 0.9  # of the response further in: with less the stripe itself ends there
 
 # An oblique shadow at an end. Held by the same tests (oblique shadow, fades) on shadows and on surfaces that turn away.
 _FADE_REACH, _FADE_SHARE = 20.0, 0.2  # filter σ from an end, and share of the run, within which a shadow is looked for
-_UNFADED = 2.5  # times that reach: up to there is what it is compared with
+_UNFADED = 2.5  # times that reach: up to there is what it is compared with,
+_MIDDLE = 0.5 * (1 + _UNFADED)  # and here its middle
 _FADED = 0.8  # share of height · width² further in: with less it is a shadow or a surface that turns away;
 _NARROWED = 0.9  # share of width² further in: with less it is a shadow
 _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
@@ -54,7 +56,7 @@ def cut_ends(run: Array, filter_px: float, shape: tuple[int, ...]) -> Array:
     Where it only stops because the filter would leave the picture (`shape`), the stripe goes on: nothing is cut.
     """
     height, width = shape
-    border = kernel_radius(filter_px) + _BORDER_PX
+    border = kernel_radius(filter_px) + BORDER_PX
     trim = max(END_TRIM_PX, _END_TRIM * filter_px)
     first, last = _lit(run, arc_length(run), filter_px, trim, border, (height, width))
     return run[first:last]
@@ -129,7 +131,8 @@ def fully_lit(arc: Array, height: Array, width: Array, filter_px: float) -> tupl
     An oblique shadow cuts the stripe on one side first and pulls the line to the other while its crest is still as
     bright as before. What gives it away is height · width², which speckle hardly changes: its grains make the stripe
     dimmer and wider, or brighter and narrower. Where a surface turns away from the laser that falls too, but the stripe
-    gets no narrower as it fades: that is no shadow.
+    gets no narrower as it fades: that is no shadow. Nor is it one where light and width go on falling as they do
+    further in: so the light of a laser's line falls towards its ends.
     """
     square = new_row(len(width))
     for k in range(len(width)):
@@ -149,16 +152,29 @@ def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     light = new_row(last - first)
     for k in range(first, last):
         light[k - first] = height[k] * square[k]
-    enough = _FADED * median_of(light, 0, last - first)
+    middle = first_not_below(arc, _MIDDLE * reach)
+    usual, fall = _level_and_fall(light, 0, middle - first, last - first)
     faded = 0
-    while height[faded] * square[faded] < enough and arc[faded] < reach:
+    while (
+        height[faded] * square[faded] < _FADED * (usual - fall * (_MIDDLE - arc[faded] / reach)) and arc[faded] < reach
+    ):
         faded += 1
-    narrow = _NARROWED * median_of(square, first, last)
+    usual, fall = _level_and_fall(square, first, middle, last)
     half = round(_MEAN_REACH * filter_px)
     for k in range(faded - 1, -1, -1):
         total, start, end = 0.0, max(k - half, 0), min(k + half + 1, len(square))
         for i in range(start, end):
             total += square[i]
-        if total / (end - start) < narrow:
+        if total / (end - start) < _NARROWED * (usual - fall * (_MIDDLE - arc[k] / reach)):
             return k + 1
     return 0
+
+
+@inlined()
+def _level_and_fall(values: Array, first: int, middle: int, last: int) -> tuple[float, float]:
+    """Median of `values` from `first` to `last`, and by how much they fall over one reach towards the start, or 0."""
+    whole = median_of(values, first, last)
+    if not first < middle < last:
+        return whole, 0.0
+    fall = median_of(values, middle, last) - median_of(values, first, middle)
+    return whole, max(fall / (_MIDDLE - 1), 0.0)

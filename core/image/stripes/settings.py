@@ -13,10 +13,11 @@ from scipy.spatial import cKDTree
 from core.image.stripes.noise import estimate_noise
 from core.image.stripes.precision import response_noise
 from core.image.stripes.profile import measure_profiles
-from core.image.stripes.runs import arc_length, cut_ends
+from core.image.stripes.runs import BORDER_PX, arc_length, cut_ends
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.image.stripes.tracing.linking import HOLD, Hysteresis, link
 from core.image.stripes.tracing.pixel_state import SATURATED
+from core.image.stripes.tracing.ridge import kernel_radius
 from core.image.stripes.tracing.seeds import coarse_crests
 from core.model.arrays import Array
 
@@ -33,7 +34,8 @@ _SMALLEST_REDUCED = 24  # px that a reduced picture must have each way
 # heights and noises.
 _ROUNDS = 4  # corrections of the width at most; mostly two
 _SETTLED = 0.05  # change of the width, as a share of it, below which it is taken
-_LONG = 12.0  # filter σ: shorter runs are no stripe
+_LONG = 12.0  # filter σ: shorter runs are no stripe,
+_ACROSS = 0.9  # unless they go over so much of the picture's shorter side: nothing is longer there
 _STRONG_QUANTILE = 0.9  # of the heights along all stripes: what the next round's thresholds refer to
 _FAINTEST = 0.008  # of full scale: 2 grey levels of 8 bits
 _ABOVE_NOISE = 8.0  # times the noise of the response
@@ -74,7 +76,7 @@ def choose_settings(picture: NDArray[np.float32], full_scale: float) -> StripeSe
             break
         small = np.asarray(cv2.resize(picture, size, interpolation=cv2.INTER_AREA), dtype=np.float32)
         wider = _chosen(small, full_scale, factor)
-        if wider is not None and (found is None or wider.is_made_of(found)):
+        if wider is not None and (found is None or wider.is_made_of(found, picture.shape)):
             found = wider
     return None if found is None else found.settings
 
@@ -93,11 +95,19 @@ class _Stripes:
     length: float
     light: float
 
-    def is_made_of(self, finer: _Stripes) -> bool:
-        """Whether what was found in a finer picture are grains of these: short, little of their light, within them."""
+    def is_made_of(self, finer: _Stripes, shape: tuple[int, ...]) -> bool:
+        """Whether what was found in a finer picture are grains of these: short, little of their light, within them.
+
+        Grains nearer to the border of the picture (`shape`) than these can be seen say nothing.
+        """
         if self.light < _MORE_LIGHT * finer.light or _SHORT * self.length < finer.longest:
             return False
-        distance = cKDTree(self.uv).query(finer.uv)[0]
+        radius = kernel_radius(self.settings.filter_px)
+        to_border = np.minimum(finer.uv, np.array(shape[::-1]) - 1 - finer.uv).min(axis=1)
+        seen = finer.uv[to_border > radius]
+        if not len(seen):
+            return True
+        distance = cKDTree(self.uv).query(seen)[0]
         return float(np.mean(distance < self.settings.width_px)) > _MOSTLY
 
 
@@ -119,7 +129,7 @@ def _chosen(picture: NDArray[np.float32], full_scale: float, factor: int) -> _St
             filter_px,
             Hysteresis(faintest, _LOW_SHARE * faintest, HOLD * filter_px, 0.0, noise),
         )
-        if sections.shape[1] < 2 * _LONG * filter_px:
+        if not sections.size or sum(lengths) < min(2 * _LONG * filter_px, _ACROSS * min(picture.shape)):
             return None
         width = float(np.median(sections[1]))
         settled = abs(width / stripe_px - 1) < _SETTLED
@@ -132,7 +142,9 @@ def _chosen(picture: NDArray[np.float32], full_scale: float, factor: int) -> _St
         factor * sections[2:].T,
         factor * max(lengths),
         factor * sum(lengths),
-        factor**2 * sum(lengths) * float(np.mean(sections[0] * sections[1])),
+        factor**2
+        * sum(lengths)
+        * float(np.median(sections[0] * sections[1])),  # a failed fit may be as high as it likes
     )
 
 
@@ -156,15 +168,21 @@ def _first_guess(picture: NDArray[np.float32], noise: float) -> tuple[float, flo
 def _sections(
     picture: NDArray[np.float32], state: NDArray[np.uint8], stripe_px: float, filter_px: float, limits: Hysteresis
 ) -> tuple[Array, list[float]]:
-    """Heights, widths, u and v (4, N) along all long stripes within the `limits`, and how long each of these is."""
-    sections, lengths = [np.empty((4, 0))], []
+    """Heights, widths, u and v (4, N) along all long stripes within the `limits`, and how long each of these is.
+
+    To that belongs what the filter cannot see where a stripe leaves the picture.
+    """
+    sections, lengths = [np.empty((4, 0))], list[float]()
+    radius = kernel_radius(filter_px)
     for traced in link(picture, state, stripe_px, filter_px, limits):
-        if len(traced) < _LONG * filter_px:
+        inside = np.minimum(traced[[0, -1], :2], np.array(picture.shape[::-1]) - 1 - traced[[0, -1], :2]).min(axis=1)
+        unseen = radius * int(np.count_nonzero(inside <= radius + BORDER_PX))
+        if len(traced) + unseen < min(_LONG * filter_px, _ACROSS * min(picture.shape)):
             continue
         run = cut_ends(traced, filter_px, picture.shape)
         if len(run) > 1:
             profiles = measure_profiles(picture, state, run, stripe_px, filter_px)
             seen = profiles.height > 0
             sections.append(np.vstack([profiles.height[seen], profiles.width[seen], run[seen, :2].T]))
-            lengths.append(float(arc_length(run)[-1]))
+            lengths.append(float(arc_length(run)[-1]) + unseen)
     return np.hstack(sections), lengths

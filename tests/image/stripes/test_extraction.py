@@ -204,6 +204,18 @@ def test_a_stripe_that_fades_because_its_surface_turns_away_is_kept() -> None:
     assert np.abs(errors(line, truth)).max() < 0.01
 
 
+def test_a_line_that_falls_in_light_and_width_all_along_is_kept_to_its_end() -> None:
+    """A laser's line lens does that: no shadow, which falls within a short way."""
+    truth = straight((0.0, 60.3), 0.0)
+    v, u = np.mgrid[:120, :700]
+    width = 2.4 + 0.9 * np.minimum(u, 500) / 500
+    light = (50 + 60 * u / 700) * np.exp(-0.5 * (truth(u, v) / width) ** 2)
+    light[:, :30] = 0.0
+    (line,) = find(light, settings=StripeSettings(12.0, 80.0))
+    assert line.uv[:, 0].min() < 50
+    assert np.abs(errors(line, truth)).max() < 0.01
+
+
 @pytest.mark.parametrize("jump", [1.0, 3.0, 8.0, 20.0])
 def test_a_centreline_never_crosses_a_jump(jump: float) -> None:
     left, right = straight((0.0, 80.2), 0.0), straight((0.0, 80.2 + jump), 0.0)
@@ -392,6 +404,19 @@ def test_a_wide_speckled_stripe_is_found_though_its_grains_are_no_stripes() -> N
     lines = extract_centrelines(picture, chosen, noise=estimate_noise(picture), saturated=picture >= 255)
     assert max(np.abs(np.median(errors(line, truth))) for line in lines) < 2.0
     assert sum(map(len, lines)) > 0.65 * 1200
+
+
+@pytest.mark.parametrize("contrast", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("width_px", [60.0, 80.0, 100.0])
+def test_a_wide_stripe_is_told_in_a_small_picture(width_px: float, contrast: float) -> None:
+    """The filter sees no more than a stretch in the middle of it: it goes on to the borders."""
+    rng, shape = np.random.default_rng(1), (500, 400)
+    grains = speckle(shape, contrast, 3.0, rng) if contrast else 1.0
+    light = draw(shape, straight((200.0, 250.0), 1.45), width_px / 4, 120.0, 1) * grains
+    picture = np.clip(np.round(expose(20 + light, rng)), 0, 255).astype(np.float32)
+    chosen = choose_settings(picture, 255.0)
+    assert chosen is not None
+    assert chosen.width_px == pytest.approx(width_px, rel=0.1)
 
 
 def test_noise_is_estimated() -> None:
