@@ -3,15 +3,15 @@
 With a picture of the same pose without laser, the stripes come from the difference and the target from the picture
 without; without one, both come from the only picture, and only the light plate around the marks counts. Where the
 plate's own brightness changes across a stripe, at the edge of a mark, the stripe's centre is pulled to the lighter
-side: those points are left out. Light beside the plate, and what does not look like the laser's lines on it, is left
-out as well (`core.calibrate.fan.poses.plate`).
+side: those points are left out. A picture without laser tells where marks are: then points are found up to their edges
+(`core.calibrate.fan.poses.light_across_marks`). Light beside the plate, and what does not look like the laser's lines
+on it, is left out as well (`core.calibrate.fan.poses.plate`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Any, Final
 
 import cv2
@@ -19,8 +19,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
+from core.calibrate.fan.poses.even_plate import DARK, EvenPlate
+from core.calibrate.fan.poses.light_across_marks import across_marks, course_of, follows
 from core.calibrate.fan.poses.plate import Plate, without_clutter
-from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
+from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_of, usual_stripe
+from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.mosaic import ALL_SITES, Sites
 from core.image.stripes.bracket import bracketed
 from core.image.stripes.centreline import Centreline
@@ -28,6 +31,7 @@ from core.image.stripes.extraction import StripeSettings, choose_settings, extra
 from core.image.stripes.noise import (
     UNCOMPRESSED,
     Compression,
+    NoiseModel,
     estimate_noise,
     estimate_noise_of_pair,
     free_of_structure,
@@ -53,10 +57,10 @@ SURELY_STILL_PX = 0.25
 again to know that."""
 PULL_PX = 0.05
 """A point that the plate's change of brightness may pull further than this is left out."""
-DARK = 0.4
-"""A point where the picture is darker than this share of the plate around the target's points is left out."""
 STRONGEST = 0.999
 """Quantile over the target of what looks like a stripe: a few hot pixels are none."""
+FLANK = 1.5
+"""Stripe σ on either side of a point where the plate is looked at with the laser off."""
 SHORTEST = 12
 """Runs with fewer points left are dropped."""
 
@@ -132,18 +136,23 @@ def measure_plane_pose(
         return PoseFeatures(name, view, (), reason)
     carrier = Plate(target, view, camera, margin_mm)
     outside = carrier.outside(on.shape)
-    centrelines = _stripes_at_sites(on, off, view, outside, settings, beside)
+    light = _Light.of(on, off, view, outside, beside)
+    centrelines = _stripes(light, view, settings, beside)
     if not centrelines:
         seen = None
         if settings is not None:
-            chosen = _stripes_at_sites(on, off, view, outside, None, beside)
-            seen = usual_stripe([PoseFeatures(name, view, chosen)])
+            seen = usual_stripe([PoseFeatures(name, view, _stripes(light, view, None, beside))])
         if settings is None or seen is None:
             return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
         return PoseFeatures(name, view, (), _other_stripes(settings, seen))
-    level = DARK * _plate_level(plate, view)
+    level = _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
     centrelines = without_clutter(centrelines, camera)
+    if camera is not None and off is not None and beside.second is None:
+        even = EvenPlate.of(plate, view, level)
+        found = _beside_marks(centrelines, light, even, camera, beside.sites)
+        found = _on_even_plate(found, even.picture, level, carrier, laser_off=True, uneven=even.uneven)
+        centrelines = without_clutter(found, None) or centrelines
     notes: tuple[Message, ...] = ()
     if off is not None and moved is None:
         note = Message(
@@ -186,62 +195,84 @@ def _no_stripe(on: Picture, off: Picture | None, view: TargetView, settings: Str
     )
 
 
-def _stripes_at_sites(
-    on: Picture,
-    off: Picture | None,
-    view: TargetView,
-    outside: NDArray[np.bool_],
-    settings: StripeSettings | None,
-    beside: Beside,
-) -> tuple[Centreline, ...]:
-    """Centrelines as `_stripes` finds them, of both exposures, by the sites alone that see the laser."""
-    sites = beside.sites
-    there = replace(view, uv=sites.places_of(view.uv))
-    look = partial(
-        _stripes,
-        view=there,
-        outside=sites.of(outside),
-        settings=sites.stripe_of(settings),
-        compression=beside.compression,
-    )
-    lit = sites.of(on)
-    found = look(lit, None if off is None else sites.of(off))
-    if beside.second is not None:
-        on_second, off_second = beside.second
-        shorter = look(sites.of(on_second), None if off_second is None else sites.of(off_second))
-        found, _ = bracketed(found, shorter, lit >= np.iinfo(lit.dtype).max)
-    return sites.brought_back(found)
+@dataclass(frozen=True, eq=False, slots=True)
+class _Light:
+    """The laser's light by the sites alone that see it, (H, W) each: grey levels, what is saturated, what no plate.
+
+    `full_scale` is the largest grey level there can be; `second` is the light of the second exposures.
+    """
+
+    picture: NDArray[np.float32]
+    saturated: NDArray[np.bool_]
+    outside: NDArray[np.bool_]
+    noise: NoiseModel
+    full_scale: float
+    second: _Light | None = None
+
+    @classmethod
+    def of(
+        cls, on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], beside: Beside
+    ) -> _Light:
+        """The difference of two pictures, or the only one."""
+        second = None
+        if beside.second is not None:
+            second = cls.of(*beside.second, view, outside, replace(beside, second=None))
+        sites = beside.sites
+        lit, outside = sites.of(on), sites.of(outside)
+        picture, full_scale = lit.astype(np.float32), np.iinfo(lit.dtype).max
+        if off is None:
+            noise = replace(estimate_noise(picture), compression=beside.compression)
+        else:
+            without = sites.of(off).astype(np.float32)
+            # the stripes lie on the plate; the rest of the picture may be dark
+            common = _plate_level(without, replace(view, uv=sites.places_of(view.uv)))
+            one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
+            noise = replace(one, compression=beside.compression).of_difference(common)
+            picture -= without
+        return cls(picture, lit >= full_scale, outside, noise, float(full_scale), second)
 
 
 def _stripes(
-    on: Picture,
-    off: Picture | None,
-    view: TargetView,
-    outside: NDArray[np.bool_],
-    settings: StripeSettings | None,
-    compression: Compression,
+    light: _Light, view: TargetView, settings: StripeSettings | None, beside: Beside
 ) -> tuple[Centreline, ...]:
-    """Centrelines of the laser in the difference of two pictures, or in the only one, but not `outside` the plate."""
-    picture = on.astype(np.float32)
-    saturated = on >= np.iinfo(on.dtype).max
-    if off is None:
-        noise = replace(estimate_noise(picture), compression=compression)
-    else:
-        without = off.astype(np.float32)
-        common = _plate_level(without, view)  # the stripes lie on the plate; the rest of the picture may be dark
-        one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
-        noise = replace(one, compression=compression).of_difference(common)
-        picture -= without
-        del without  # as large as four pictures of a camera, and so is each float picture that follows
-    around = picture[_window(view, picture.shape, margin=1.0)]
+    """Centrelines of the laser on the plate, of both exposures."""
+    sites = beside.sites
+    there = _window(replace(view, uv=sites.places_of(view.uv)), light.picture.shape, margin=1.0)
+    told = sites.stripe_of(settings)
+    found = _looked_for(light, there, told)
+    if light.second is not None:
+        found, _ = bracketed(found, _looked_for(light.second, there, told), light.saturated)
+    return sites.brought_back(found)
+
+
+def _looked_for(light: _Light, there: tuple[slice, slice], settings: StripeSettings | None) -> tuple[Centreline, ...]:
+    """Centrelines of stripes of these settings, chosen `there` if not given."""
 
     def look(stripe: StripeSettings) -> tuple[Centreline, ...]:
-        return extract_centrelines(picture, stripe, noise=noise, saturated=saturated, ignore=outside)
+        return extract_centrelines(
+            light.picture, stripe, noise=light.noise, saturated=light.saturated, ignore=light.outside
+        )
 
     if settings is not None:
         return as_measured(settings, look)[1]
-    chosen = choose_settings(np.ascontiguousarray(around), float(np.iinfo(on.dtype).max))
+    chosen = choose_settings(np.ascontiguousarray(light.picture[there]), light.full_scale)
     return () if chosen is None else look(chosen)
+
+
+def _beside_marks(
+    centrelines: Sequence[Centreline], light: _Light, even: EvenPlate, camera: Camera, sites: Sites
+) -> tuple[Centreline, ...]:
+    """The same lines looked for again without what is printed on the plate: up to the marks, and between them."""
+    usual = sites.stripe_of(usual_of(centrelines))
+    courses = [course_of(line, camera, sites) for line in straight_lines(centrelines, camera)]
+    courses = [course for course in courses if len(course)]
+    if usual is None or not courses:
+        return ()
+    whole = across_marks(light.picture, light.saturated, sites.of(even.uneven) | light.outside, courses, usual)
+    found = extract_centrelines(whole.picture, usual, noise=light.noise, saturated=whole.saturated, ignore=whole.beside)
+    return sites.brought_back(
+        [whole.as_sure_as_seen(line, usual.filter_px) for line in found if follows(line, courses, usual)]
+    )
 
 
 def _movement(on: Picture, off: Picture, view: TargetView, target: Target, camera: Camera | None) -> float | None:
@@ -277,25 +308,37 @@ def _plate_level(plate: Picture, view: TargetView) -> float:
 
 
 def _on_even_plate(
-    centrelines: Sequence[Centreline], plate: Picture, level: float, carrier: Plate, *, laser_off: bool
+    centrelines: Sequence[Centreline],
+    plate: Picture | NDArray[np.float32],
+    level: float,
+    carrier: Plate,
+    *,
+    laser_off: bool,
+    uneven: NDArray[np.bool_] | None = None,
 ) -> tuple[Centreline, ...]:
-    """The points on the plate that is their `carrier`, brighter than `level`, and of even brightness there.
+    """The points on the plate that is their `carrier`, nowhere `uneven`, no darker than DARK of its grey `level`.
 
     The centre of a stripe of σ = s on a plate whose brightness changes as exp(g n) across it moves by s² g. The plate
     is looked at where the stripe is if the laser is off there, else just beside it.
     """
+    if not centrelines:
+        return ()
     uv = np.vstack([line.uv for line in centrelines])
     across = np.vstack([line.normal for line in centrelines])
     width = np.concatenate([line.width for line in centrelines])
     width = np.clip(width, 0.5, 2 * np.median(width))
-    reach = (1.5 if laser_off else 5.0) * width
+    reach = (FLANK if laser_off else 5.0) * width
     blur = float(np.median(width)) / 2 + 0.5
     smooth: NDArray[np.float32] = np.asarray(cv2.GaussianBlur(plate.astype(np.float32), (0, 0), blur), np.float32)
-    sides = [_sample(smooth, uv + sign * (reach[:, None] * across)) for sign in (-1, 1)]
+    beside = [uv + sign * (reach[:, None] * across) for sign in (-1, 1)]
+    sides = [_sample(smooth, places) for places in beside]
     low, high = np.minimum(*sides), np.maximum(*sides)
     pull = width**2 * np.log(np.maximum(high, 1.0) / np.maximum(low, 1.0)) / (2 * reach)
     # brightness beside the stripe says less of what is under it: only steps count there
-    even = carrier.holds(uv) & (low > level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
+    even = carrier.holds(uv) & (low > DARK * level) & (pull < (PULL_PX if laser_off else 2 * PULL_PX))
+    if uneven is not None:
+        marks = uneven.astype(np.float32)
+        even &= np.max([_sample(marks, places) for places in (uv, *beside)], axis=0) < 0.5
     kept, first = [], 0
     for line in centrelines:
         kept.extend(_runs(line, even[first : first + len(line)]))

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.calibrate.fan.poses.stripe_lines import CHUNK, straight_lines
+from core.calibrate.fan.poses.stripe_lines import chunk_length, straight_lines
 from core.image.stripes.centreline import Centreline
 from core.image.targets import Target
 from core.image.targets.kinds import BlackSquare, Charuco, Checkerboard, CircleGrid
@@ -117,7 +117,8 @@ def _on_straight_lines(centrelines: tuple[Centreline, ...], camera: Camera) -> t
     if not lines:
         return ()
     straight = cKDTree(np.vstack([line.uv for line in lines]))
-    return tuple(line for line in centrelines if np.count_nonzero(straight.query(line.uv)[0] < 1e-6) >= CHUNK // 2)
+    least = chunk_length(centrelines) // 2
+    return tuple(line for line in centrelines if np.count_nonzero(straight.query(line.uv)[0] < 1e-6) >= least)
 
 
 def _weighted_median(values: Array, weight: Array) -> float:

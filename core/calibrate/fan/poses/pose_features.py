@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -43,7 +43,11 @@ class PoseFeatures:
 
 def usual_stripe(poses: Iterable[PoseFeatures]) -> StripeSettings | None:
     """Width and contrast of most stripes of some poses; None where none was found."""
-    lines = [line for pose in poses for line in pose.centrelines]
+    return usual_of([line for pose in poses for line in pose.centrelines])
+
+
+def usual_of(lines: Sequence[Centreline]) -> StripeSettings | None:
+    """Width and contrast of most of some stripes; None for none."""
     if not lines:
         return None
     width = float(np.median(np.concatenate([line.width for line in lines])))

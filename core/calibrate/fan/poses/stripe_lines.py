@@ -21,8 +21,10 @@ from core.model.robust import huber_weights, mad_sd
 
 CHUNK = 24
 """Neighbouring points judged as one piece: longer than any speckle grain, shorter than any stripe of use."""
-SHORTEST = 3 * CHUNK
-"""A line with fewer points is not used."""
+CHUNK_IN_CORRELATIONS = 2.4
+"""So long at most in correlation lengths: points of narrow stripes tell as much in fewer px."""
+CHUNKS = 3
+"""A line with fewer points than in so many is not used."""
 SEEDS = 48
 """A line is searched for through any two of this many chunks."""
 STRAIGHT_PX = 1.5
@@ -69,17 +71,24 @@ def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int
 
     Saturated points are left out of a line as long as half of it remains without them.
     """
-    chunks = _chunks(centrelines, camera)
+    length = chunk_length(centrelines)
+    chunks, shortest = _chunks(centrelines, camera, length), CHUNKS * length
     lines: list[StripeLine] = []
-    while len(lines) < limit and chunks.total >= SHORTEST:
+    while len(lines) < limit and chunks.total >= shortest:
         members = chunks.largest_line(STRAIGHT_PX / camera.focal)
-        if members is None or chunks.counts[members].sum() < SHORTEST:
+        if members is None or chunks.counts[members].sum() < shortest:
             break
-        line = _fit(chunks, members, camera)
+        line = _fit(chunks, members, camera, shortest)
         if line is not None:
             lines.append(line)
         chunks = chunks.without(members)
     return tuple(sorted(lines, key=len, reverse=True))
+
+
+def chunk_length(centrelines: Sequence[Centreline]) -> int:
+    """How many points of these centrelines are judged as one piece."""
+    correlation = min((line.correlation_px for line in centrelines), default=np.inf)
+    return int(min(CHUNK, np.rint(CHUNK_IN_CORRELATIONS * correlation)))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -127,10 +136,14 @@ class _Chunks:
         return _Chunks(self.xy, self.uv, self.sigma, self.saturated, self.owner, self.centres, self.directions, counts)
 
 
-def _chunks(centrelines: Sequence[Centreline], camera: Camera) -> _Chunks:
-    """Cut centrelines into chunks; what is shorter than half a chunk is dropped."""
-    pieces = [line.select(slice(s, s + CHUNK)) for line in centrelines for s in range(0, len(line), CHUNK)]
-    pieces = [piece for piece in pieces if 2 * len(piece) >= CHUNK]
+def _chunks(centrelines: Sequence[Centreline], camera: Camera, length: int) -> _Chunks:
+    """Cut centrelines into chunks of about so many points; centrelines shorter than half a chunk are dropped."""
+    pieces = [
+        line.select(slice(places[0], places[-1] + 1))
+        for line in centrelines
+        if 2 * len(line) >= length
+        for places in np.array_split(np.arange(len(line)), max(1, round(len(line) / length)))
+    ]
     counts = np.array([len(piece) for piece in pieces], dtype=np.intp)
     if not pieces:
         empty = np.zeros((0, 2))
@@ -156,8 +169,8 @@ def _chunks(centrelines: Sequence[Centreline], camera: Camera) -> _Chunks:
     return _Chunks(xy, uv, sigma, saturated, owner, centres, directions, counts)
 
 
-def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLine | None:
-    """Robust straight line through the points of some chunks; None if too few agree."""
+def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera, shortest: int) -> StripeLine | None:
+    """Robust straight line through the points of some chunks; None if fewer than `shortest` agree."""
     chosen = np.flatnonzero(np.isin(chunks.owner, members))
     saturated = float(chunks.saturated[chosen].mean())
     if saturated <= 0.5:
@@ -173,7 +186,7 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera) -> StripeLi
         scaled = off / (sigma * max(mad_sd(off / sigma), 1e-9))
         weight = huber_weights(scaled, HUBER) / sigma**2
     good = np.abs(scaled) < REJECT
-    if good.sum() < SHORTEST:
+    if good.sum() < shortest:
         return None
     xy, uv, sigma, owner = xy[good], uv[good], sigma[good], chunks.owner[chosen][good]
     weight = 1 / sigma**2

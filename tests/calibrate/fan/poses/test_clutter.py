@@ -7,6 +7,7 @@ from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import measure_plane_pose
 from core.calibrate.fan.poses.plate import Plate
 from core.calibrate.fan.poses.stripe_lines import straight_lines
+from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Checkerboard
 from core.image.targets.target_view import TargetView
 from core.model import Pose
@@ -115,3 +116,18 @@ def test_what_is_outside_the_plate_is_not_looked_at():
     held = plate.holds(uv).reshape(U.shape)
     assert not (outside & held).any()
     assert 0 < outside.mean() < 1
+
+
+@pytest.mark.parametrize(("correlation_px", "lines"), [(4.3, 1), (8.0, 0)])
+def test_two_short_pieces_of_a_narrow_line_are_a_line(correlation_px: float, lines: int) -> None:
+    """Of a stripe 1 px wide 43 points in two squares say as much as 80 of one twice as wide."""
+    rng = np.random.default_rng(5)
+    pieces = []
+    for start, count in ((200.0, 21), (300.0, 22)):
+        along = np.arange(count, dtype=float)
+        uv = np.column_stack([start + along, 150.0 + 0.1 * (start + along) + rng.normal(0, 0.05, count)])
+        uv = CAMERA.pixels(CAMERA.rays(uv)[:, :2])
+        normal = np.tile([0.1, -1.0] / np.hypot(0.1, 1.0), (count, 1))
+        one = np.ones(count)
+        pieces.append(Centreline(uv, normal, 0.4 * one, 90 * one, 0.05 * one, one > 2, correlation_px))
+    assert len(straight_lines(pieces, CAMERA)) == lines
