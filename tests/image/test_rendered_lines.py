@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 from scipy.spatial import cKDTree
 
-from core.calibrate.fan.poses.plane_pose import DARK, measure_plane_pose
+from core.calibrate.fan.poses.even_plate import DARK
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare

@@ -86,8 +86,7 @@ def test_marks_do_not_pull_the_points_beside_them(stripe_mm: float) -> None:
 
 
 def test_what_a_mark_hides_is_mirrored_at_its_edge_along_the_line() -> None:
-    rows = np.arange(40.0)
-    light = np.tile(np.linspace(10, 90, 81, dtype=np.float32), (40, 1)) + np.float32(0.5) * rows[:, None].astype("f4")
+    light = np.add.outer(0.5 * np.arange(40.0), np.linspace(10, 90, 81)).astype(np.float32)
     hidden = np.zeros(light.shape, dtype=bool)
     hidden[:, 30:60] = True
     course = np.column_stack([np.arange(81.0), np.full(81, 20.0), np.zeros(81), -np.ones(81)])
