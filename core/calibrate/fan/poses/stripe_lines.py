@@ -22,7 +22,9 @@ from core.model.robust import huber_weights, mad_sd
 CHUNK = 24
 """Neighbouring points judged as one piece: longer than any speckle grain, shorter than any stripe of use."""
 CHUNK_IN_CORRELATIONS = 2.4
-"""So long at most in correlation lengths: points of narrow stripes tell as much in fewer px."""
+"""Correlation lengths in a piece of a short line: points of narrow stripes tell as much in fewer px."""
+SHORTEST_CHUNK = 10
+"""Points that a piece has at least."""
 CHUNKS = 3
 """A line with fewer points than in so many is not used."""
 SEEDS = 48
@@ -86,9 +88,11 @@ def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int
 
 
 def chunk_length(centrelines: Sequence[Centreline]) -> int:
-    """How many points of these centrelines are judged as one piece."""
+    """How many points are judged as one piece: fewer where the centrelines hold no more than a short line."""
+    if sum(map(len, centrelines)) >= CHUNKS * CHUNK:
+        return CHUNK
     correlation = min((line.correlation_px for line in centrelines), default=np.inf)
-    return int(min(CHUNK, np.rint(CHUNK_IN_CORRELATIONS * correlation)))
+    return int(np.clip(np.rint(CHUNK_IN_CORRELATIONS * correlation), SHORTEST_CHUNK, CHUNK))
 
 
 @dataclass(frozen=True, eq=False, slots=True)
