@@ -27,6 +27,13 @@ LONGEST_TURN_S = 0.5
 """Of processor time between two turns of the event loop: drawing 500 new lines takes a tenth of a second."""
 
 
+def opened(t: Technician) -> ConsoleWindow:
+    """The console, from the menu."""
+    t.window.menus.actions["console"].trigger()
+    assert t.window.console.window is not None
+    return t.window.console.window
+
+
 def ready(console: ConsoleWindow) -> bool:
     return console.console is not None and bool(console.console.isEnabled())
 
@@ -43,9 +50,7 @@ def console(technician: Technician, tmp_path: Path, monkeypatch: pytest.MonkeyPa
     pytest.importorskip("qtconsole", reason="of the extra `console`, which is not installed")
     monkeypatch.setenv(DATA, str(tmp_path / "data"))
     technician.model.create(tmp_path / "block", new_project("block"))
-    technician.window.menus.actions["console"].trigger()
-    shown = technician.window.console.window
-    assert shown is not None
+    shown = opened(technician)
     technician.until(lambda: ready(shown), "the console to be ready")
     yield shown
     technician.window.console.end(wait=True)
@@ -122,19 +127,12 @@ def gone(pid: int) -> bool:
     return False
 
 
-def opened(technician: Technician) -> ConsoleWindow:
-    window = technician.window.console.window
-    assert window is not None
-    return window
-
-
 def test_the_process_ends_with_its_window_and_with_the_project(technician: Technician, console: ConsoleWindow) -> None:
     assert console.kernel is not None
     first = console.kernel.pid
     console.closeEvent(QCloseEvent())
     technician.until(lambda: gone(first), "the process to end")
     assert technician.window.console.window is None
-    technician.window.menus.actions["console"].trigger()
     other = opened(technician)
     technician.until(lambda: other.kernel is not None, "the next process")
     assert other.kernel is not None
