@@ -1,0 +1,334 @@
+"""Five tasks done in the real window with the mouse, as a new user would: python -m tests.workbench.five_tasks.
+
+Every action is a click on something that is in sight, or text that cannot be clicked; the program's own waiting is
+timed apart. How long a person takes over the actions is told by the keystroke-level model: 1.35 s to find each, 1.1 s
+to point and 0.2 s to click, 0.28 s a key; a panel that has to be scrolled is one more.
+What the system's own windows for files take, where the tests' answer stands in, is counted as two clicks.
+
+References
+----------
+Card, Moran, Newell, The keystroke-level model for user performance time with interactive systems, Communications of
+the ACM 23 (1980), doi:10.1145/358886.358895.
+"""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, cast
+
+import numpy as np
+from PySide6.QtCore import QPoint, Qt, QTimer
+from PySide6.QtTest import QTest
+from PySide6.QtWidgets import (
+    QApplication,
+    QComboBox,
+    QDialogButtonBox,
+    QLineEdit,
+    QMenu,
+    QScrollArea,
+    QWidget,
+)
+
+from core.files.project.folder import source_folder
+from core.pipeline.project.sample_project import sample_project
+from tests.workbench.running import ROOT
+from tests.workbench.screenshots import PATIENCE_S
+from workbench import first_measurement as first
+from workbench.app import Application, build_window
+from workbench.bench import Bench, make_bench
+from workbench.main_window import MainWindow
+from workbench.settings import AppSettings
+from workbench.views import ask
+
+LEFT = Qt.MouseButton.LeftButton
+FIND_S, POINT_S, CLICK_S, KEY_S = 1.35, 1.1, 0.2, 0.28
+FILE_CLICKS = 2
+SOON_MS = 300
+ONE = "one"
+"""Said by the program to itself."""
+
+
+@dataclass
+class Effort:
+    """What a task took: clicks, turns of the wheel, keys, and the program's own seconds."""
+
+    clicks: int = 0
+    scrolls: int = 0
+    keys: int = 0
+    waited_s: float = 0.0
+
+    @property
+    def hand_s(self) -> float:
+        """Seconds a person takes by the model, without waiting."""
+        return (self.clicks + self.scrolls) * (FIND_S + POINT_S + CLICK_S) + self.keys * KEY_S
+
+
+class Mouse:
+    """Clicks what is in sight of one window, and counts."""
+
+    def __init__(self, app: QApplication, bench: Bench, window: MainWindow) -> None:
+        self.app, self.bench, self.window, self.effort = app, bench, window, Effort()
+
+    def until(self, done: Callable[[], Any], what: str) -> None:
+        """Let the program work."""
+        begun = time.monotonic()
+        while not done():
+            if time.monotonic() - begun > PATIENCE_S:
+                raise TimeoutError(f"waited for {what} on page {self.window.current!r}")
+            self.app.processEvents()
+            time.sleep(0.01)
+        self.effort.waited_s += time.monotonic() - begun
+
+    def idle(self) -> None:
+        """Wait until nothing is measured or read."""
+        self.until(lambda: not (self.bench.measuring.busy or self.bench.quick.busy), "the program to be done")
+
+    def click(self, widget: QWidget, at: QPoint | None = None) -> None:
+        """Click a widget once it can be, after scrolling to it where it is not in sight."""
+        self.until(lambda: widget.isVisible() and widget.isEnabled(), f"{widget.accessibleName()} {widget.toolTip()}")
+        place = widget.rect().center() if at is None else at
+        if not widget.visibleRegion().contains(place):
+            self._scroll_to(widget)
+            self.until(lambda: widget.visibleRegion().contains(place), f"{widget} to be in sight")
+        self.effort.clicks += 1
+        QTest.mouseClick(widget, LEFT, pos=place)
+        self.app.processEvents()
+
+    def menu(self, *titles: str) -> None:
+        """Click through the window's menus: a title, and what is below it."""
+        bar = self.window.menuBar()
+        action = next(one for one in bar.actions() if one.text().replace("&", "") == titles[0])
+        self.click(bar, bar.actionGeometry(action).center())
+        self._below(cast(Any, action.menu()), titles[1:])
+
+    def drop_down(self, button: QWidget, *titles: str) -> None:
+        """Click a button with a menu, and what is in it; the menu holds everything up until then."""
+        menu = next(one for one in button.findChildren(QMenu) if one.actions())
+        QTimer.singleShot(SOON_MS, lambda: self._below(menu, titles))
+        self.click(button)
+
+    def choose(self, box: QComboBox, text: str) -> None:
+        """Click a list that folds out, and an entry."""
+        self.click(box)
+        view = box.view()
+        self.until(view.isVisible, "the list to fold out")
+        index = box.model().index(box.findText(text), box.modelColumn())
+        view.scrollTo(index)
+        self._pause()
+        self.click(view.viewport(), view.visualRect(index).center())
+        self.until(lambda: not view.isVisible(), "the list to be folded")
+
+    def write(self, field: QLineEdit, text: str, *, has_focus: bool = False) -> None:
+        """Click a field and type."""
+        if not has_focus:
+            self.click(field)
+        self.effort.keys += len(text)
+        QTest.keyClicks(field, text)
+
+    def key(self, widget: QWidget, key: Qt.Key) -> None:
+        """One key, where only that does it."""
+        self.effort.keys += 1
+        QTest.keyClick(widget, key)
+        self.app.processEvents()
+
+    def step(self, name: str) -> None:
+        """Go to a step by the rail."""
+        self.click(self.window.rail._buttons[name])
+        self.until(lambda: self.window.current == name, f"the page {name}")
+
+    def _pause(self) -> None:
+        """As long as a list or a dialog takes no click, lest it be the one that opened it."""
+        QTest.qWait(2 * QApplication.doubleClickInterval())
+
+    def _below(self, menu: QMenu, titles: tuple[str, ...]) -> None:
+        self.until(menu.isVisible, "the menu")
+        action = next(one for one in menu.actions() if one.text().replace("&", "") == titles[0])
+        self.click(menu, menu.actionGeometry(action).center())
+        if titles[1:]:
+            self._below(cast(Any, action.menu()), titles[1:])
+
+    def _scroll_to(self, widget: QWidget) -> None:
+        self.effort.scrolls += 1
+        above = widget.parentWidget()
+        while above is not None:
+            if isinstance(above, QScrollArea):
+                above.ensureWidgetVisible(widget)
+            above = above.parentWidget()
+        self.app.processEvents()
+
+
+def first_measurement(m: Mouse) -> None:
+    """From the welcome page to the report, doing what the line at the top says."""
+    bar, told = m.window.instructions, {one.text: one for one in first.ORDER}
+    m.click(m.window.welcome.first)
+    m.until(bar.isVisible, "the instructions")
+    while (now := told.get(bar.words.text())) is not first.FINISHED:
+        if now is None:
+            m.until(lambda: bar.words.text() in told, "the next instruction")
+            continue
+        if m.window.current != now.page:
+            m.click(m.window.next)
+            continue
+        page: Any = m.window.pages[now.page]
+        if now is first.PROJECT:
+            operator = next(one for one in page.findChildren(QLineEdit) if one.accessibleName() == "Operator")
+            m.write(operator, "Ann")
+            m.click(m.window.next)
+        else:
+            m.click(page.card.buttons[now.button])
+        before = now.text
+        m.until(lambda: bar.words.text() != before, f"what comes after {before}")  # noqa: B023  asked at once
+    m.idle()
+    assert "report" in m.window.model.results
+
+
+def next_part(m: Mouse) -> None:
+    """Another part of the same kind: plan, limits and report of the last one, its own pictures, its own number."""
+    assert m.window.model.folder is not None
+    pictures = source_folder(m.window.model.folder, m.window.model.project.sources.scan)
+    assert pictures is not None
+
+    def fill() -> None:
+        dialog: Any = QApplication.activeModalWidget()
+        m.write(dialog.serial, "0815", has_focus=dialog.serial.hasFocus())
+        m.click(dialog.buttons.button(QDialogButtonBox.StandardButton.Ok))
+
+    before = m.window.model.folder
+    QTimer.singleShot(2 * SOON_MS, fill)
+    m.menu("File", "Next part …")
+    m.until(lambda: m.window.model.folder not in (before, None), "the next part's project")
+    m.idle()
+    if m.window.current != "scan":
+        m.step("scan")
+    scan: Any = m.window.pages["scan"]
+    ask.choose_folder = lambda *_: pictures
+    m.effort.clicks += FILE_CLICKS
+    m.click(scan.source.recorded)  # a new part begins with the live source
+    m.click(scan.source.browse)
+    m.idle()
+    m.step("project")
+    m.click(cast(Any, m.window.pages["project"]).whole)
+    m.until(lambda: "report" in m.window.model.results, "the report")
+    m.idle()
+
+
+def why_poor(m: Mouse) -> None:
+    """Which view a calibration fits worst, and where in it."""
+    m.step("camera")
+    page: Any = m.window.pages["camera"]
+    views = page.views
+    worst = max(range(len(views.model.rows)), key=lambda row: views.model.rows[row].value or 0.0)
+    index = views.model.index(worst, 1)
+    views.table.scrollTo(index)
+    m.click(views.table.viewport(), views.table.visualRect(index).center())
+    m.idle()
+    assert page.presenter.current == views.model.rows[worst].name
+
+
+def step_by_clicking(m: Mouse) -> None:
+    """The height of the upper face over the lower one, clicked in 3D."""
+    m.step("inspect")
+    inspect, page = cast(Any, m.window.presenters["inspect"]), cast(Any, m.window.pages["inspect"])
+    m.until(lambda: inspect.scan.view is not None, "the surface")
+    m.idle()
+    surface, view, count = page.surface, inspect.scan.view, len(inspect.features.plan.features)
+    bar = next(
+        one for one in surface.scene.findChildren(QWidget) if hasattr(one, "widgetForAction")
+        and one.widgetForAction(surface.clicks["step"]) is not None
+    )  # fmt: skip
+    m.click(bar.widgetForAction(surface.clicks["step"]))
+    canvas = surface.scene._canvas
+    for face in (1, 2):
+        places = view.points[view.face == face]
+        spots = surface.scene.screen_positions(places)
+        spot = spots[np.argmin(np.linalg.norm(spots - np.median(spots, axis=0), axis=1))]
+        m.click(canvas, QPoint(round(spot[0]), round(spot[1])))
+        m.until(lambda: inspect.clicked.proposal is not None, "a face")
+        m.until(lambda: len(inspect.clicked.proposal.faces) == face and not m.bench.quick.busy, "the face")  # noqa: B023
+    m.key(canvas, Qt.Key.Key_Return)
+    m.until(lambda: len(inspect.features.plan.features) > count, "the feature")
+    m.click(page.features.measure)
+    m.until(lambda: not inspect.features.measuring and inspect.features.shown is not None, "its value")
+
+
+def report_in_chinese(m: Mouse) -> None:
+    """From a finished measurement to its report in Chinese."""
+    m.step("report")
+    page: Any = m.window.pages["report"]
+    m.choose(page.language, "中文")
+    m.click(page.make)
+    m.until(lambda: "report" in m.window.model.results and not m.bench.measuring.busy, "the report")
+    m.idle()
+    assert m.window.model.project.report.language == "zh_CN"
+
+
+TASKS: tuple[tuple[str, bool, Callable[[Mouse], None]], ...] = (
+    ("First measurement", False, first_measurement),
+    ("Next part with plan, limits and report of the last", True, next_part),
+    ("Which view makes a calibration worst", True, why_poor),
+    ("A step by clicking two faces", True, step_by_clicking),
+    ("Report in Chinese", True, report_in_chinese),
+)
+"""Title, whether the finished sample is open when it begins, and what is done."""
+
+
+def main(given: list[str]) -> int:
+    """Do the tasks (those named), each in a program of its own, and print the manual's table.
+
+    What it starts itself names one task, and the folders it is done in and on.
+    """
+    tasks = {do.__name__: (title, on_sample, do) for title, on_sample, do in TASKS}
+    if given[:1] == [ONE]:
+        _, name, place, on = given
+        print(_row(tasks[name], Path(place), Path(on)), flush=True)
+        return 0
+    print("| task | clicks | scrolls | keys | hand, s | program, s |\n|---|---|---|---|---|---|", flush=True)
+    with tempfile.TemporaryDirectory() as home:
+        sample = sample_project(Path(home) / "Sample")
+        for name in given or tasks:
+            here = Path(home) / name
+            here.mkdir()
+            subprocess.run(
+                [sys.executable, "-m", "tests.workbench.five_tasks", ONE, name, here, sample], cwd=ROOT, check=True
+            )
+    return 0
+
+
+def _row(task: tuple[str, bool, Callable[[Mouse], None]], home: Path, sample: Path) -> str:
+    title, on_sample, do = task
+    app = Application(sys.argv[:1])
+    bench, window = _window(app, home)
+    mouse = Mouse(app, bench, window)
+    if on_sample:
+        window.projects.open_project(Path(shutil.copytree(sample, home / "Sample")))
+        mouse.until(lambda: window.model.is_open, "the project")
+        mouse.idle()
+    mouse.effort = Effort()
+    try:
+        do(mouse)
+    finally:
+        bench.close()
+        window.leave()
+        bench.wait_until_closed()
+    one = mouse.effort
+    return f"| {title} | {one.clicks} | {one.scrolls} | {one.keys} | {one.hand_s:.0f} | {one.waited_s:.0f} |"
+
+
+def _window(app: QApplication, home: Path) -> tuple[Bench, MainWindow]:
+    bench = make_bench(AppSettings(home / "settings.ini"))
+    bench.settings.projects_folder = home / "projects"
+    window = build_window(app, bench, "light")
+    window.resize(1280, 800)
+    window.show()
+    return bench, window
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))
