@@ -152,6 +152,8 @@ def _fading(arc: Array, height: Array, square: Array, filter_px: float) -> int:
     light = new_row(last - first)
     for k in range(first, last):
         light[k - first] = height[k] * square[k]
+    if height[0] * square[0] >= _FADED * median_of(light, 0, last - first):  # mostly: a fall only asks for less
+        return 0
     middle = first_not_below(arc, _MIDDLE * reach)
     usual, fall = _level_and_fall(light, 0, middle - first, last - first)
     faded = 0
