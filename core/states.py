@@ -16,6 +16,11 @@ CHECKS = {"passed": label("in order"), "doubtful": label("in doubt"), "failed": 
 CONDITIONS = {"ok": label("in order"), "failed": label("not in order"), "unknown": label("not known")}
 """Of what a scan rests on, looked at before it begins."""
 
+SET_STATES = {
+    "todo": label("to do"), "running": label("being measured"), "done": label("done"), "failed": label("not measured"),
+}  # fmt: skip
+"""Of each of many recording sets."""
+
 DECISIONS = {
     "conforming": label("conforming"),
     "not conforming": label("not conforming"),

@@ -32,6 +32,7 @@ from workbench.pages.project.actions import ProjectActions
 from workbench.pages.project.audit import ask_reason
 from workbench.pages.project.console import ProjectConsole
 from workbench.pages.project.double_click import choose_double_click
+from workbench.pages.project.many_sets import ManySets
 from workbench.pages.project.operator import OperatorMode
 from workbench.pages.project.operator_page import OperatorPage
 from workbench.pages.project.presenter import ProjectPresenter
@@ -104,7 +105,7 @@ class MainWindow(QMainWindow):
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
         self.manual = ManualWindow(self)
-        self.rig_plans = RigPlans(bench, self)
+        self.rig_plans, self.many_sets = RigPlans(bench, self), ManySets(bench, self)
         self.console, self._no_console = ProjectConsole(self.model, self), console_missing()
         self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
         self.operator = OperatorPage(self.operator_mode, self.model)
@@ -300,6 +301,7 @@ class MainWindow(QMainWindow):
             "quick card": self._print_quick_card,
             "console": self.console.open,
             "plan rig": self.rig_plans.choose,
+            "many sets": self.many_sets.open,
             "script": projects.copies.save_script,
             "operator mode": self.enter_operator_mode,
             "double click": partial(choose_double_click, self, self.bench.notices),

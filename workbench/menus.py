@@ -217,6 +217,7 @@ class Menus(QObject):
         tools.setToolTipsVisible(True)
         self._add(tools, "console", tr("Python &console"))
         self._add(tools, "plan rig", tr("&Plan a rig …"))
+        self._add(tools, "many sets", tr("&Measure many sets …"))
         self._add(tools, "script", tr("Save what was done as a &script …"))
 
         help_menu = bar.addMenu(tr("&Help"))

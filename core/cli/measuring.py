@@ -26,11 +26,12 @@ from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import RigHistory, history_file
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
-from core.messages import Message, label, visible
-from core.pipeline.batch import FAULT, SetResult, run_batch
+from core.messages import Message, visible
+from core.pipeline.batch import FAULT, run_batch
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.executors import executor_of
 from core.pipeline.run import RunResult, run
+from core.pipeline.set_result import SET_COLUMNS, SetResult, set_cells
 from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step
@@ -42,11 +43,10 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
 from core.progress import Progress
-from core.report.wording import grouped, with_uncertainty
 from core.scan.method import Method
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
-from core.states import DECISIONS
+from core.states import SET_STATES
 from core.study.artefact_check import ArtefactCheck
 
 
@@ -263,11 +263,6 @@ def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, A
     return Shown(rows, values, notes, {name: files[name] for name in names})
 
 
-_SET_COLUMNS = (
-    label("set"), label("thickness"), label("U"), label("verdict"), label("points"), label("frames"), label("time"),
-)  # fmt: skip
-
-
 def run_sets(
     sets: Sequence[Path], out: Path, executor: str, workers: int | None, chosen: Options, progress: Progress
 ) -> tuple[SetResult, ...]:
@@ -296,7 +291,7 @@ def show_sets(results: Sequence[SetResult], *, as_json: bool) -> None:
         return
     console = output.console()
     table = Table(box=None, padding=(0, 2, 0, 0))
-    for name in _SET_COLUMNS:
+    for name in SET_COLUMNS:
         table.add_column(told(name), justify="left" if name in ("set", "verdict") else "right")
     for result in results:
         table.add_row(*map(visible, _set_row(result)))
@@ -316,19 +311,6 @@ def _set_values(result: SetResult) -> dict[str, Any]:
 
 
 def _set_row(result: SetResult) -> tuple[str, ...]:
-    seconds = tr("{seconds:.1f} s", seconds=result.seconds)
-    if result.error:
-        return result.folder.name, "", "", tr("not measured"), "", "", seconds
-    thickness = U = ""
-    if result.thickness_mm is not None and result.U_mm is not None:
-        thickness, U = (f"{text} mm" for text in with_uncertainty(result.thickness_mm, result.U_mm, output.words()))
-    frames = tr("{used} of {all}", used=result.frames_used, all=result.frames)
-    return (
-        result.folder.name,
-        thickness,
-        U,
-        tr(DECISIONS[result.verdict or ""]),
-        grouped(result.points),
-        frames,
-        seconds,
-    )
+    thickness, U, verdict, *rest = set_cells(result, output.words())
+    lengths = (f"{text} mm" if text else "" for text in (thickness, U))
+    return result.folder.name, *lengths, verdict or tr(SET_STATES["failed"]), *rest

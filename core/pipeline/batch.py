@@ -4,24 +4,26 @@ from __future__ import annotations
 
 import contextlib
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
-from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import Cancelled, InputError
 from core.files.atomic import cannot_write, make_folder
-from core.files.reading import refused_path, resolved
+from core.files.reading import cannot_read, refused_path, resolved
 from core.files.recording.options import Options
+from core.files.recording.recording_set import RIG
 from core.messages import Message, label
+from core.pipeline.executors import THREADS, executor_of
 from core.pipeline.run import RunResult, run
+from core.pipeline.set_result import SetResult
 from core.progress import Progress, silent
 
 STOP = ".stop"
 """This file in the batch's folder stops all sets that are being measured, on whatever machine that sees it."""
 
 STEP = label("measuring sets")
-_LOOK_EVERY_S = 0.5
+_LOOK_EVERY_S = 0.2
 """How often in s it is looked whether a set is done or the batch is to stop."""
 _LET_END_S = 30.0
 """How long in s the sets under way may take to stop, once they are told to."""
@@ -31,38 +33,21 @@ _LONGEST_REASON = 200
 """Characters of another library's words."""
 
 
-@dataclass(frozen=True, slots=True)
-class SetResult:
-    """What became of one recording set.
+Watch = Callable[[tuple[int, SetResult | None]], None]
+"""Told the place of a set, and what became of it; None when it begins."""
 
-    Parameters
-    ----------
-    folder, out
-        The set, and where its results are.
-    thickness_mm, U_mm, verdict
-        None and "" where no thickness was measured or no verdict asked for.
-    points, frames, frames_used
-        Of the scan.
-    seconds
-        Time taken.
-    error
-        Why it could not be measured; None if it could.
-    """
 
-    folder: Path
-    out: Path
-    thickness_mm: float | None = None
-    U_mm: float | None = None
-    verdict: str = ""
-    points: int = 0
-    frames: int = 0
-    frames_used: int = 0
-    seconds: float = 0.0
-    error: Message | None = None
+def unwatched(told: tuple[int, SetResult | None]) -> None:
+    """Tell nobody: the default."""
 
 
 def run_batch(
-    sets: Sequence[Path], out: Path, executor: Executor, options: Options | None = None, progress: Progress = silent
+    sets: Sequence[Path],
+    out: Path,
+    executor: Executor,
+    options: Options | None = None,
+    progress: Progress = silent,
+    watch: Watch = unwatched,
 ) -> tuple[SetResult, ...]:
     """Measure recording sets side by side; one that cannot be measured does not keep the others from it.
 
@@ -78,6 +63,8 @@ def run_batch(
         Method and cuts, for all.
     progress
         Called with how many are done; may raise Cancelled: sets being measured then stop, what is finished stays.
+    watch
+        Told of each set when it begins, as far as the executor knows, and when it is done.
 
     Returns
     -------
@@ -95,11 +82,44 @@ def run_batch(
     chosen = options or Options()
     futures = [executor.submit(measure_set, folder, place, chosen, stop) for folder, place in places]
     try:
-        _watch(futures, progress)
+        return _watched(futures, places, progress, watch)
     except BaseException:
         _stop(futures, stop)
         raise
-    return tuple(_result(future, *place) for future, place in zip(futures, places, strict=True))
+
+
+def measure_sets(
+    sets: Sequence[Path],
+    out: Path,
+    options: Options | None = None,
+    progress: Progress = silent,
+    watch: Watch = unwatched,
+) -> tuple[SetResult, ...]:
+    """Measure sets as `run_batch` does, in threads of this process: whatever ends it ends them, too."""
+    with executor_of(THREADS) as threads:
+        return run_batch(sets, out, threads, options, progress, watch)
+
+
+def sets_in(folder: Path) -> tuple[Path, ...]:
+    """The folder itself if it is a recording set, else those of its folders that are, by name.
+
+    Raises
+    ------
+    InputError
+        If none is.
+    """
+    try:
+        inside = sorted(path.parent for path in folder.glob(f"*/{RIG}"))
+    except OSError as error:
+        raise cannot_read(folder, error) from error
+    found = (folder,) if (folder / RIG).is_file() else tuple(inside)
+    if not found:
+        raise InputError(
+            Message("set.none_in_folder", "neither the folder nor one in it is a recording set"),
+            where=folder,
+            todo=Message("advice.set_has_rig", "choose one with a rig.toml in it"),
+        )
+    return found
 
 
 def measure_set(folder: Path, out: Path, options: Options, stop: Path) -> SetResult:
@@ -159,13 +179,24 @@ def _places(sets: Sequence[Path], out: Path) -> list[tuple[Path, Path]]:
     return [(folder, out / folder.name) for folder in whole]
 
 
-def _watch(futures: Sequence[Future[SetResult]], progress: Progress) -> None:
-    """Wait for all, telling how many are done."""
-    waiting = set(futures)
+def _watched(
+    futures: Sequence[Future[SetResult]], places: Sequence[tuple[Path, Path]], progress: Progress, watch: Watch
+) -> tuple[SetResult, ...]:
+    """Wait for all, telling how many are done and which."""
+    waiting, begun, results = dict(enumerate(futures)), set[int](), dict[int, SetResult]()
     while waiting:
-        progress(STEP, len(futures) - len(waiting), len(futures))
-        waiting = wait(waiting, _LOOK_EVERY_S, FIRST_COMPLETED).not_done
+        progress(STEP, len(results), len(futures))
+        wait(waiting.values(), _LOOK_EVERY_S, FIRST_COMPLETED)
+        for number, future in list(waiting.items()):
+            if future.done():
+                del waiting[number]
+                results[number] = _result(future, *places[number])
+                watch((number, results[number]))
+            elif future.running() and number not in begun:
+                begun.add(number)
+                watch((number, None))
     progress(STEP, len(futures), len(futures))
+    return tuple(results[number] for number in range(len(futures)))
 
 
 def _stop(futures: Sequence[Future[SetResult]], stop: Path) -> None:

@@ -17,7 +17,7 @@ from core.files.pictures import read_picture, write_picture
 from core.files.recording.options import Options
 from core.image.stripes.stripe import StripeSettings
 from core.pipeline import batch
-from core.pipeline.batch import STEP, STOP, run_batch
+from core.pipeline.batch import STEP, STOP, run_batch, sets_in
 from core.pipeline.executors import executor_of
 from core.pipeline.run import run
 from core.scan.method import Method
@@ -97,6 +97,36 @@ def test_a_batch_that_is_cancelled_stops_what_is_under_way_and_begins_nothing_mo
         run_batch(sets(tmp_path, "endless", "next"), tmp_path / "out", executor, progress=cancel_soon)
     assert not (tmp_path / "out" / "next").exists()
     assert not (tmp_path / "out" / STOP).exists()
+
+
+def test_every_set_is_told_of_when_it_is_done(quick, tmp_path):
+    told = []
+    with ThreadPoolExecutor(1) as executor:
+        results = run_batch(sets(tmp_path, "a", "bad"), tmp_path / "out", executor, watch=told.append)
+    assert dict(told) == dict(enumerate(results))
+
+
+def test_a_set_is_told_of_when_it_begins(quick, tmp_path):
+    told = []
+
+    def cancel_once_begun(step, done, total):
+        if told:
+            raise Cancelled
+
+    with ThreadPoolExecutor(1) as executor, pytest.raises(Cancelled):
+        some = sets(tmp_path, "endless", "next")
+        run_batch(some, tmp_path / "out", executor, progress=cancel_once_begun, watch=told.append)
+    assert told == [(0, None)]
+
+
+def test_the_sets_of_a_folder_are_itself_or_those_in_it(tmp_path):
+    some = sets(tmp_path, "b", "a", "no set")
+    for folder in some[:2]:
+        (folder / "rig.toml").touch()
+    assert sets_in(tmp_path) == (tmp_path / "a", tmp_path / "b")
+    assert sets_in(some[0]) == (some[0],)
+    with pytest.raises(InputError, match=r"no set: neither .* rig.toml"):
+        sets_in(some[2])
 
 
 def test_two_sets_of_one_name_are_refused(quick, tmp_path):

@@ -95,7 +95,7 @@ class HandLane(QObject):
             return
         task, job, args, offers = self.waiting[0]
         self.ran.append(job)
-        offered = {"progress": lambda step, done, total: None}
+        offered = {"progress": lambda step, done, total: None, "watch": task.reported.emit}
         try:
             keywords = {name: offered[what] for name, what in offers.items() if what in offered}
             answer = self.answers[job](*args) if job in self.answers else resolve(job)(*args, **keywords)

@@ -40,7 +40,7 @@ class _Texts(QAbstractTableModel):
             self.beginRemoveRows(_NONE, now, before - 1)
         self.rows, self._tips = tuple(rows), tips
         columns = range(len(self.titles))
-        self._right = tuple(bool(rows) and all(_is_number(row[i]) for row in rows if row[i]) for i in columns)
+        self._right = tuple(_are_numbers([row[i] for row in rows if row[i]]) for i in columns)
         if now > before:
             self.endInsertRows()
         elif now < before:
@@ -171,6 +171,10 @@ class DataTable(QWidget):
 
     def _activated(self, index: _Index) -> None:
         self.row_activated.emit(index.row())
+
+
+def _are_numbers(texts: Sequence[str]) -> bool:
+    return bool(texts) and all(map(_is_number, texts))
 
 
 def _is_number(text: str) -> bool:

@@ -143,18 +143,19 @@ def table(qtbot):
     return table
 
 
-def test_numbers_stand_right_and_words_left(table):
-    def side(column):
-        return (
-            Qt.AlignmentFlag(table.table.model().index(0, column).data(Qt.ItemDataRole.TextAlignmentRole))
-            & Qt.AlignmentFlag.AlignHorizontal_Mask
-        )
+def sides(table, columns):
+    texts = (table.table.model().index(0, column).data(Qt.ItemDataRole.TextAlignmentRole) for column in range(columns))
+    return [Qt.AlignmentFlag(one) & Qt.AlignmentFlag.AlignHorizontal_Mask for one in texts]
 
-    assert [side(column) for column in range(3)] == [
-        Qt.AlignmentFlag.AlignLeft,
-        Qt.AlignmentFlag.AlignRight,
-        Qt.AlignmentFlag.AlignLeft,
-    ]
+
+def test_numbers_stand_right_and_words_left(table):
+    left, right = Qt.AlignmentFlag.AlignLeft, Qt.AlignmentFlag.AlignRight
+    assert sides(table, 3) == [left, right, left]
+
+
+def test_a_column_without_any_text_stands_left_as_it_does_before_there_are_rows(table):
+    table.set_rows([["first", "50.01", ""], ["second", "", ""]])
+    assert sides(table, 3)[2] == Qt.AlignmentFlag.AlignLeft
 
 
 def test_ctrl_c_copies_the_chosen_rows_with_tabs_and_headers(qtbot, table):

@@ -1,0 +1,57 @@
+"""What became of one recording set of a batch, and how a table tells it: the same for command line and window."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from core.messages import Message, label
+from core.report.wording import Words, grouped, with_uncertainty
+from core.states import DECISIONS
+
+SET_COLUMNS = (
+    label("set"), label("thickness"), label("U"), label("verdict"), label("points"), label("frames"), label("time"),
+)  # fmt: skip
+"""Titles: the set's name, and the cells of `set_cells`."""
+
+
+@dataclass(frozen=True, slots=True)
+class SetResult:
+    """What became of one recording set.
+
+    Parameters
+    ----------
+    folder, out
+        The set, and where its results are.
+    thickness_mm, U_mm, verdict
+        None and "" where no thickness was measured or no verdict asked for.
+    points, frames, frames_used
+        Of the scan.
+    seconds
+        Time taken.
+    error
+        Why it could not be measured; None if it could.
+    """
+
+    folder: Path
+    out: Path
+    thickness_mm: float | None = None
+    U_mm: float | None = None
+    verdict: str = ""
+    points: int = 0
+    frames: int = 0
+    frames_used: int = 0
+    seconds: float = 0.0
+    error: Message | None = None
+
+
+def set_cells(result: SetResult, words: Words) -> tuple[str, str, str, str, str, str]:
+    """Thickness and U in mm without their unit, verdict, points, frames used, time; "" for what there is not."""
+    seconds = words("{seconds:.1f} s", seconds=result.seconds)
+    if result.error:
+        return "", "", "", "", "", seconds
+    thickness = U = ""
+    if result.thickness_mm is not None and result.U_mm is not None:
+        thickness, U = with_uncertainty(result.thickness_mm, result.U_mm, words)
+    frames = words("{used} of {all}", used=result.frames_used, all=result.frames)
+    return thickness, U, words(DECISIONS[result.verdict]), grouped(result.points), frames, seconds

@@ -1,0 +1,262 @@
+"""Tools, Measure many sets: recording sets measured in one go, each into a folder of its name."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from PySide6.QtCore import QObject, Qt, QUrl
+from PySide6.QtGui import QDesktopServices
+from PySide6.QtWidgets import QLabel, QLineEdit, QProgressBar, QPushButton, QWidget
+
+from core.files.results.export_list import EXPORTS
+from core.messages import capital
+from core.pipeline.set_result import SET_COLUMNS, SetResult, set_cells
+from core.states import SET_STATES
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.pages.words import wording
+from workbench.theme import icon
+from workbench.views import ask
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen
+from workbench.views.lists.data_table import DataTable
+from workbench.work import jobs
+from workbench.work.tasks import Task
+
+SIZE = (1000, 560)
+"""Width and height of the window at first, in pixels."""
+_UNITS = {"thickness": "mm", "U": "mm"}
+
+
+@dataclass(slots=True)
+class ChosenSet:
+    """A recording set of the table, and what became of it; `result` is None until it has been measured."""
+
+    folder: Path
+    running: bool = False
+    result: SetResult | None = None
+
+    @property
+    def state(self) -> str:
+        """A key of `SET_STATES`."""
+        if self.result is None:
+            return "running" if self.running else "todo"
+        return "failed" if self.result.error else "done"
+
+    @property
+    def reason(self) -> str:
+        """Why it could not be measured."""
+        return text_of(self.result.error) if self.result is not None and self.result.error else ""
+
+
+class ManySets(QObject):
+    """Opens the window when it is first wanted; it is kept: what it measures goes on while it is closed."""
+
+    def __init__(self, bench: Bench, window: QWidget) -> None:
+        super().__init__(window)
+        self._bench, self._window = bench, window
+        self.shown: ManySetsWindow | None = None
+
+    def open(self) -> None:
+        """Show the window, with what was chosen and measured in it before."""
+        if self.shown is None:
+            self.shown = ManySetsWindow(self._bench, self._window)
+        self.shown.show()
+        self.shown.raise_()
+        self.shown.activateWindow()
+
+
+class ManySetsWindow(QWidget):
+    """Recording sets in a table, where their results go, Measure and Stop, and one bar over all."""
+
+    def __init__(self, bench: Bench, parent: QWidget) -> None:
+        super().__init__(parent, Qt.WindowType.Window)
+        self.setWindowTitle(tr("Measure many sets"))
+        resize_on_screen(self, *SIZE)
+        self._bench = bench
+        self._sets: list[ChosenSet] = []
+        self._measured: list[ChosenSet] = []
+        """Those of the batch that runs, or ran last, in its order."""
+        self._task: Task | None = None
+        self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add sets …"))
+        self.add.setToolTip(tr("Choose a recording set, or a folder with recording sets in it"))
+        self.remove = QPushButton(icon("mdi6.playlist-remove"), tr("Remove"))
+        self.out, self.browse = QLineEdit(), QPushButton(tr("Browse …"))
+        self.out.setPlaceholderText(tr("Folder for the results: each set gets a folder of its name in it"))
+        self.out.setAccessibleName(tr("Results folder"))
+        self.table, self.reason, self.bar, self.counted = DataTable(), muted(), QProgressBar(), QLabel()
+        titles = [(capital(tr(name)), _UNITS.get(name, "")) for name in SET_COLUMNS]
+        self.table.set_headers([titles[0], (tr("State"), ""), *titles[1:], (tr("Reason"), "")])
+        self.bar.setAccessibleName(tr("Sets measured"))
+        self.bar.setTextVisible(False)
+        self.counted.setObjectName("muted")
+        self.measure = QPushButton(icon("mdi6.play"), tr("Measure"))
+        self.stop = QPushButton(icon("mdi6.stop"), tr("Stop"))
+        self.report = QPushButton(icon("mdi6.file-document-outline"), tr("Open report"))
+        self.folder = QPushButton(icon("mdi6.folder-open-outline"), tr("Open folder"))
+        self._arrange()
+        self._connect()
+        self._bar_to(0, 0)
+        self._show()
+
+    def add_folder(self, folder: Path) -> None:
+        """Add a recording set, or all those in a folder."""
+        self._bench.run_quick(
+            self, jobs.SETS_IN, folder, label=tr("Looking for recording sets"), on_done=self._add, offers={}
+        )
+
+    def run(self) -> None:
+        """Measure what is not yet measured; one that fails does not keep the others from it."""
+        self._measured = [one for one in self._sets if one.state != "done"]
+        for one in self._measured:
+            one.result = None
+        self._bar_to(0, len(self._measured))
+        self._task = self._bench.run_long(
+            self,
+            jobs.MEASURE_SETS,
+            [one.folder for one in self._measured],
+            self._out(),
+            label=tr("Measuring sets"),
+            on_done=self._finished,
+            on_failed=lambda _: self._ended(),
+            on_cancelled=self._ended,
+            offers={"progress": "progress", "watch": "watch"},
+        )
+        self._task.progressed.connect(lambda _, done, total: self._bar_to(done, total))
+        self._task.reported.connect(lambda told: self._told(*told))
+        self._show()
+
+    def _arrange(self) -> None:
+        margins = (8, 8, 8, 8)
+        choosing = in_row(self.add, self.remove, (self.out, 1), self.browse)
+        doing = in_row(self.measure, self.stop, (self.bar, 1), self.counted, STRETCH, self.report, self.folder)
+        in_column(choosing, (self.table, 1), self.reason, doing, on=self, margins=margins)
+
+    def _connect(self) -> None:
+        self.add.clicked.connect(self._choose_sets)
+        self.remove.clicked.connect(self._remove)
+        self.browse.clicked.connect(self._choose_out)
+        self.out.textChanged.connect(self._out_changed)
+        self.table.current_row_changed.connect(lambda _: self._show_chosen())
+        self.table.row_activated.connect(lambda _: self.report.click())
+        self.measure.clicked.connect(self.run)
+        self.stop.clicked.connect(self._stop)
+        self.report.clicked.connect(self._open_report)
+        self.folder.clicked.connect(self._open_folder)
+
+    def _out(self) -> Path:
+        return Path(self.out.text().strip()).expanduser()
+
+    def _choose_sets(self) -> None:
+        folder = ask.choose_folder(self, tr("Recording set, or folder of recording sets"), self._start())
+        if folder is not None:
+            self.add_folder(folder)
+
+    def _choose_out(self) -> None:
+        folder = ask.choose_folder(self, tr("Folder for the results"), self._start())
+        if folder is not None:
+            self.out.setText(str(folder))
+
+    def _start(self) -> Path:
+        return self._sets[-1].folder.parent if self._sets else self._bench.settings.projects_folder
+
+    def _add(self, folders: Sequence[Path]) -> None:
+        there = {one.folder for one in self._sets}
+        self._sets += [ChosenSet(folder) for folder in folders if folder not in there]
+        self._show()
+
+    def _remove(self) -> None:
+        del self._sets[self.table.current_row()]
+        self._show()
+
+    def _out_changed(self) -> None:
+        """In another folder there are no results yet."""
+        for one in self._sets:
+            one.result = None
+        self._show()
+
+    def _stop(self) -> None:
+        if self._task is not None:
+            self._task.cancel()
+            self._show()
+
+    def _told(self, number: int, result: SetResult | None) -> None:
+        one = self._measured[number]
+        one.running, one.result = result is None, result
+        self._show()
+
+    def _finished(self, results: Sequence[SetResult]) -> None:
+        for one, result in zip(self._measured, results, strict=True):
+            one.result = result
+        self._bar_to(len(results), len(results))
+        self._ended()
+
+    def _ended(self) -> None:
+        for one in self._measured:
+            one.running = False
+        self._task = None
+        self._show()
+
+    def _bar_to(self, done: int, total: int) -> None:
+        self.bar.setRange(0, max(total, 1))
+        self.bar.setValue(done)
+        self.counted.setText(tr("{done} of {total} sets", done=done, total=total) if total else "")
+
+    def _show(self) -> None:
+        self.table.set_rows([_row(one) for one in self._sets], [one.reason or str(one.folder) for one in self._sets])
+        running = tr("The sets are being measured.") if self._task is not None else ""
+        enable(self.add, running, tr("Choose a recording set, or a folder with recording sets in it"))
+        enable(self.browse, running, tr("Choose the folder for the results"))
+        self.out.setReadOnly(bool(running))
+        enable(self.measure, running or self._not_measurable(), tr("Measure the sets that are not done"))
+        enable(self.stop, self._not_stoppable(), tr("Stop; what is done stays"))
+        self._show_chosen()
+
+    def _not_measurable(self) -> str:
+        if not self._sets:
+            return tr("Add recording sets first.")
+        if not self.out.text().strip():
+            return tr("Choose the folder for the results first.")
+        return "" if any(one.state != "done" for one in self._sets) else tr("All sets are measured.")
+
+    def _not_stoppable(self) -> str:
+        if self._task is None:
+            return tr("Nothing is being measured.")
+        return tr("Stopping …") if self._task.cancelling else ""
+
+    def _show_chosen(self) -> None:
+        chosen = self._chosen()
+        self.reason.setText(chosen.reason if chosen is not None else "")
+        none = "" if chosen is not None else tr("Choose a set in the table first.")
+        running = tr("The sets are being measured.") if self._task is not None else ""
+        enable(self.remove, running or none, tr("Take the chosen set out of the table; its files stay"))
+        result = chosen.result if chosen is not None else None
+        missing = none or ("" if result is not None else tr("It is not measured yet."))
+        refused = tr("It could not be measured.") if result is not None and result.error else ""
+        enable(self.report, missing or refused, tr("Open the report of the chosen set"))
+        no_folder = refused if result is not None and not result.out.is_dir() else ""
+        enable(self.folder, missing or no_folder, tr("Open the folder with the results of the chosen set"))
+
+    def _chosen(self) -> ChosenSet | None:
+        row = self.table.current_row()
+        return self._sets[row] if 0 <= row < len(self._sets) else None
+
+    def _open_report(self) -> None:
+        chosen = self._chosen()
+        if chosen is not None and chosen.result is not None:
+            path = chosen.result.out / EXPORTS["pdf"].file
+            if not QDesktopServices.openUrl(QUrl.fromLocalFile(str(path))):
+                self._bench.notices.warning(tr("Nothing here opens the report: {path}", path=path))
+
+    def _open_folder(self) -> None:
+        chosen = self._chosen()
+        if chosen is not None and chosen.result is not None:
+            folder = chosen.result.out
+            if not QDesktopServices.openUrl(QUrl.fromLocalFile(str(folder))):
+                self._bench.notices.warning(tr("Nothing here opens folders: {folder}", folder=folder))
+
+
+def _row(one: ChosenSet) -> tuple[str, ...]:
+    cells = ("",) * (len(SET_COLUMNS) - 1) if one.result is None else set_cells(one.result, wording())
+    return one.folder.name, tr(SET_STATES[one.state]), *cells, one.reason
