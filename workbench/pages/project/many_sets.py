@@ -86,8 +86,8 @@ class ManySetsWindow(QWidget):
         self.out.setPlaceholderText(tr("Folder for the results: each set gets a folder of its name in it"))
         self.out.setAccessibleName(tr("Results folder"))
         self.table, self.reason, self.bar, self.counted = DataTable(), muted(), QProgressBar(), QLabel()
-        titles = [(capital(tr(name)), _UNITS.get(name, "")) for name in SET_COLUMNS]
-        self.table.set_headers([titles[0], (tr("State"), ""), *titles[1:], (tr("Reason"), "")])
+        titles = [(capital(tr(name)), _UNITS.get(name, "")) for name in SET_COLUMNS[1:]]
+        self.table.set_headers([(tr("Recording set"), ""), (tr("State"), ""), *titles, (tr("Reason"), "")])
         self.bar.setAccessibleName(tr("Sets measured"))
         self.bar.setTextVisible(False)
         self.counted.setObjectName("muted")

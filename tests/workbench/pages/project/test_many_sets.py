@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any, cast
 
 import pytest
+from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QMainWindow
 
@@ -94,7 +95,12 @@ def test_sets_of_a_folder_are_measured_and_one_that_fails_costs_the_others_nothi
     assert sorted(number for number, result in told if result is not None) == [0, 1]
     assert shown.bar.value() == shown.bar.maximum() == 2
     opened: list[str] = []
-    monkeypatch.setattr(QDesktopServices, "openUrl", lambda url: opened.append(url.toLocalFile()) or True)
+
+    def open_url(url: QUrl) -> bool:
+        opened.append(url.toLocalFile())
+        return True
+
+    monkeypatch.setattr(QDesktopServices, "openUrl", open_url)
     shown.table.set_current_row(1)
     shown.report.click()
     shown.folder.click()
