@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import json
 from collections.abc import Iterable, Mapping
+from datetime import date
 from typing import Any
 
 
 def toml_text(tables: Mapping[str, Any]) -> str:
     """The text of a TOML file: single values first, then tables, then lists of tables.
 
-    What is inside a table stands on one line each. Values are strings, numbers, truth values, and lists and mappings of
-    these; TypeError for others.
+    What is inside a table stands on one line each. Values are strings, numbers, truth values, days, and lists and
+    mappings of these; TypeError for others.
     """
     single = [(key, value) for key, value in tables.items() if not _is_table(value) and not _are_tables(value)]
     blocks = [_lines(single)] if single else []
@@ -40,6 +41,8 @@ def _value(value: Any) -> str:
         return f"{{ {', '.join(_lines(value.items()))} }}" if value else "{}"
     if isinstance(value, list | tuple):
         return "[" + ", ".join(_value(item) for item in value) + "]"
+    if isinstance(value, date):
+        return value.isoformat()
     return json.dumps(value, ensure_ascii=False)
 
 

@@ -14,6 +14,7 @@ from core.files.recording.rig import Rig, default_rig
 from core.files.tables import Finite, Time
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.report.template import Paper
+from core.study.artefact_check import Artefact
 from core.translations import languages
 
 # What project.json may hold in a field is checked as it is annotated here; `core.files.complaints` tells the rest.
@@ -120,7 +121,8 @@ class Project:
     """Everything the user decides. Two projects are equal if every field is, and then have one hash.
 
     `rejected`: ids of calibrations that were found and are not wanted. `inspection`: the features measured beside the
-    thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones.
+    thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones. `artefacts`: those
+    that its rig is checked by, beside the user's own.
     """
 
     info: ProjectInfo = field(default_factory=ProjectInfo)
@@ -133,6 +135,7 @@ class Project:
     report: ReportChoices = field(default_factory=ReportChoices)
     inspection: InspectionPlan = field(default_factory=InspectionPlan)
     studies: tuple[KeptStudy, ...] = ()
+    artefacts: tuple[Artefact, ...] = ()
 
     def printed_in(self, language: str) -> Project:
         """The same, its report in this language unless it states one."""

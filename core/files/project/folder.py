@@ -37,6 +37,7 @@ from core.files.project.keys import relocated
 from core.files.reading import resolved
 from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import read_rig
+from core.files.results.artefact_register import register_in
 from core.messages import Message
 
 PROJECT = "project.json"
@@ -281,11 +282,12 @@ def project_from_set(folder: Path, name: str) -> Project:
     Raises
     ------
     InputError
-        If rig.toml is missing or wrong.
+        If rig.toml is missing, or it or artefacts.toml is wrong.
     """
     rig = read_rig(folder / "rig.toml")
     stated = replace(rig, unstated=frozenset())  # the window shows the paper's where rig.toml says nothing
-    return Project(ProjectInfo(name=name, part=resolved(folder).name), stated, sources_of_set(folder))
+    info, artefacts = ProjectInfo(name=name, part=resolved(folder).name), register_in(folder)
+    return Project(info, stated, sources_of_set(folder), artefacts=tuple(artefacts.values()))
 
 
 def _file_of(path: Path) -> Path:

@@ -32,6 +32,7 @@ from core.files.project.data import (
 from core.files.reading import read_json
 from core.files.recording.options import Options
 from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
+from core.files.results.artefact_register import ArtefactTable
 from core.files.tables import TIME_WORDS, Time
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
@@ -90,10 +91,11 @@ class ProjectTables(Table):
     report: ReportChoices = ReportChoices()
     inspection: PlanTables = PlanTables()
     studies: tuple[KeptStudy, ...] = ()
+    artefacts: tuple[ArtefactTable, ...] = ()
     results: dict[str, Done] = Field(default_factory=dict)
 
 
-SCHEMA = 6
+SCHEMA = 7
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -102,6 +104,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     3: lambda tables: tables,  # the plan of the inspection, which may be empty
     4: lambda tables: tables,  # studies, which may be none
     5: lambda tables: tables,  # the folder of an interim check, which need not be there
+    6: lambda tables: tables,  # known artefacts, which may be none
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -143,6 +146,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
         "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
         "inspection": plan_tables(project.inspection),
         "studies": [asdict(study) for study in project.studies],
+        "artefacts": [{**asdict(one), "due": one.due and one.due.isoformat()} for one in project.artefacts],
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
 
@@ -205,6 +209,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         report=file.report,
         inspection=plan_of(file.inspection, path),
         studies=file.studies,
+        artefacts=tuple(table.artefact() for table in file.artefacts),
     )
     return ProjectFile(project, file.results, file.created, file.saved)
 

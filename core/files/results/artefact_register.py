@@ -13,18 +13,22 @@ An artefact of the same id beside rig.toml counts::
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Mapping
-from datetime import date
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated
 
 from pydantic import Field
 
 from core.errors import InputError
+from core.files.atomic import make_folder, write_text
 from core.files.complaints import checked
 from core.files.reading import read_toml
 from core.files.recording.rig import Table
 from core.files.results.rig_history import own_folder
+from core.files.tables import OptionalDay
+from core.files.toml_text import toml_text
 from core.messages import Message
 from core.study.artefact_check import Artefact
 
@@ -34,17 +38,23 @@ _Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False, description
 _MISSING = Message("artefact.no_register", "there is no register of artefacts")
 
 
-class _Artefact(Table):
+class ArtefactTable(Table):
+    """An artefact in a register."""
+
     id: str = Field(min_length=1, max_length=60, description="a text of at most 60 letters")
     value_mm: _Length
     U_mm: _Length
     k: float = Field(2.0, ge=1, le=10, allow_inf_nan=False, description="a coverage factor from 1 to 10")
     certificate: str = ""
-    due: date | None = Field(None, description="a date, as 2028-03-01")
+    due: OptionalDay = None
+
+    def artefact(self) -> Artefact:
+        """What it says."""
+        return Artefact(**dict(self))
 
 
 class _Register(Table):
-    artefact: list[_Artefact] = Field(default_factory=list, description="tables [[artefact]]")
+    artefact: list[ArtefactTable] = Field(default_factory=list, description="tables [[artefact]]")
 
 
 def read_register(beside: Path) -> Mapping[str, Artefact]:
@@ -55,12 +65,54 @@ def read_register(beside: Path) -> Mapping[str, Artefact]:
     InputError
         If a file is no TOML, or a value is wrong; names the file and the field.
     """
-    known: dict[str, Artefact] = {}
-    for path in (own_folder() / REGISTER, beside / REGISTER):
-        if path.exists():
-            file = checked(_Register, read_toml(path, missing=_MISSING), path)
-            known |= {row.id: Artefact(**dict(row)) for row in file.artefact}
+    return {**register_in(own_folder()), **register_in(beside)}
+
+
+def own_register() -> Mapping[str, Artefact]:
+    """The user's own artefacts by their ids; InputError as `read_register`."""
+    return register_in(own_folder())
+
+
+def register_in(folder: Path) -> Mapping[str, Artefact]:
+    """The artefacts of the register in one folder, by their ids; none without one. InputError as `read_register`."""
+    path = folder / REGISTER
+    if not path.exists():
+        return {}
+    file = checked(_Register, read_toml(path, missing=_MISSING), path)
+    return {row.id: row.artefact() for row in file.artefact}
+
+
+def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
+    """Add an artefact to the user's own, after what stands there; returns them all.
+
+    Raises
+    ------
+    InputError
+        If one of its id is there already, the register is damaged, or it cannot be written.
+    """
+    path, known = own_folder() / REGISTER, {**own_register()}
+    if artefact.id in known:
+        raise InputError(
+            Message("artefact.known_already", "there is an artefact {id} already", id=artefact.id),
+            where=path,
+            todo=Message("artefact.advice_change_it", "change it there"),
+        )
+    known[artefact.id] = artefact
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    text = f"{before.rstrip()}\n\n{_text(artefact)}".lstrip()
+    try:
+        tomllib.loads(text)
+    except tomllib.TOMLDecodeError:  # all in one line, artefact = [{ … }]: nothing can be put after that
+        text = "\n".join(map(_text, known.values()))
+    make_folder(path.parent)
+    write_text(path, text)
     return known
+
+
+def _text(artefact: Artefact) -> str:
+    """Its table in a register."""
+    stated = {key: value for key, value in asdict(artefact).items() if value not in (None, "")}
+    return toml_text({"artefact": [stated]})
 
 
 def artefact_named(id_: str, beside: Path) -> Artefact:

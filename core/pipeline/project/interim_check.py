@@ -1,4 +1,4 @@
-"""The interim check of a project: whether camera and laser are where its accepted calibrations have them."""
+"""The checks of a project's rig: by pictures of the day, and by known artefacts."""
 
 from __future__ import annotations
 
@@ -15,16 +15,20 @@ from core.files.project.calibration_store import (
     read_stored_poses,
 )
 from core.files.project.data import Project
+from core.files.project.folder import source_folder
+from core.files.recording.set_listing import scan_frames, taken_at
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.rig_history import RigHistory
 from core.messages import Message
 from core.pipeline.project.measuring import staged
-from core.pipeline.project.workspace import part_name, project_set
+from core.pipeline.project.workspace import part_name, project_set, project_workspace
+from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace
 from core.progress import Progress, silent
+from core.study.artefact_check import Artefact, ArtefactCheck
 
 CHECK = "check"
 """The folder in the project that its result goes to: a scan among the results stays as it is."""
@@ -55,6 +59,30 @@ def show_check(folder: Path) -> InterimCheck | None:
 def check_history(folder: Path, project: Project) -> RigHistory:
     """Every check of the project's rig that is known on this computer; InputError if the file is damaged."""
     return history_of(project.rig, _accepted(folder, project).id)
+
+
+def compare_with_artefact(folder: Path, project: Project, artefact: Artefact) -> ArtefactCheck:
+    """Compare the thickness among the project's results with the certificate of the artefact that was measured.
+
+    Raises
+    ------
+    InputError
+        As `core.pipeline.steps.artefact_step.artefact_step`.
+    """
+    return artefact_step(project_workspace(folder, project), artefact, project.info.air_celsius)
+
+
+def artefact_checks(folder: Path, project: Project) -> tuple[ArtefactCheck, ...]:
+    """Of each artefact measured with the accepted calibrations, the check nearest in time to the project's recording.
+
+    Raises
+    ------
+    InputError
+        If no calibration is accepted, or the history is damaged.
+    """
+    _, frames = scan_frames(source_folder(folder, project.sources.scan))
+    calibration = _accepted(folder, project)
+    return history_of(project.rig, calibration.id).artefacts(calibration.id, taken_at(frames))
 
 
 def propose_project_readjustment(folder: Path, project: Project, progress: Progress = silent) -> ProposedReadjustment:

@@ -2,7 +2,7 @@ import dataclasses
 import json
 import math
 from dataclasses import fields, replace
-from datetime import UTC, datetime, timedelta, timezone
+from datetime import UTC, date, datetime, timedelta, timezone
 
 import numpy as np
 import pytest
@@ -36,6 +36,7 @@ from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.uncertainty.part import Part
 from core.messages import plain
+from core.study.artefact_check import Artefact
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
 POLYGON = np.array([[0, 0], [10.5, 0], [10, 1 / 3]])
@@ -61,6 +62,7 @@ def full_project():
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
         full_plan(),
         (KeptStudy("c0ffee012345", "grr", "3 parts", False),),
+        (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1)),),
     )  # fmt: skip
 
 
@@ -159,7 +161,7 @@ def test_the_file_is_for_people_too(tmp_path):
     tables = json.loads(text)
     assert list(tables) == [
         "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
-        "repeats", "report", "inspection", "studies", "results",
+        "repeats", "report", "inspection", "studies", "artefacts", "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]

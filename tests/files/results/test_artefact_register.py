@@ -5,7 +5,7 @@ from datetime import date
 import pytest
 
 from core.errors import InputError
-from core.files.results.artefact_register import REGISTER, artefact_named, read_register
+from core.files.results.artefact_register import REGISTER, artefact_named, keep_own, own_register, read_register
 from core.files.results.rig_history import own_folder
 from core.study.artefact_check import Artefact
 
@@ -43,3 +43,19 @@ def test_a_wrong_register_is_named_with_the_field(tmp_path, wrong, field):
     (tmp_path / REGISTER).write_text(f'[[artefact]]\nid = "a"\nvalue_mm = 50.0\n{wrong}\n')
     with pytest.raises(InputError, match=rf"artefacts\.toml.*{field}"):
         read_register(tmp_path)
+
+
+@pytest.mark.parametrize(
+    "before", ["", "# of the lab\n" + BLOCK, 'artefact = [{ id = "GB 50-7", value_mm = 50.0003, U_mm = 0.0004 }]\n']
+)
+def test_an_artefact_is_added_to_the_users_own_after_what_stands_there(before):
+    path = own_folder() / REGISTER
+    if before:
+        path.parent.mkdir(parents=True)
+        path.write_text(before)
+    known = dict(own_register())
+    step = Artefact('step "10"', 10.0, 5e-05, 3.0, "", date(2027, 6, 30))
+    assert keep_own(step) == own_register() == {**known, step.id: step}
+    assert ("# of the lab" in path.read_text()) == ("#" in before), "what was written by hand is kept"
+    with pytest.raises(InputError, match=r"there is an artefact step .* already"):
+        keep_own(step)

@@ -1,5 +1,6 @@
-"""The interim check of a project, on rendered pictures."""
+"""The checks of a project's rig: by pictures of the day and by known artefacts, on rendered pictures."""
 
+import shutil
 from dataclasses import replace
 
 import pytest
@@ -12,14 +13,18 @@ from core.files.recording.options import Options
 from core.files.results.check_file import read_check
 from core.pipeline.project.interim_check import (
     accept_readjustment,
+    artefact_checks,
     check_history,
     check_rig,
+    compare_with_artefact,
     propose_project_readjustment,
     show_check,
 )
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import read_calibration
+from core.study.artefact_check import Artefact
 from tests.pipeline.steps.test_check_step import RIG, prepared
+from tests.simulated import copy_of
 
 
 @pytest.fixture(scope="module")
@@ -63,6 +68,22 @@ def test_a_check_that_is_cancelled_keeps_the_one_before(unchanged, tmp_path):
     with pytest.raises(Cancelled):
         check_rig(tmp_path, project, cancel)
     assert show_check(tmp_path) == check
+
+
+def test_the_thickness_of_a_project_is_compared_with_an_artefact_and_the_rig_remembers(done, tmp_path):
+    folder, gauge = copy_of(done.folder, tmp_path / "project"), done.summary.gauge
+    assert artefact_checks(folder, done.project) == ()
+    block = Artefact("GB 7", gauge.thickness_mm - 0.5 * gauge.U_mm, 0.0004)
+    check = compare_with_artefact(folder, done.project, block)
+    assert check.verdict == "passed" and check.e_n == pytest.approx(0.5, abs=0.01)
+    compare_with_artefact(folder, done.project, replace(block, id="GB 8", value_mm=gauge.thickness_mm + 1))
+    assert [(one.artefact.id, one.verdict) for one in artefact_checks(folder, done.project)] == [("GB 8", "failed")]
+
+
+def test_artefacts_beside_the_rig_come_into_its_project(unchanged, tmp_path):
+    made = shutil.copytree(unchanged / "set", tmp_path / "set")
+    (made / "artefacts.toml").write_text('[[artefact]]\nid = "GB 7"\nvalue_mm = 50.0\nU_mm = 0.0004\n')
+    assert project_from_set(made, "Block").artefacts == (Artefact("GB 7", 50.0, 0.0004),)
 
 
 @pytest.mark.accuracy

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
-from typing import cast
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -26,6 +26,8 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases
 from workbench.bench import Bench
 from workbench.notices import Notices
+from workbench.pages.scan.page import ScanPage
+from workbench.pages.scan.presenter import ScanPresenter
 from workbench.project_model import ProjectModel
 from workbench.settings import AppSettings
 from workbench.work import jobs
@@ -114,7 +116,20 @@ def scan_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     cast(HandLane, hand_bench.measuring).held = {jobs.WATCH_SCAN}
     quick = cast(HandLane, hand_bench.quick)
     quick.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan")
+    quick.answers[jobs.ARTEFACT_CHECKS] = lambda folder, project: ()
     quick.answers[jobs.SHOW_SCAN] = lambda folder: scan_cases.look()
     quick.answers[jobs.SHOW_FRAME] = lambda folder, project, name: scan_cases.stages(name)
     hand_bench.model.create(tmp_path / "project", replace(new_project("block"), accepted=Accepted("camera-1", "fan-1")))
     return hand_bench
+
+
+@pytest.fixture
+def scan_page(scan_bench: Bench, qtbot: Any, monkeypatch: pytest.MonkeyPatch) -> ScanPage:
+    """The scan page of that project, shown without 3D."""
+    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
+    made = ScanPage(ScanPresenter(scan_bench))
+    made.presenter.opened()
+    qtbot.addWidget(made)
+    made.resize(1100, 700)
+    made.show()
+    return made

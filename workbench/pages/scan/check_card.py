@@ -18,6 +18,8 @@ from core.states import CHECKS, STEP_STATES
 from core.study.artefact_check import ArtefactCheck
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
+from workbench.pages.scan.artefact_dialog import ArtefactDialog
+from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.stage import CheckButtons, CheckFacts, check_buttons
 from workbench.pages.words import mm, px, wording
@@ -36,14 +38,18 @@ LEVELS: dict[str, Level] = {"passed": "good", "doubtful": "warn", "failed": "bad
 class CheckCard(QFrame):
     """A traffic light in words: icon and word, a sentence on what to do, the figures, and the buttons."""
 
-    def __init__(self, check: RigCheck, live: LivePresenter, parent: QWidget | None = None) -> None:
+    def __init__(
+        self, check: RigCheck, artefacts: KnownArtefacts, live: LivePresenter, parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self._check, self._live, self._seen = check, live, ""
+        self._check, self._artefacts, self._live, self._seen = check, artefacts, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
         self.chart = ControlPlot()
         self.take, self.choose, self.run, self.readjust = QPushButton(), QPushButton(), QPushButton(), QPushButton()
         self.readjust.clicked.connect(check.propose_readjustment)
+        self.compare = QPushButton(tr("Compare with an artefact …"))
+        self.compare.clicked.connect(self._compare)
         check.proposed.connect(self._ask_to_readjust)
         self.choose.setAccessibleName(tr("Folder with the pictures of the check"))
         self.choose.setFixedWidth(36)  # three buttons fit side by side where the panel is narrow
@@ -57,7 +63,7 @@ class CheckCard(QFrame):
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(tr("Check of camera and laser"))
         in_column(
-            title, light, self.sentence, self.rows, self.chart, self.readjust, buttons,
+            title, light, self.sentence, self.rows, self.chart, self.readjust, buttons, self.compare,
             on=self, margins=(10, 8, 10, 10), spacing=5,
         )  # fmt: skip
 
@@ -80,10 +86,10 @@ class CheckCard(QFrame):
         say(self.sentence, sentence)
         shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
         past = check.past if shown is not None else None
-        known = check.history.artefacts(shown.calibration_id, shown.taken_at) if check.history and shown else ()
-        self.rows.set_rows([*figures(shown, limits(check.history, past)), *artefact_rows(known)])
+        rows = figures(shown, limits(check.history, past)) + artefact_rows(() if taking else self._artefacts.checks)
+        self.rows.set_rows(rows)
         self._show_chart(check.history, past)
-        self.rows.setVisible(shown is not None)
+        self.rows.setVisible(bool(rows))
         checking = stage is CheckStage.CHECKING
         rename(self.take, tr("Stop") if taking else tr("Take pictures"))
         self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
@@ -107,6 +113,12 @@ class CheckCard(QFrame):
             "Compare the stripes in the pictures with where the calibrations have them"
         )  # fmt: skip
         enable(self.run, can.run, tip)
+        self.compare.setIcon(icon("mdi6.ruler-square"))
+        enable(
+            self.compare,
+            can.compare,
+            tr("Compare the thickness with the certificate of the block or step that was scanned"),
+        )
         self._refresh_readjust(can.readjust)
 
     def _buttons(self) -> CheckButtons:
@@ -119,6 +131,7 @@ class CheckCard(QFrame):
             checking=check.stage is CheckStage.CHECKING,
             cannot_check=check.cannot_check,
             cannot_readjust=check.cannot_readjust,
+            cannot_compare=self._artefacts.cannot_compare,
             moved=check.valid is not None and not check.valid.passed,
         )
         return check_buttons(facts)
@@ -214,6 +227,9 @@ class CheckCard(QFrame):
     def _take(self) -> None:
         self._seen = ""
         self._live.toggle()
+
+    def _compare(self) -> None:
+        ArtefactDialog(self._artefacts, self).open()
 
     def _choose(self) -> None:
         start = self._check.folder or Path.home()

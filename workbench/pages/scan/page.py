@@ -69,7 +69,7 @@ class ScanPage(StepPage):
 
         self.card = ScanCard(presenter)
         self.add_to_side(self.card)
-        self.check = CheckCard(presenter.check, presenter.check_live)
+        self.check = CheckCard(presenter.check, presenter.artefacts, presenter.check_live)
         self.add_to_side(self.check)
         self.checks = ChecksCard()
         self.add_to_side(self.checks)

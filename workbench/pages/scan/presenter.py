@@ -21,6 +21,7 @@ from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan import stability
+from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import RigCheck
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
@@ -54,6 +55,7 @@ class ScanPresenter(StepPresenter):
         self.work = ScanWork(bench, self)
         self.run = ScanRun(bench, self)
         self.check = RigCheck(bench, self)
+        self.artefacts = KnownArtefacts(bench, lambda: self.run.measuring, self)
         self.check_live = LivePresenter(bench, "check", self)
         self.check_live.calibration = self.live.calibration
         self.check_live.cannot_start = self._cannot_take
@@ -69,6 +71,7 @@ class ScanPresenter(StepPresenter):
         self.work.changed.connect(self._look_again)
         self.run.changed.connect(self._look_again)
         self.check.changed.connect(self.changed)
+        self.artefacts.changed.connect(self.changed)
         self.check_live.changed.connect(self._look_again)
         self.check_live.ended.connect(self._check_taken)
         self.scrub.changed.connect(self.changed)
@@ -281,6 +284,7 @@ class ScanPresenter(StepPresenter):
         self.thumbnails.forget()
         self.run.opened()
         self.check.opened()
+        self.artefacts.opened()
         self.work.opened()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -289,6 +293,7 @@ class ScanPresenter(StepPresenter):
         self.thumbnails.follow()
         self.work.follow()
         self.check.follow()
+        self.artefacts.follow()
         self._follow_frames()
 
     def _leave(self) -> None:

@@ -151,6 +151,7 @@ class CheckFacts:
     checking: bool
     cannot_check: str
     cannot_readjust: str
+    cannot_compare: str
     moved: bool
     """The check of the pictures in force says that something has changed."""
 
@@ -163,6 +164,7 @@ class CheckButtons(NamedTuple):
     choose: str
     run: str
     """Check; Cancel while it is being checked."""
+    compare: str
     readjust: str | None
 
 
@@ -174,8 +176,35 @@ def check_buttons(facts: CheckFacts) -> CheckButtons:
         take=tr("Stopping …") if facts.stopping else cannot_start,
         choose=taken,
         run="" if facts.checking else taken or facts.cannot_check,
+        compare=taken or facts.cannot_compare,
         readjust=facts.cannot_readjust if facts.moved and not facts.taking else None,
     )
+
+
+@dataclass(frozen=True, slots=True)
+class CompareFacts:
+    """What comparing the thickness with a known artefact rests on."""
+
+    comparing: bool
+    measuring: bool
+    """The scan is being measured."""
+    cannot_write: str
+    measured: bool
+    """There is a thickness."""
+    outdated: bool
+    """It is not what the project would give now."""
+
+
+def why_not_compare(facts: CompareFacts) -> str:
+    """Why the thickness cannot be compared with an artefact."""
+    reasons = (
+        (facts.comparing, tr("The thickness is being compared.")),
+        (facts.measuring, tr("The scan is being measured.")),
+        (bool(facts.cannot_write), facts.cannot_write),
+        (not facts.measured, tr("Measure the thickness of the artefact first, like that of a part.")),
+        (facts.outdated, tr("The measured thickness is out of date; measure it again.")),
+    )
+    return next((why for true, why in reasons if true), "")
 
 
 @dataclass(frozen=True, slots=True)

@@ -12,7 +12,6 @@ from core.calibrate.results import CameraCalibration, FanCalibration, ProposedRe
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
-from core.files.results.rig_history import PastCheck
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.checks import rig_check
@@ -23,8 +22,6 @@ from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage
 from workbench.pages.scan.check_card import artefact_rows
-from workbench.pages.scan.page import ScanPage
-from workbench.pages.scan.presenter import ScanPresenter
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -39,14 +36,8 @@ def measuring(scan_bench):
 
 
 @pytest.fixture
-def page(scan_bench, measuring, qtbot, monkeypatch):
-    monkeypatch.setenv("TRISECT_NO_OPENGL", "none")
-    made = ScanPage(ScanPresenter(scan_bench))
-    made.presenter.opened()
-    qtbot.addWidget(made)
-    made.resize(1100, 700)
-    made.show()
-    return made
+def page(measuring, scan_page):
+    return scan_page
 
 
 @pytest.fixture
@@ -265,18 +256,15 @@ def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring,
     ids=["in order", "lapsed", "wrong"],
 )
 def test_artefacts_of_the_same_calibrations_are_shown_with_their_certificates(
-    chosen, measuring, qtbot, measured_mm, due, level
+    page, scan_bench, qtbot, measured_mm, due, level
 ):
     block = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03", due)
     measured = ArtefactCheck(block, measured_mm, 0.009, TAKEN.date())
-    past = PastCheck.of_measured(measured, TAKEN, (check().calibration_id, "frames"), None)
-    quick = cast(HandLane, chosen.presenter.bench.quick)
-    history = chart(check(), 2)
-    quick.answers[jobs.CHECK_HISTORY] = lambda folder, project: replace(history, checks=(*history.checks, past))
-    measuring.finish(check())
-    card = shown(chosen, qtbot, CheckStage.CHECKED)
-    qtbot.waitUntil(lambda: chosen.presenter.check.history is not None)
-    chosen.refresh()
+    cast(HandLane, scan_bench.quick).answers[jobs.ARTEFACT_CHECKS] = lambda folder, project: (measured,)
+    page.presenter.opened()
+    qtbot.waitUntil(lambda: page.presenter.artefacts.checks == (measured,))
+    card = shown(page, qtbot, CheckStage.NONE)
+    assert card.rows.isVisible(), "an artefact needs no pictures of the day"
     assert card.rows.text_of("GB 50-7 measured") == f"{measured_mm:.3f} ± 0.018 mm"
     assert card.rows.text_of("GB 50-7 certified") == "50.00030 ± 0.00040 mm"
     assert card.rows.text_of("E_n; valid until") == f"{measured.e_n:.2f}; {'2026-01-31' if due else 'not stated'}"

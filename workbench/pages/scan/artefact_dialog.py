@@ -1,0 +1,204 @@
+"""Compare with an artefact: choose it from the registers, or add one to them."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping
+from datetime import date
+
+from PySide6.QtCore import Qt
+from PySide6.QtWidgets import QDialog, QLabel, QPushButton, QWidget
+
+from core.report.wording import with_uncertainty
+from core.study.artefact_check import Artefact
+from workbench.language import number, tr
+from workbench.pages.scan.artefacts import KnownArtefacts
+from workbench.pages.words import wording
+from workbench.theme import icon, shades
+from workbench.views.common import dress
+from workbench.views.forms.editors import NumberRange
+from workbench.views.forms.form import SettingsForm
+from workbench.views.layouts import STRETCH, enable, heading, in_column, in_row, muted, resize_on_screen, say
+from workbench.views.lists.data_table import DataTable
+
+LONGEST_ID = 60
+"""Letters."""
+
+
+class ArtefactDialog(QDialog):
+    """The registers at the left, the fields of an artefact to add at the right; to be shown with `open`."""
+
+    def __init__(self, artefacts: KnownArtefacts, parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self.setWindowTitle(tr("Compare with an artefact"))
+        self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
+        resize_on_screen(self, 1120, 540)
+        self._artefacts, self._ids, self._wanted = artefacts, tuple[str, ...](), ""
+        self.table, self.said, self.problem = DataTable(), muted(), QLabel()
+        self.problem.setWordWrap(True)
+        self.table.set_headers(
+            [
+                (tr("Artefact"), ""),
+                (tr("Certified"), "mm"),
+                (tr("U"), "mm"),
+                (tr("Certificate"), ""),
+                (tr("Valid until"), ""),
+                (tr("Register"), ""),
+            ]
+        )
+        self.form = self._fields()
+        self.add, self.compare, self.close_it = QPushButton(), QPushButton(), QPushButton(tr("Close"))
+        self.add.setText(tr("Add"))
+        self.add.setIcon(icon("mdi6.plus"))
+        self.compare.setText(tr("Compare"))
+        self.compare.setProperty("primary", True)
+        for button in (self.add, self.compare, self.close_it):
+            button.setAutoDefault(False)
+        self._arrange()
+        self.table.current_row_changed.connect(self._chosen)
+        self.table.row_activated.connect(lambda _: self.compare.click())
+        self.add.clicked.connect(self._add)
+        self.compare.clicked.connect(self._compare)
+        self.close_it.clicked.connect(self.reject)
+        self.close_it.setFocus()  # a table that has the focus chooses its first row: nobody chose that artefact
+        artefacts.changed.connect(self.refresh)
+        artefacts.read_own()
+        self.refresh()
+
+    @property
+    def chosen(self) -> Artefact | None:
+        """The artefact that is chosen in the table."""
+        row = self.table.current_row()
+        return self._artefacts.known.get(self._ids[row]) if 0 <= row < len(self._ids) else None
+
+    def refresh(self) -> None:
+        """Show the registers as they are."""
+        known, of_project = self._artefacts.known, self._artefacts.of_project
+        before = self.chosen
+        wanted, self._ids = self._wanted or (before.id if before else ""), tuple(known)
+        self.table.set_rows([row(one, one.id in of_project) for one in known.values()])
+        if wanted in self._ids:
+            self.table.set_current_row(self._ids.index(wanted))
+            self._wanted = ""
+        dress(self.problem, f"color: {shades().bad};")
+        say(self.problem, self._artefacts.problem)
+        self._show_chosen()
+
+    def _arrange(self) -> None:
+        help = muted(
+            tr(
+                "The thickness that was measured last is compared with the certificate of the artefact that was "
+                "scanned. The result is kept in the history of the rig."
+            )
+        )
+        title = heading(tr("Add an artefact"))
+        side = QWidget()
+        side.setFixedWidth(300)
+        in_column(title, self.form, in_row(STRETCH, self.add), STRETCH, on=side, spacing=6)
+        left = in_column(help, (self.table, 1), self.said, self.problem, spacing=6)
+        ends = in_row(STRETCH, self.close_it, self.compare, spacing=6)
+        in_column((in_row((left, 1), side, spacing=16), 1), ends, on=self, margins=(16, 14, 16, 12), spacing=8)
+
+    def _fields(self) -> SettingsForm:
+        form = SettingsForm()
+        form.add_text("id", tr("Name"), tip=tr("What is engraved on it, as GB 50-7"))
+        length = NumberRange(0.001, 5000.0, decimals=5, step=1.0, unit="mm", none_text=tr("none"), first=50.0)
+        form.add_number("value_mm", tr("Certified length"), length, tip=tr("Of the block or step, at 20 °C"))
+        width = NumberRange(1e-6, 10.0, decimals=6, step=0.0001, unit="mm", none_text=tr("none"), first=0.0004)
+        form.add_number("U_mm", tr("U of it"), width, tip=tr("Expanded uncertainty, with the k of the certificate"))
+        form.add_number("k", tr("Its k"), NumberRange(1.0, 10.0, decimals=2, step=0.1))
+        form.add_text("certificate", tr("Certificate"), tip=tr("Its number"))
+        form.add_text("due", tr("Valid until"), placeholder="2028-03-01", tip=tr("Its last day; may be left empty"))
+        registers = [("own", tr("Mine, of all projects")), ("project", tr("The project's"))]
+        form.add_choice("register", tr("Register"), registers)
+        form.set_values({"value_mm": None, "U_mm": None, "k": 2.0, "register": "own"})
+        return form
+
+    def _chosen(self, _: int) -> None:
+        self._show_chosen()
+
+    def _show_chosen(self) -> None:
+        one = self.chosen
+        why_not = self._artefacts.cannot_compare or ("" if one else tr("Choose an artefact."))
+        enable(self.compare, why_not, tr("Error and E_n of the thickness against the certificate"))
+        if not self._ids:
+            said = tr("No artefact is known yet: add one.")
+        elif one is not None and has_lapsed(one):
+            said = tr(
+                "The certificate of {id} held until {due}: measured after that day it is doubtful at best; have it "
+                "calibrated.",
+                id=one.id,
+                due=one.due,
+            )
+        else:
+            said = ""
+        say(self.said, said)
+
+    def _add(self) -> None:
+        self.add.setFocus()  # what is half typed is meant
+        values = self.form.values()
+        own = values["register"] == "own"
+        wrong = complaints(values, self._artefacts.own if own else self._artefacts.of_project)
+        for key in ("id", "value_mm", "U_mm", "due"):
+            self.form.set_complaint(key, wrong.get(key, ""))
+        if wrong:
+            return
+        made = artefact_of(values)
+        self._wanted = made.id
+        self._artefacts.add(made, own=own)
+        self.refresh()
+
+    def _compare(self) -> None:
+        if (one := self.chosen) is not None:
+            self._artefacts.compare(one)
+            self.accept()
+
+
+def has_lapsed(artefact: Artefact) -> bool:
+    """Whether its certificate does not hold today."""
+    return artefact.due is not None and artefact.due < date.today()
+
+
+def row(artefact: Artefact, of_project: bool) -> tuple[str, ...]:
+    """An artefact as the table has it."""
+    value, width = with_uncertainty(artefact.value_mm, artefact.U_mm, wording())
+    due = tr("not stated") if artefact.due is None else artefact.due.isoformat()
+    return (
+        artefact.id,
+        value,
+        f"{width} (k = {number(artefact.k, 'g')})",
+        artefact.certificate,
+        tr("{due}, lapsed", due=due) if has_lapsed(artefact) else due,
+        tr("project") if of_project else tr("mine"),
+    )
+
+
+def complaints(values: Mapping[str, object], taken: Collection[str]) -> dict[str, str]:
+    """What is wrong with the fields of an artefact to add, by their keys; `taken` are the ids in its register."""
+    name, due = str(values["id"]).strip(), str(values["due"]).strip()
+    wrong = {}
+    if not name:
+        wrong["id"] = tr("Give it the name that is engraved on it.")
+    elif len(name) > LONGEST_ID:
+        wrong["id"] = tr("At most {n} letters.", n=LONGEST_ID)
+    elif name in taken:
+        wrong["id"] = tr("The register has one of this name already.")
+    if values["value_mm"] is None:
+        wrong["value_mm"] = tr("The certificate states it.")
+    if values["U_mm"] is None:
+        wrong["U_mm"] = tr("The certificate states it.")
+    try:
+        _day(due)
+    except ValueError:
+        wrong["due"] = tr("Write the day as 2028-03-01.")
+    return wrong
+
+
+def artefact_of(values: Mapping[str, object]) -> Artefact:
+    """The artefact that the fields describe, where nothing is wrong with them."""
+    value, width, k = (float(str(values[key])) for key in ("value_mm", "U_mm", "k"))
+    name, certificate, due = (str(values[key]).strip() for key in ("id", "certificate", "due"))
+    return Artefact(name, value, width, k, certificate, _day(due))
+
+
+def _day(text: str) -> date | None:
+    return date.fromisoformat(text) if text else None

@@ -1,0 +1,158 @@
+"""Known artefacts: their registers, and the thickness compared with the certificate of one of them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import Any
+
+from PySide6.QtCore import QObject, Signal
+
+from core.study.artefact_check import Artefact, ArtefactCheck
+from workbench.bench import Bench
+from workbench.language import text_of, tr
+from workbench.pages.scan.stage import CompareFacts, why_not_compare
+from workbench.step_state import State
+from workbench.work import jobs
+from workbench.work.tasks import Task
+
+
+class KnownArtefacts(QObject):
+    """The user's and the project's artefacts, and what was measured of them with the accepted calibrations.
+
+    `own` are the user's by their ids, as they were last read. `checks` are the results, of each artefact the one
+    nearest in time to the recording. `problem` says why the last artefact was not kept, or the registers not read.
+    """
+
+    changed = Signal()
+
+    def __init__(self, bench: Bench, measuring: Callable[[], bool], parent: QObject | None = None) -> None:
+        super().__init__(parent)
+        self._bench, self._model, self._measuring = bench, bench.model, measuring
+        self.own: Mapping[str, Artefact] = {}
+        self.checks: tuple[ArtefactCheck, ...] = ()
+        self.problem, self._looked = "", ""
+        self._task: Task | None = None
+
+    @property
+    def of_project(self) -> Mapping[str, Artefact]:
+        """The project's own, by their ids."""
+        return {one.id: one for one in self._model.project.artefacts}
+
+    @property
+    def known(self) -> Mapping[str, Artefact]:
+        """All of them; the project's counts where both have one of the same id."""
+        return {**self.own, **self.of_project}
+
+    @property
+    def cannot_compare(self) -> str:
+        """Why the thickness cannot be compared now, or ""."""
+        state = self._model.states["inspect"].state
+        facts = CompareFacts(
+            comparing=self._task is not None,
+            measuring=self._measuring(),
+            cannot_write=self._bench.cannot_write,
+            measured="inspect" in self._model.results,
+            outdated=state is not State.DONE,
+        )
+        return why_not_compare(facts)
+
+    def compare(self, artefact: Artefact) -> None:
+        """Compare the thickness with its certificate; the rig's history keeps the result."""
+        folder, project = self._model.folder, self._model.project
+        if folder is None or self.cannot_compare:
+            return
+        task: Task = self._bench.run_long(
+            self,
+            jobs.COMPARE_WITH_ARTEFACT,
+            folder,
+            project,
+            artefact,
+            label=tr("Comparing with an artefact"),
+            on_done=lambda check: self._ended(task, check),
+            on_failed=lambda _: self._ended(task),
+            on_cancelled=lambda: self._ended(task),
+            offers={},
+        )
+        self._task = task
+        self.changed.emit()
+
+    def add(self, artefact: Artefact, *, own: bool) -> None:
+        """Add an artefact to the user's register, or to the project's; the latter is undoable."""
+        self.problem = ""
+        if own:
+            self._ask_for_own(jobs.KEEP_OWN_ARTEFACT, artefact)
+            return
+        project = self._model.project
+        label = tr("add the artefact {id}", id=artefact.id)
+        self._model.edit(label, replace(project, artefacts=(*project.artefacts, artefact)))
+
+    def read_own(self) -> None:
+        """Read the user's register: it may have been written by hand."""
+        self.problem = ""
+        self._ask_for_own(jobs.OWN_ARTEFACTS)
+
+    def opened(self) -> None:
+        """Another project: stop, and read what was measured with its calibrations."""
+        if self._task is not None:
+            self._task.cancel()
+        self._task, self.checks, self._looked = None, (), ""
+        self.follow()
+
+    def follow(self) -> None:
+        """The project is another: read what was measured with the calibrations in force."""
+        folder, project = self._model.folder, self._model.project
+        accepted = project.accepted
+        wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.fan else ""
+        if wanted == self._looked:
+            return
+        self._looked, self.checks = wanted, ()
+        if folder is None or not wanted:
+            self.changed.emit()
+            return
+
+        def read(checks: tuple[ArtefactCheck, ...]) -> None:
+            if self._looked == wanted:
+                self.checks = checks
+                self.changed.emit()
+
+        self._bench.quick.run(
+            self,
+            jobs.ARTEFACT_CHECKS,
+            folder,
+            project,
+            label=tr("Reading the history of the rig"),
+            on_done=read,
+            on_failed=lambda _: None,  # what is wrong is told when it is measured or compared
+            offers={},
+        )
+
+    def _ask_for_own(self, job: jobs.Job, *artefacts: Artefact) -> None:
+        def read(own: Mapping[str, Artefact]) -> None:
+            self.own = own
+            self.changed.emit()
+
+        def refused(problem: Any) -> None:
+            self.problem = text_of(problem)
+            self.changed.emit()
+
+        self._bench.quick.run(
+            self,
+            job,
+            *artefacts,
+            label=tr("Reading the register of artefacts"),
+            on_done=read,
+            on_failed=refused,
+            offers={},
+        )
+
+    def _ended(self, task: Task, check: ArtefactCheck | None = None) -> None:
+        if task is not self._task:
+            return  # of the project before
+        self._task = None
+        if check is not None:
+            notices = self._bench.notices
+            (notices.info if check.verdict == "passed" else notices.warning)(text_of(check.sentence))
+            self._looked = ""
+            self.follow()
+        self.changed.emit()
