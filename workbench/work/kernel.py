@@ -103,6 +103,10 @@ class Client(QtKernelClientMixin, KernelClient):  # type: ignore[misc]
     control_channel_class = Type(Channel)
     hb_channel_class = Type(Heartbeat)
 
+    def execute(self, code: str, *args: Any, **kwargs: Any) -> str:
+        """Have the kernel run `code`; what is typed while it stops another calculation is not thrown away with that."""
+        return str(super().execute(code, *args, **{**kwargs, "stop_on_error": False}))
+
 
 class Kernel(ChildProcess):
     """The process, and the client that is connected to it: on this computer only, encrypted with keys of its own.

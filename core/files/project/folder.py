@@ -265,9 +265,9 @@ def results_folder(project_folder: Path) -> Path:
 
 def results_in(path: Path) -> Path:
     """The folder of results of a project (its folder, or the project.json in it); any other path as it is."""
-    if is_project(path):
-        return results_folder(path if path.is_dir() else path.parent)
-    return path
+    if is_project(path) and not path.is_dir():
+        path = path.parent
+    return results_folder(path) if is_project(path) or results_folder(path).is_dir() else path
 
 
 def sources_of_set(folder: Path) -> Sources:
