@@ -38,7 +38,7 @@ Watch = Callable[[tuple[int, SetResult | None]], None]
 
 
 def unwatched(told: tuple[int, SetResult | None]) -> None:
-    """Tell nobody: the default."""
+    """Take it without a word: the default."""
 
 
 def run_batch(
