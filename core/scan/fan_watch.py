@@ -59,6 +59,9 @@ PART_WORDS = Message("scan.the_part", "the part")
 EVERYTHING_WORDS = Message("scan.everything", "the camera, the fan, or the table with the part")
 
 
+WARM_UP = Message("scan.advice_warm_up", "let camera and lasers warm up, then scan again")
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class FanRest:
     """What the fan's light tells of a scan.

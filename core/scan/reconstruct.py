@@ -5,7 +5,8 @@ No picture is needed here, so a scan can be solved again in a second with anothe
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
@@ -16,7 +17,7 @@ from core.messages import Field, Message, plural_message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
-from core.scan.fan_watch import LEAST_FRAMES, FanRest, watch_fan
+from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
@@ -104,7 +105,8 @@ def reconstruct(
         bounces = find_second_bounces(features.frames, among, camera, fan)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
-    solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
+    with _drift_first(watched):
+        solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
     reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)
@@ -148,6 +150,24 @@ def reconstruct(
         second_bounces=bounces,
         drifted=watched.drifts,
     )
+
+
+@contextmanager
+def _drift_first(watched: FanRest) -> Iterator[None]:
+    """A complaint about sweeps that do not fit together begins with the rig's drift, if it drifted: that is why."""
+    try:
+        yield
+    except InputError as error:
+        if not watched.drifts:
+            raise
+        what = Message(
+            "scan.drifted_too_much",
+            "the rig drifted: from the first frame to the last the fan's light moved evenly, by {shift_px:.2g} px; of "
+            "what was measured so: {reason}",
+            shift_px=watched.shift_px,
+            reason=error.what,
+        )
+        raise InputError(what, where=error.where, todo=WARM_UP) from error
 
 
 def _together(options: ReconstructOptions) -> bool:

@@ -173,7 +173,7 @@ MOVEMENT = (
     "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
     "gauge.moved_and_no_faces", "scan.frames_moved",
 )  # fmt: skip
-DRIFT = ("scan.drifted", "inspection.drifted_during_scan", "gauge.drifted_and_no_faces")
+DRIFT = ("scan.drifted", "scan.drifted_too_much", "inspection.drifted_during_scan", "gauge.drifted_and_no_faces")
 LENS = ("camera.corners_err_together", "camera.pattern_outwards", "camera.pattern_in_region", "camera.bad_fit")
 CAUSES: Mapping[str, tuple[str, ...]] = {
     "nothing": (),

@@ -87,3 +87,11 @@ def test_a_rig_that_warms_is_told_as_a_drift_and_all_frames_are_used(seed):
     assert 0.01 < result.notes[0].values["shift_px"] < 0.1
     assert not {note.code for note in result.notes} & {"scan.fan_shifted", "scan.moved", "scan.second_bounces"}
     assert not [frame for frame in result.frames if frame.reason == MOVED_FRAME]
+
+
+def test_a_rig_that_warms_too_much_is_refused_for_its_drift():
+    warming = Warming(scan_px=1.0, scan_focal_ppm=500, scan_urad=300)
+    with pytest.raises(InputError) as refused:
+        measured(moved_frame=0, warming=warming)
+    assert refused.value.code == "scan.drifted_too_much"
+    assert "warm up" in str(refused.value.todo)

@@ -23,7 +23,7 @@ from core.model.arrays import Array
 from core.pipeline.steps.check_step import checked_on_the_day
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
-from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
+from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN, WARM_UP
 from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
 
@@ -115,8 +115,7 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
                 "the rig drifted during the scan; of what it measured so: {reason}",
                 reason=error.what,
             )
-            todo = Message("gauge.advice_warm_up", "let camera and lasers warm up, then scan again")
-            raise InputError(what, where=error.where, todo=todo) from error
+            raise InputError(what, where=error.where, todo=WARM_UP) from error
         raise
 
 
