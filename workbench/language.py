@@ -45,6 +45,7 @@ _ADVICE = {
         "window.profile_tilt", "name the plate's pose on the stage, or say to how many degrees the tilt is known"
     ),
     "advice.another_characteristic": Message("window.another_result", "choose another result"),
+    "artefact.advice_name_it": Message("artefact.advice_name_one", "name one of these"),
 }
 """What the window advises in place of an option of the command line, by the code of that advice."""
 

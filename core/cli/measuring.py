@@ -197,9 +197,11 @@ def undo_adjusting(folder: Path, out: Path) -> Shown:
         return _shown(work, READJUST, [], {}, "planes")
 
 
-def run_artefact(folder: Path, out: Path, id_: str, celsius: float | None) -> tuple[ArtefactCheck, Shown]:
-    """Compare the thickness in `out` with the certificate of the artefact called `id_`."""
-    check = artefact_step(Workspace.open(open_set(folder), out), artefact_named(id_, folder), celsius)
+def run_artefact(
+    folder: Path, out: Path, id_: str, celsius: float | None, characteristic: str
+) -> tuple[ArtefactCheck, Shown]:
+    """Compare what was measured in `out` with the certificate of the artefact called `id_`."""
+    check = artefact_step(Workspace.open(open_set(folder), out), artefact_named(id_, folder), celsius, characteristic)
     return check, Shown(output.artefact_rows(check), output.artefact_json(check))
 
 

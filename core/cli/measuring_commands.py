@@ -192,13 +192,21 @@ def artefact(
     folder: Set,
     out: Out,
     id: Annotated[str, typer.Option("--id", metavar="ID", help="The artefact, as artefacts.toml calls it.")],
+    characteristic: Annotated[
+        str,
+        typer.Option(
+            metavar="NAME",
+            help="What of the inspection is compared, as 'ball diameter', where several could be; of a block it is the "
+            "thickness if nothing is said.",
+        ),
+    ] = "",
     celsius: Celsius = None,
     json: Json = False,
 ) -> None:
-    """Compare the thickness in DIR with the certificate of the artefact that was measured; the rig's history has it."""
+    """Compare the block, sphere or step measured in DIR with its certificate; the rig's history has it."""
     from core.cli import measuring
 
-    result, shown = measuring.run_artefact(folder, out, id, celsius)
+    result, shown = measuring.run_artefact(folder, out, id, celsius, characteristic)
     shown.show(as_json=json)
     raise typer.Exit(measuring.exit_code(result.verdict, good=("passed",)))
 

@@ -31,7 +31,7 @@ from core.report.wording import Words, decimals_of, grouped, thickness_line, wit
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.states import CHECKS, DECISIONS
-from core.study.artefact_check import ArtefactCheck
+from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
@@ -284,6 +284,7 @@ def artefact_rows(check: ArtefactCheck) -> Rows:
     known = check.artefact
     return [
         (tr("artefact"), " ".join(part for part in (known.id, known.certificate and f"({known.certificate})") if part)),
+        (tr("compared"), check.characteristic or tr(KINDS[known.kind])),
         (
             tr("certified"),
             tr("{value:.4f} mm ± {U:.4f} mm (k = {k:g})", value=known.value_mm, U=known.U_mm, k=known.k),
@@ -299,6 +300,8 @@ def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
     """The same for programs."""
     return {
         "artefact": check.artefact.id,
+        "kind": check.artefact.kind,
+        "characteristic": check.characteristic,
         "verdict": check.verdict,
         "measured_mm": check.measured_mm,
         "u_mm": check.u_mm,

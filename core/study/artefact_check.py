@@ -8,27 +8,38 @@ ISO/IEC 17043:2010, B.3.1.3 (normalised error E_n).
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 from datetime import date
-from typing import Literal
+from typing import Literal, TypeAlias
 
-from core.messages import Message
+from core.messages import Message, label
+
+ArtefactKind: TypeAlias = Literal["block", "sphere", "step"]
+KINDS: Mapping[ArtefactKind, str] = {
+    "block": label("block, thickness"),
+    "sphere": label("sphere, diameter"),
+    "step": label("step, height"),
+}
+"""Each kind with the length that its certificate states."""
 
 
 @dataclass(frozen=True, slots=True)
 class Artefact:
-    """A block or a step whose length a certificate states.
+    """A block, a sphere or a step whose length a certificate states.
 
     Parameters
     ----------
     id
         What is engraved on it.
     value_mm, U_mm, k
-        Its length at 20 °C, the expanded uncertainty of that, and its coverage factor.
+        Its length at 20 °C (thickness, diameter or height), the expanded uncertainty of that, and its coverage factor.
     certificate
         Number of the certificate.
     due
         The last day on which the certificate holds; None: nothing is stated.
+    kind
+        What it is, and so which length is compared.
     """
 
     id: str
@@ -37,16 +48,21 @@ class Artefact:
     k: float = 2.0
     certificate: str = ""
     due: date | None = None
+    kind: ArtefactKind = "block"
 
 
 @dataclass(frozen=True, slots=True)
 class ArtefactCheck:
-    """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that."""
+    """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that.
+
+    `characteristic` is the name of what was measured, as "ball diameter"; "" is the thickness of the part as a whole.
+    """
 
     artefact: Artefact
     measured_mm: float
     u_mm: float
     day: date
+    characteristic: str = ""
 
     @property
     def error_mm(self) -> float:

@@ -229,13 +229,14 @@ def test_known_artefacts_are_printed_with_certificate_e_n_and_verdict(quick):
         0.009,
         date(2026, 5, 4),
     )
-    wrong = ArtefactCheck(Artefact("GB 20-1", 20.0, 0.0003), 20.0412, 0.012, date(2026, 5, 3))
+    wrong = ArtefactCheck(Artefact("B 20-1", 20.0, 0.0003, kind="sphere"), 20.0412, 0.012, date(2026, 5, 3))
     content = replace(quick, artefacts=(good, wrong))
     text = words(build_report(content))
     assert "Checks by known artefacts" in text
     for expected in (
-        "GB 50-7 D-K-15070 2026-03 2026-05-04 50.00030 ± 0.00040 50.004 ± 0.018 +0.004 0.21 2028-03-01 in order",
-        "GB 20-1 2026-05-03 20.00000 ± 0.00030 20.041 ± 0.024 +0.041 1.72 not stated changed",
+        "GB 50-7 (block, thickness) D-K-15070 2026-03 2026-05-04 50.00030 ± 0.00040 50.004 ± 0.018 +0.004 0.21 "
+        "2028-03-01 in order",
+        "B 20-1 (sphere, diameter) 2026-05-03 20.00000 ± 0.00030 20.041 ± 0.024 +0.041 1.72 not stated changed",
     ):
         assert expected in text, text[text.find("known artefacts") :][:600]
     assert content.report_id != quick.report_id

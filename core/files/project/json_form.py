@@ -95,7 +95,7 @@ class ProjectTables(Table):
     results: dict[str, Done] = Field(default_factory=dict)
 
 
-SCHEMA = 7
+SCHEMA = 8
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -105,6 +105,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     4: lambda tables: tables,  # studies, which may be none
     5: lambda tables: tables,  # the folder of an interim check, which need not be there
     6: lambda tables: tables,  # known artefacts, which may be none
+    7: lambda tables: tables,  # what kind of artefact, which were all blocks
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 

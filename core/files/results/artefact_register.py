@@ -9,15 +9,22 @@ An artefact of the same id beside rig.toml counts::
     k = 2.0
     certificate = "D-K-15070 2026-03"
     due = 2028-03-01
+
+    [[artefact]]
+    id = "B 25-1"
+    kind = "sphere"          # its diameter; "step": its height; "block", a thickness, where nothing is said
+    value_mm = 25.0004
+    U_mm = 0.0006
 """
 
 from __future__ import annotations
 
+import re
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field
 
@@ -30,9 +37,10 @@ from core.files.results.rig_history import own_folder
 from core.files.tables import OptionalDay
 from core.files.toml_text import toml_text
 from core.messages import Message
-from core.study.artefact_check import Artefact
+from core.study.artefact_check import Artefact, ArtefactKind
 
 REGISTER = "artefacts.toml"
+_HEAD = re.compile(r"^[ \t]*\[\[[ \t]*artefact[ \t]*\]\]", re.MULTILINE)
 
 _Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False, description="a length in mm above 0")]
 _MISSING = Message("artefact.no_register", "there is no register of artefacts")
@@ -47,6 +55,7 @@ class ArtefactTable(Table):
     k: float = Field(2.0, ge=1, le=10, allow_inf_nan=False, description="a coverage factor from 1 to 10")
     certificate: str = ""
     due: OptionalDay = None
+    kind: ArtefactKind = Field("block", description='"block", "sphere" or "step"')
 
     def artefact(self) -> Artefact:
         """What it says."""
@@ -76,10 +85,12 @@ def own_register() -> Mapping[str, Artefact]:
 def register_in(folder: Path) -> Mapping[str, Artefact]:
     """The artefacts of the register in one folder, by their ids; none without one. InputError as `read_register`."""
     path = folder / REGISTER
-    if not path.exists():
-        return {}
-    file = checked(_Register, read_toml(path, missing=_MISSING), path)
-    return {row.id: row.artefact() for row in file.artefact}
+    return _artefacts(read_toml(path, missing=_MISSING), path) if path.exists() else {}
+
+
+def register_text(artefacts: Iterable[Artefact]) -> str:
+    """A register of these."""
+    return "\n".join(map(_text, artefacts))
 
 
 def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
@@ -91,27 +102,76 @@ def keep_own(artefact: Artefact) -> Mapping[str, Artefact]:
         If one of its id is there already, the register is damaged, or it cannot be written.
     """
     path, known = own_folder() / REGISTER, {**own_register()}
+    _refuse_second(artefact, known, path)
+    known[artefact.id] = artefact
+    before = path.read_text(encoding="utf-8") if path.exists() else ""
+    return _written(path, f"{before.rstrip()}\n\n{_text(artefact)}".lstrip(), known)
+
+
+def change_own(id_: str, to: Artefact | None) -> Mapping[str, Artefact]:
+    """Put an artefact in the place of the user's own of this id, or remove that for None; returns them all.
+
+    Raises
+    ------
+    InputError
+        If there is none of this id or already another one like the new one, the register is damaged, or it cannot be
+        written.
+    """
+    path, before = own_folder() / REGISTER, own_register()
+    if id_ not in before:
+        raise InputError(
+            Message("artefact.gone", "there is no artefact {id} any more", id=id_),
+            where=path,
+            todo=Message("artefact.advice_look_again", "open the registers again"),
+        )
+    if to is not None:
+        _refuse_second(to, before.keys() - {id_}, path)
+    changed = {id_: to}
+    known = {one.id: one for name, known in before.items() if (one := changed.get(name, known)) is not None}
+    text = _with_table(path.read_text(encoding="utf-8"), list(before).index(id_), "" if to is None else _text(to))
+    return _written(path, text, known)
+
+
+def _refuse_second(artefact: Artefact, known: Collection[str], path: Path) -> None:
+    """InputError if one of its id is among those known."""
     if artefact.id in known:
         raise InputError(
             Message("artefact.known_already", "there is an artefact {id} already", id=artefact.id),
             where=path,
             todo=Message("artefact.advice_change_it", "change it there"),
         )
-    known[artefact.id] = artefact
-    before = path.read_text(encoding="utf-8") if path.exists() else ""
-    text = f"{before.rstrip()}\n\n{_text(artefact)}".lstrip()
+
+
+def _written(path: Path, text: str, known: Mapping[str, Artefact]) -> Mapping[str, Artefact]:
+    """Write a register of those known: `text`, with what stood there by hand, unless that says something else."""
     try:
-        tomllib.loads(text)
-    except tomllib.TOMLDecodeError:  # all in one line, artefact = [{ … }]: nothing can be put after that
-        text = "\n".join(map(_text, known.values()))
+        same = list(_artefacts(tomllib.loads(text), path).values()) == list(known.values())
+    except (tomllib.TOMLDecodeError, InputError):  # all in one line, artefact = [{ … }]: nothing can be put after that
+        same = False
     make_folder(path.parent)
-    write_text(path, text)
+    write_text(path, text if same else register_text(known.values()))
     return known
+
+
+def _artefacts(tables: Mapping[str, Any], path: Path) -> Mapping[str, Artefact]:
+    return {row.id: row.artefact() for row in checked(_Register, tables, path).artefact}
+
+
+def _with_table(text: str, number: int, table: str) -> str:
+    """The text of a register with another table in the place of this one; comments before the next stay."""
+    starts = [*(found.start() for found in _HEAD.finditer(text)), len(text)]
+    if number + 1 >= len(starts):
+        return ""
+    old = text[starts[number] : starts[number + 1]].splitlines(keepends=True)
+    ends = max(n for n, line in enumerate(old) if line.strip() and not line.lstrip().startswith("#"))
+    return (text[: starts[number]] + table + "".join(old[ends + 1 :]) + text[starts[number + 1] :]).lstrip()
 
 
 def _text(artefact: Artefact) -> str:
     """Its table in a register."""
     stated = {key: value for key, value in asdict(artefact).items() if value not in (None, "")}
+    if artefact.kind == "block":
+        del stated["kind"]
     return toml_text({"artefact": [stated]})
 
 

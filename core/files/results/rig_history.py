@@ -4,7 +4,8 @@ Layout::
 
     FOLDER/rigs/NAME.json       of the rig that rig.toml names, else of one calibration by its id
 
-Written whole or not at all. A check of the same pictures with the same calibration takes the place of the one before.
+Written whole or not at all. A check of the same pictures with the same calibration takes the place of the one before,
+by artefacts if it is of the same characteristic: a stepped block has several heights.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from core.files.results.check_file import CheckVerdict, InterimCheck
 from core.files.tables import RESULT, Finite, LengthAbove0, OptionalDay, OrNan, Probability, ResultFile, Time
 from core.inspect.uncertainty.coverage import coverage_factor
 from core.messages import Message
-from core.study.artefact_check import Artefact, ArtefactCheck
+from core.study.artefact_check import Artefact, ArtefactCheck, ArtefactKind
 from core.study.control_chart import FEWEST, ControlChart, control_chart
 
 DATA = "TRISECT_DATA"
@@ -53,7 +54,7 @@ class PastCheck:
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
     `certified_u_mm`, `certified_k`, `certificate` and `due` are what its certificate says; no u of checks before that
-    was kept.
+    was kept. `kind` and `characteristic` are what it is and what was measured of it.
     `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, or where no stripe was found.
     `stated_mm` is what change does to a step by the stability in rig.toml, or without one by the default, `default_mm`
     what it does by the default.
@@ -82,12 +83,19 @@ class PastCheck:
         Field(description=f"{len(FACTORS)} finite numbers"),
     ] = None
     default_mm: OrNan = math.nan
+    kind: Annotated[ArtefactKind, Field(description='"block", "sphere" or "step"')] = "block"
+    characteristic: str = ""
     __pydantic_config__ = RESULT
 
     @property
     def by_default_mm(self) -> float:
         """`default_mm`; of checks before it was kept, whose `likelihoods` say that nothing was stated, `stated_mm`."""
         return self.stated_mm if math.isnan(self.default_mm) else self.default_mm
+
+    @property
+    def looked_at(self) -> tuple[str, str, str]:
+        """What was looked at, and by what: a check of the same takes its place."""
+        return self.pictures_id, self.calibration_id, self.characteristic
 
     @property
     def values(self) -> dict[str, Any]:
@@ -107,10 +115,12 @@ class PastCheck:
             self.certified_k,
             self.certificate,
             self.due,
+            self.kind,
         )
         square = (self.unseen_mm / 2) ** 2 - self.certified_u_mm**2
         day = self.taken_at.astimezone().date()
-        return ArtefactCheck(known, self.step_mm + self.error_mm, math.sqrt(max(square, 0.0)), day)
+        u_mm = math.sqrt(max(square, 0.0))
+        return ArtefactCheck(known, self.step_mm + self.error_mm, u_mm, day, self.characteristic)
 
     @classmethod
     def of_measured(
@@ -134,6 +144,8 @@ class PastCheck:
             certified_k=known.k,
             certificate=known.certificate,
             due=known.due,
+            kind=known.kind,
+            characteristic=measured.characteristic,
         )
 
     @classmethod
@@ -247,8 +259,7 @@ class RigHistory:
 
     def added(self, check: PastCheck) -> RigHistory:
         """The history with another check."""
-        same = (check.pictures_id, check.calibration_id)
-        others = (one for one in self.checks if (one.pictures_id, one.calibration_id) != same)
+        others = (one for one in self.checks if one.looked_at != check.looked_at)
         return RigHistory(self.name, tuple(sorted((*others, check), key=lambda one: one.taken_at)))
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
 from core.calibrate.results import ProposedReadjustment
@@ -15,20 +16,21 @@ from core.files.project.calibration_store import (
     read_stored_poses,
 )
 from core.files.project.data import Project
-from core.files.project.folder import source_folder
+from core.files.project.folder import results_folder, source_folder
 from core.files.recording.set_listing import scan_frames, taken_at
 from core.files.results.check_file import InterimCheck, read_check
+from core.files.results.inspection_file import read_inspection
 from core.files.results.rig_history import RigHistory
 from core.messages import Message
 from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
-from core.pipeline.steps.artefact_step import artefact_step
+from core.pipeline.steps.artefact_step import artefact_step, lengths_of
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace
 from core.progress import Progress, silent
-from core.study.artefact_check import Artefact, ArtefactCheck
+from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 
 CHECK = "check"
 """The folder in the project that its result goes to: a scan among the results stays as it is."""
@@ -61,15 +63,28 @@ def check_history(folder: Path, project: Project) -> RigHistory:
     return history_of(project.rig, _accepted(folder, project).id)
 
 
-def compare_with_artefact(folder: Path, project: Project, artefact: Artefact) -> ArtefactCheck:
-    """Compare the thickness among the project's results with the certificate of the artefact that was measured.
+def compare_with_artefact(
+    folder: Path, project: Project, artefact: Artefact, characteristic: str = ""
+) -> ArtefactCheck:
+    """Compare what is among the project's results with the certificate of the artefact that was measured.
 
     Raises
     ------
     InputError
         As `core.pipeline.steps.artefact_step.artefact_step`.
     """
-    return artefact_step(project_workspace(folder, project), artefact, project.info.air_celsius)
+    return artefact_step(project_workspace(folder, project), artefact, project.info.air_celsius, characteristic)
+
+
+def comparable_lengths(folder: Path) -> Mapping[ArtefactKind, tuple[str, ...]]:
+    """Names of the project's measured characteristics that an artefact of each kind may be compared with.
+
+    Of a block "" is the thickness of the part as a whole, measured or not. InputError if inspection.json is damaged.
+    """
+    path = results_folder(folder) / FILES["inspection"]
+    file = read_inspection(path) if path.exists() else None
+    names = {kind: tuple(row.name for row in lengths_of(file, kind)) if file else () for kind in KINDS}
+    return {**names, "block": ("", *names["block"])}
 
 
 def artefact_checks(folder: Path, project: Project) -> tuple[ArtefactCheck, ...]:

@@ -1,43 +1,116 @@
-"""Artefact step: the thickness in gauge.json against the certificate of the artefact that was measured."""
+"""Artefact step: a length among the results against the certificate of the artefact that was measured."""
 
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Mapping
+from pathlib import Path
 
+from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
+from core.files.results.inspection_file import AGAIN, InspectionFile, read_inspection
 from core.files.results.rig_history import PastCheck, keep_check
 from core.files.results.scan_file import read_scan
+from core.inspect.characteristic import Characteristic
+from core.inspect.plan.temperature import COMPARED
+from core.messages import Message
 from core.pipeline.steps.validity import history_name
 from core.pipeline.steps.workspace import Workspace, check_calibration
-from core.study.artefact_check import Artefact, ArtefactCheck
+from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
+
+_MEASURED_AS: Mapping[ArtefactKind, tuple[str, str]] = {
+    "block": ("thickness", "thickness"),
+    "sphere": ("sphere", "diameter"),
+    "step": ("steps", "height"),
+}
+"""Of a plan's characteristics: the kind of the feature and of its result."""
 
 
-def artefact_step(work: Workspace, artefact: Artefact, celsius: float | None = None) -> ArtefactCheck:
-    """Compare the thickness among the results with the certificate, and keep that in the rig's history.
+def artefact_step(
+    work: Workspace, artefact: Artefact, celsius: float | None = None, characteristic: str = ""
+) -> ArtefactCheck:
+    """Compare what was measured of an artefact with its certificate, and keep that in the rig's history.
 
-    The thickness is at 20 °C where the part's temperature is stated; `celsius` is that of the air, for the history.
+    Of a block that is the thickness of the part, of a sphere or a step its diameter or height in inspection.json, and
+    `characteristic` says which where there are several. It is at 20 °C where the part's temperature is stated;
+    `celsius` is that of the air, for the history.
 
     Raises
     ------
     InputError
-        If the set has no scan, no thickness was measured in it, it is of another calibration, or the history cannot be
-        written.
+        If the set has no scan, no such length was measured in it or it is not said which, it is of another calibration
+        or was corrected by a master, or the history cannot be written.
     """
     found = work.found
     require_scan(found)
     calibration = work.calibration()
     check_calibration(work.path("scan"), read_scan(work.path("scan")).calibration_id, calibration)
-    thickness, when = read_thickness(work.path("gauge")), taken_at(found.frames)
-    check = ArtefactCheck(artefact, thickness.value, thickness.u, when.astimezone().date())
-    past = PastCheck.of_measured(check, when, (calibration.id, _frames_id(found, work)), celsius)
+    if artefact.kind == "block" and not characteristic:
+        length = read_thickness(work.path("gauge"))
+    else:
+        path = work.path("inspection")
+        file = read_inspection(path)
+        check_calibration(path, file.calibration_id, calibration)
+        length = _chosen(lengths_of(file, artefact.kind), artefact, characteristic, path)
+        characteristic = length.name
+    when = taken_at(found.frames)
+    check = ArtefactCheck(artefact, length.value, length.u, when.astimezone().date(), characteristic)
+    past = PastCheck.of_measured(check, when, (calibration.id, frames_id(found, work)), celsius)
     keep_check(history_name(found.rig, calibration.id), past)
     return check
 
 
-def _frames_id(found: RecordingSet, work: Workspace) -> str:
+def lengths_of(file: InspectionFile, kind: ArtefactKind) -> tuple[Characteristic, ...]:
+    """What a plan has measured that a certificate of this kind can state."""
+    feature, result = _MEASURED_AS[kind]
+    return tuple(
+        row for row in file.characteristics if row.kind == result and file.kinds.get(file.features[row.name]) == feature
+    )
+
+
+def frames_id(found: RecordingSet, work: Workspace) -> str:
     """Twelve hex digits that name the frames by what was in them when they were measured."""
     inputs = work.record().inputs
     text = "\n".join(inputs.get(found.name_of(path), "") for path in found.frames)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+def _chosen(lengths: tuple[Characteristic, ...], artefact: Artefact, name: str, path: Path) -> Characteristic:
+    """The length that is compared: the one of this name, or the only one."""
+    length, known = KINDS[artefact.kind], tuple(row.name for row in lengths)
+    if not lengths:
+        raise InputError(
+            Message("artefact.not_measured", "nothing was measured that {id} could be ({length})", id=artefact.id,
+                    length=length),
+            where=path,
+            todo=AGAIN,
+        )  # fmt: skip
+    if not name and len(lengths) > 1:
+        raise InputError(
+            Message("artefact.which", "several lengths may be that of {id}: {known}", id=artefact.id, known=known),
+            where=path,
+            todo=Message("artefact.advice_name_it", "name one with --characteristic"),
+        )
+    if name and name not in known:
+        raise InputError(
+            Message(
+                "artefact.no_such_length",
+                "there is no {name} that could be {id} ({length}), only {known}",
+                name=name,
+                id=artefact.id,
+                length=length,
+                known=known,
+            ),
+            where=path,
+            todo=Message("artefact.advice_name_one", "name one of these"),
+        )
+    one = lengths[known.index(name) if name else 0]
+    if any(note.code == COMPARED for note in one.notes):
+        raise InputError(
+            Message("artefact.by_master", "{name} was corrected by a master, so that it checks nothing", name=one.name),
+            where=path,
+            todo=Message("artefact.advice_without_master", "measure the plan without the master"),
+        )
+    return one

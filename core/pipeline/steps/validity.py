@@ -22,6 +22,7 @@ from core.pipeline.steps.workspace import Calibration, Workspace
 
 _DAY_S = 86_400.0
 """Seconds of a day."""
+_WORST_FIRST = ("failed", "doubtful", "passed")
 
 
 POINTS_UNCONFIRMED = Message(
@@ -61,7 +62,7 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
         )
     if (known := calibration.fan.readjusted) is not None:
         checks = (*checks, _as_check(known, calibration.id))
-    nearest = min(checks, key=lambda check: abs(check.taken_at - when), default=None)
+    nearest = _nearest(checks, when)
     if nearest is not None and nearest.verdict == "failed":
         return Message(
             "validity.check_failed",
@@ -106,11 +107,23 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
 def _passed_artefact(rig: Rig, checks: Sequence[PastCheck], when: datetime) -> PastCheck | None:
     """The artefact measured nearest in time to `when`, if it passed no longer ago than a check holds."""
     artefacts = [check for check in checks if check.artefact]
-    nearest = min(artefacts, key=lambda check: abs(check.taken_at - when), default=None)
+    nearest = _nearest(artefacts, when)
     if nearest is None or nearest.verdict != "passed":
         return None
     holds = rig.validity.check_days is None or abs(_days(when, nearest.taken_at)) <= rig.validity.check_days
     return nearest if holds else None
+
+
+def _nearest(checks: Sequence[PastCheck], when: datetime) -> PastCheck | None:
+    """The check nearest in time.
+
+    Of several lengths of one scan it is the one that failed, and of those that passed the longest, which says most.
+    """
+    return min(
+        checks,
+        key=lambda check: (abs(check.taken_at - when), _WORST_FIRST.index(check.verdict), -check.step_mm),
+        default=None,
+    )
 
 
 def _as_check(known: Readjustment, calibration_id: str) -> PastCheck:

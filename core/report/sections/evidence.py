@@ -27,6 +27,7 @@ from core.report.sections.calibration_tables import camera_facts, camera_table, 
 from core.report.wording import decimals_of, grouped, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.states import CHECKS
+from core.study.artefact_check import KINDS
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -51,7 +52,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
         due = words("not stated") if known.due is None else known.due.isoformat()
         rows.append(
             [
-                look.text(known.id, "small"),
+                look.text(f"{known.id} ({words(KINDS[known.kind])})", "small"),
                 look.text(known.certificate, "small"),
                 look.text(one.day.isoformat(), "small"),
                 *(look.text(number, "number") for number in numbers),
@@ -59,7 +60,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
                 look.text(words(CHECKS[one.verdict]), "small"),
             ]
         )
-    shares = (0.09, 0.15, 0.1, 0.17, 0.15, 0.09, 0.06, 0.1, 0.09)
+    shares = (0.14, 0.12, 0.1, 0.17, 0.14, 0.08, 0.06, 0.1, 0.09)
     note = look.say(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
         "was measured with k = 2. E_n is the error over the U of both together; above 1 nothing is conforming.",

@@ -62,7 +62,7 @@ def full_project():
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
         full_plan(),
         (KeptStudy("c0ffee012345", "grr", "3 parts", False),),
-        (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1)),),
+        (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1), "sphere"),),
     )  # fmt: skip
 
 
@@ -283,6 +283,18 @@ def test_a_project_from_before_reports_had_a_language_states_none_and_no_templat
     (tmp_path / "project.json").write_text(json.dumps(tables))
     report = read_project(tmp_path).project.report
     assert (report.paper, report.language, report.template) == ("Letter", "", "")
+
+
+def test_the_artefacts_of_a_project_from_before_they_had_a_kind_are_blocks(tmp_path):
+    block = Artefact("GB 50-7", 50.0003, 0.0004)
+    create_project(tmp_path, ProjectFile(replace(new_project("x"), artefacts=(block, replace(block, kind="sphere")))))
+    tables = json.loads((tmp_path / "project.json").read_text())
+    assert [one["kind"] for one in tables["artefacts"]] == ["block", "sphere"]
+    tables["schema_version"] = 7
+    for one in tables["artefacts"]:
+        del one["kind"]
+    (tmp_path / "project.json").write_text(json.dumps(tables))
+    assert read_project(tmp_path).project.artefacts == (block, block)
 
 
 @pytest.mark.parametrize(("data", "said"), [

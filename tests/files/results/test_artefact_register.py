@@ -5,7 +5,14 @@ from datetime import date
 import pytest
 
 from core.errors import InputError
-from core.files.results.artefact_register import REGISTER, artefact_named, keep_own, own_register, read_register
+from core.files.results.artefact_register import (
+    REGISTER,
+    artefact_named,
+    change_own,
+    keep_own,
+    own_register,
+    read_register,
+)
 from core.files.results.rig_history import own_folder
 from core.study.artefact_check import Artefact
 
@@ -59,3 +66,34 @@ def test_an_artefact_is_added_to_the_users_own_after_what_stands_there(before):
     assert ("# of the lab" in path.read_text()) == ("#" in before), "what was written by hand is kept"
     with pytest.raises(InputError, match=r"there is an artefact step .* already"):
         keep_own(step)
+
+
+STEP = '[[artefact]]\nid = "step 10"\nkind = "step"\nvalue_mm = 10.0\nU_mm = 0.001\n'
+
+
+def test_an_artefact_without_a_kind_is_a_block_and_no_other_kind_is_known(tmp_path):
+    (tmp_path / REGISTER).write_text(BLOCK + STEP)
+    assert [one.kind for one in read_register(tmp_path).values()] == ["block", "step"]
+    (tmp_path / REGISTER).write_text(STEP.replace('"step"', '"cone"'))
+    with pytest.raises(InputError, match=r'kind.*"block", "sphere" or "step"'):
+        read_register(tmp_path)
+
+
+@pytest.mark.parametrize("to", [Artefact("step 11", 11.0, 0.002, kind="step"), None], ids=["changed", "removed"])
+def test_an_artefact_of_the_users_own_is_changed_or_removed_and_the_rest_stays_as_it_was_written(own, to):
+    own.write_text("# of the lab\n" + STEP + "\n# the old block\n" + BLOCK)
+    known = change_own("step 10", to)
+    assert known == own_register() and list(known) == [*([to.id] if to else []), "GB 50-7"]
+    assert all(line in own.read_text() for line in ("# of the lab", "# the old block", *BLOCK.splitlines()))
+    assert "step 10" not in own.read_text()
+    change_own("GB 50-7", None)
+    assert list(own_register()) == ([to.id] if to else []) and "# of the lab" in own.read_text()
+
+
+def test_a_register_in_one_line_is_written_anew_where_an_artefact_is_changed(own):
+    own.write_text('artefact = [{ id = "a", value_mm = 50.0, U_mm = 0.1 }, { id = "b", value_mm = 9.0, U_mm = 0.1 }]\n')
+    assert list(change_own("a", Artefact("c", 50.0, 0.2))) == list(own_register()) == ["c", "b"]
+    with pytest.raises(InputError, match="there is no artefact a any more"):
+        change_own("a", None)
+    with pytest.raises(InputError, match="there is an artefact b already"):
+        change_own("c", Artefact("b", 50.0, 0.2))

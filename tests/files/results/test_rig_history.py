@@ -157,6 +157,17 @@ def test_an_artefact_is_kept_with_what_its_certificate_says():
     assert replace(kept, certified_u_mm=float("nan")).of_artefact is None, "kept before certificates were"
 
 
+def test_a_step_is_kept_with_its_kind_and_what_was_measured_of_it():
+    step = replace(BLOCK, id="S 20", value_mm=20.0, kind="step")
+    measured = ArtefactCheck(step, 20.003, 0.009, FIRST.taken_at.astimezone().date(), "stairs height 2")
+    keep_check("bench", PastCheck.of_measured(measured, FIRST.taken_at, (FIRST.calibration_id, "frames"), None))
+    (kept,) = read_history("bench").checks
+    assert kept.of_artefact is not None
+    assert (kept.of_artefact.artefact, kept.of_artefact.characteristic) == (step, "stairs height 2")
+    assert len(RigHistory("bench", (kept,)).added(replace(kept, characteristic="stairs height 1")).checks) == 2
+    assert len(RigHistory("bench", (kept,)).added(replace(kept, artefact="S 21")).checks) == 1, "corrected"
+
+
 def test_of_each_artefact_the_check_nearest_in_time_counts():
     other = replace(BLOCK, id="GB 20-1", value_mm=20.0)
     checks = (measured_block(1, 50.001), measured_block(3, 50.003), measured_block(9, 50.009))

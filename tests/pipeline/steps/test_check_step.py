@@ -19,11 +19,17 @@ from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
 from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
+from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
+from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
+from core.inspect.plan.temperature import COMPARED
+from core.messages import Message
 from core.pipeline.run import run
+from core.pipeline.steps import artefact_step as artefact_module
 from core.pipeline.steps import planes_step as planes_step_module
+from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, measure_check, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
@@ -37,6 +43,7 @@ from core.report.content import thickness_characteristic
 from core.report.wording import decision_sentence, verdict_sentence
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
+from core.study.artefact_check import Artefact
 from tests.shared import made_once
 from tests.simulated import trisect
 
@@ -462,3 +469,57 @@ def test_an_artefact_is_held_to_its_certificate_and_kept_in_the_same_history(mea
     work = Workspace.open(open_set(made), out)
     told = doubt_of_the_day(work, work.calibration())
     assert told is not None and told.code == "validity.check_failed", "what was measured then proves nothing"
+
+
+STEP = """[[artefact]]
+id = "{id}"
+kind = "step"
+value_mm = {value:.6f}
+U_mm = 0.0004
+"""
+
+
+def test_a_step_is_compared_by_its_height_in_the_inspection(measured, simulated, tmp_path):
+    made, out = shutil.copytree(simulated, tmp_path / "set"), shutil.copytree(measured, tmp_path / "out")
+    (tmp_path / "plan.toml").write_text('[[feature]]\nname = "stairs"\nkind = "steps"\n')
+    (made / "artefacts.toml").write_text(STEP.format(id="S 1", value=50.0))
+    before = trisect("artefact", made, "--out", out, "--id", "S 1")
+    assert before.code == 2 and "trisect inspect SET --plan plan.toml" in before.err
+    assert trisect("inspect", made, "--out", out, "--plan", tmp_path / "plan.toml").code in (0, 1)
+    (height,) = read_inspection(out / "inspection.json").characteristics
+    right, wrong = (STEP.format(id=id, value=height.value - e * height.U) for id, e in (("S 1", 0.5), ("S 2", 2.0)))
+    (made / "artefacts.toml").write_text(right + wrong)
+    said = json.loads(trisect("artefact", made, "--out", out, "--id", "S 1", "--json").out)
+    assert (said["kind"], said["characteristic"], said["verdict"]) == ("step", "stairs height 1", "passed")
+    assert said["e_n"] == pytest.approx(0.5 * height.k / 2, abs=0.01)
+    failed = trisect("artefact", made, "--out", out, "--id", "S 2", "--characteristic", "stairs height 1")
+    assert failed.code == 1 and "stairs height 1" in failed.out
+    other = trisect("artefact", made, "--out", out, "--id", "S 1", "--characteristic", "stairs height 2")
+    assert "there is no stairs height 2 that could be S 1 (step, height), only stairs height 1" in other.sentence
+    (kept,) = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
+    assert (kept["artefact"], kept["kind"]) == ("S 2", "step"), "of one height the last comparison counts"
+
+
+def inspected(tmp_path, names, note=None):
+    """Results whose inspection has these heights of steps."""
+    notes = () if note is None else (note,)
+    rows = [Characteristic(name, "height", 20.0, 0.01, notes=notes) for name in names]
+    return InspectionFile(tuple(rows), {"stairs": "steps"}, (), (), {}, dict.fromkeys(names, "stairs"), {}, {}, {}, "")
+
+
+@pytest.mark.parametrize(
+    ("names", "note", "code"),
+    [
+        ((), None, "artefact.not_measured"),
+        (("stairs height 1", "stairs height 2"), None, "artefact.which"),
+        (("stairs height 1",), Message(COMPARED, "Compared"), "artefact.by_master"),
+    ],
+)
+def test_what_cannot_be_compared_with_an_artefact_is_told(
+    measured, simulated, tmp_path, monkeypatch, names, note, code
+):
+    monkeypatch.setattr(artefact_module, "read_inspection", lambda _: inspected(tmp_path, names, note))
+    work = Workspace.open(open_set(simulated), shutil.copytree(measured, tmp_path / "out"))
+    with pytest.raises(InputError) as told:
+        artefact_step(work, Artefact("S 1", 20.0, 0.001, kind="step"))
+    assert told.value.code == code

@@ -1,5 +1,6 @@
 """Calibrations and checks that lapse: what was recorded then proves nothing."""
 
+import math
 import os
 from dataclasses import dataclass, replace
 from datetime import UTC, datetime, timedelta
@@ -65,11 +66,11 @@ def calibrated(*, assumed):
     return _Calibration(replace(fan, scale_sd=5e-4, scale_assumed=assumed))
 
 
-def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed"):
+def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed", of=""):
     """An artefact so many days before NOON, its error known to ±0.06 mm."""
     past = PastCheck(
         NOON - timedelta(days=days), ID, f"artefact {days}", verdict, 0.5, step_mm, error_mm=error_mm,
-        unseen_mm=0.06, stated_mm=0.0, artefact="GB 50", e_n=error_mm / 0.06,
+        unseen_mm=0.06, stated_mm=0.0, artefact="GB 50", e_n=error_mm / 0.06, characteristic=of,
     )  # fmt: skip
     keep_check(ID, past)
 
@@ -104,6 +105,16 @@ def test_an_artefact_that_failed_or_whose_certificate_has_lapsed_confirms_nothin
     for days, verdict in ((2, "doubtful"), (1, "failed")):
         artefact_measured(days, verdict=verdict)
         assert with_size_by_artefact(work, calibrated(assumed=True)).fan.scale_assumed
+
+
+def test_of_several_lengths_of_one_scan_the_one_that_failed_counts(tmp_path):
+    work = recorded(tmp_path)
+    artefact_measured(1, step_mm=20.0, of="ball diameter")
+    artefact_measured(1, step_mm=50.0)
+    known = with_size_by_artefact(work, calibrated(assumed=True)).fan
+    assert known.scale_sd == pytest.approx(math.hypot(0.02, 0.03) / 50.0), "the longest says most"
+    artefact_measured(1, step_mm=20.0, of="stairs height 1", verdict="failed")
+    assert with_size_by_artefact(work, calibrated(assumed=True)).fan.scale_assumed
 
 
 def test_a_readjusted_fan_is_confirmed_by_an_artefact_that_says_as_much_as_it_holds(tmp_path):

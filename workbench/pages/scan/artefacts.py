@@ -1,4 +1,4 @@
-"""Known artefacts: their registers, and the thickness compared with the certificate of one of them."""
+"""Known artefacts: their registers, and what was measured compared with the certificate of one of them."""
 
 from __future__ import annotations
 
@@ -8,7 +8,8 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
-from core.study.artefact_check import Artefact, ArtefactCheck
+from core.files.project.keys import up_to_date
+from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.scan.stage import CompareFacts, why_not_compare
@@ -20,8 +21,9 @@ from workbench.work.tasks import Task
 class KnownArtefacts(QObject):
     """The user's and the project's artefacts, and what was measured of them with the accepted calibrations.
 
-    `own` are the user's by their ids, as they were last read. `checks` are the results, of each artefact the one
-    nearest in time to the recording. `problem` says why the last artefact was not kept, or the registers not read.
+    `own` are the user's by their ids, as they were last read, `lengths` the names of what each kind can be compared
+    with. `checks` are the results, of each artefact the one nearest in time to the recording. `problem` says why the
+    last artefact was not kept, or the registers not read.
     """
 
     changed = Signal()
@@ -30,6 +32,7 @@ class KnownArtefacts(QObject):
         super().__init__(parent)
         self._bench, self._model, self._measuring = bench, bench.model, measuring
         self.own: Mapping[str, Artefact] = {}
+        self.lengths: Mapping[ArtefactKind, tuple[str, ...]] = {}
         self.checks: tuple[ArtefactCheck, ...] = ()
         self.problem, self._looked = "", ""
         self._task: Task | None = None
@@ -46,19 +49,38 @@ class KnownArtefacts(QObject):
 
     @property
     def cannot_compare(self) -> str:
-        """Why the thickness cannot be compared now, or ""."""
-        state = self._model.states["inspect"].state
+        """Why nothing can be compared now, or ""."""
+        reasons = [self._why_not(step) for step in ("inspect", "features")]
+        return reasons[0] if all(reasons) else ""
+
+    def why_not(self, artefact: Artefact, characteristic: str) -> str:
+        """Why this characteristic cannot be compared with an artefact now, or ""; "" is the thickness of the part."""
+        if artefact.kind == "block" and not characteristic:
+            return self._why_not("inspect")
+        return self._why_not("features") or (
+            ""
+            if characteristic
+            else tr(
+                "None is measured ({length}): add one to the features of the part on the Inspect page.",
+                length=tr(KINDS[artefact.kind]),
+            )
+        )
+
+    def _why_not(self, step: str) -> str:
+        """Why nothing of the thickness, "inspect", or of the plan, "features", can be compared."""
+        project, results = self._model.project, self._model.results
+        scan = self._model.states["scan"].state
         facts = CompareFacts(
             comparing=self._task is not None,
             measuring=self._measuring(),
             cannot_write=self._bench.cannot_write,
-            measured="inspect" in self._model.results,
-            outdated=state is not State.DONE,
+            measured=step in results,
+            outdated=scan is State.OUTDATED or not up_to_date(step, project, results),
         )
         return why_not_compare(facts)
 
-    def compare(self, artefact: Artefact) -> None:
-        """Compare the thickness with its certificate; the rig's history keeps the result."""
+    def compare(self, artefact: Artefact, characteristic: str = "") -> None:
+        """Compare this characteristic with its certificate; the rig's history keeps the result."""
         folder, project = self._model.folder, self._model.project
         if folder is None or self.cannot_compare:
             return
@@ -68,6 +90,7 @@ class KnownArtefacts(QObject):
             folder,
             project,
             artefact,
+            characteristic,
             label=tr("Comparing with an artefact"),
             on_done=lambda check: self._ended(task, check),
             on_failed=lambda _: self._ended(task),
@@ -87,16 +110,48 @@ class KnownArtefacts(QObject):
         label = tr("add the artefact {id}", id=artefact.id)
         self._model.edit(label, replace(project, artefacts=(*project.artefacts, artefact)))
 
-    def read_own(self) -> None:
-        """Read the user's register: it may have been written by hand."""
+    def change(self, before: Artefact, after: Artefact | None, *, own: bool) -> None:
+        """Put an artefact in the place of another in the same register, or remove that for None; as `add`."""
+        self.problem = ""
+        if own:
+            self._ask_for_own(jobs.CHANGE_OWN_ARTEFACT, before.id, after)
+            return
+        project = self._model.project
+        changed = {before.id: after}
+        left = (changed.get(one.id, one) for one in project.artefacts)
+        label = (
+            tr("remove the artefact {id}", id=before.id)
+            if after is None
+            else tr("change the artefact {id}", id=before.id)
+        )
+        self._model.edit(label, replace(project, artefacts=tuple(one for one in left if one is not None)))
+
+    def read(self) -> None:
+        """Read the user's register, which may have been written by hand, and what there is to compare."""
         self.problem = ""
         self._ask_for_own(jobs.OWN_ARTEFACTS)
+        if self._model.folder is None:
+            return
+
+        def done(lengths: Mapping[ArtefactKind, tuple[str, ...]]) -> None:
+            self.lengths = lengths
+            self.changed.emit()
+
+        self._bench.quick.run(
+            self,
+            jobs.COMPARABLE_LENGTHS,
+            self._model.folder,
+            label=tr("Reading what was measured"),
+            on_done=done,
+            on_failed=self._refused,
+            offers={},
+        )
 
     def opened(self) -> None:
         """Another project: stop, and read what was measured with its calibrations."""
         if self._task is not None:
             self._task.cancel()
-        self._task, self.checks, self._looked = None, (), ""
+        self._task, self.checks, self._looked, self.lengths = None, (), "", {}
         self.follow()
 
     def follow(self) -> None:
@@ -127,22 +182,22 @@ class KnownArtefacts(QObject):
             offers={},
         )
 
-    def _ask_for_own(self, job: jobs.Job, *artefacts: Artefact) -> None:
+    def _refused(self, problem: Any) -> None:
+        self.problem = text_of(problem)
+        self.changed.emit()
+
+    def _ask_for_own(self, job: jobs.Job, *values: object) -> None:
         def read(own: Mapping[str, Artefact]) -> None:
             self.own = own
-            self.changed.emit()
-
-        def refused(problem: Any) -> None:
-            self.problem = text_of(problem)
             self.changed.emit()
 
         self._bench.quick.run(
             self,
             job,
-            *artefacts,
+            *values,
             label=tr("Reading the register of artefacts"),
             on_done=read,
-            on_failed=refused,
+            on_failed=self._refused,
             offers={},
         )
 

@@ -15,7 +15,7 @@ from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.wording import with_uncertainty
 from core.states import CHECKS, STEP_STATES
-from core.study.artefact_check import ArtefactCheck
+from core.study.artefact_check import KINDS, ArtefactCheck
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
@@ -117,7 +117,7 @@ class CheckCard(QFrame):
         enable(
             self.compare,
             can.compare,
-            tr("Compare the thickness with the certificate of the block or step that was scanned"),
+            tr("Compare what was measured with the certificate of the block, sphere or step that was scanned"),
         )
         self._refresh_readjust(can.readjust)
 
@@ -307,8 +307,9 @@ def artefact_rows(artefacts: Sequence[ArtefactCheck]) -> list[ValueRow]:
         certificate = " ".join(filter(None, (known.certificate, f"k = {number(known.k, 'g')}")))
         level = "" if one.verdict == "passed" else LEVELS[one.verdict]
         said = f"{text_of(one.sentence)} {one.day.isoformat()}"
+        compared = one.characteristic or tr(KINDS[known.kind])
         rows += [
-            (tr("{artefact} measured", artefact=known.id), f"{measured} mm", said, ""),
+            (tr("{artefact} measured", artefact=known.id), f"{measured} mm", f"{capital(compared)}. {said}", ""),
             (tr("{artefact} certified", artefact=known.id), f"{certified} mm", certificate, ""),
             (tr("E_n; valid until"), f"{number(one.e_n, '.2f')}; {due}", said, level),
         ]

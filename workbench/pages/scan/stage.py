@@ -183,26 +183,26 @@ def check_buttons(facts: CheckFacts) -> CheckButtons:
 
 @dataclass(frozen=True, slots=True)
 class CompareFacts:
-    """What comparing the thickness with a known artefact rests on."""
+    """What comparing a measured length with a known artefact rests on."""
 
     comparing: bool
     measuring: bool
     """The scan is being measured."""
     cannot_write: str
     measured: bool
-    """There is a thickness."""
+    """There is such a length."""
     outdated: bool
     """It is not what the project would give now."""
 
 
 def why_not_compare(facts: CompareFacts) -> str:
-    """Why the thickness cannot be compared with an artefact."""
+    """Why a length cannot be compared with an artefact."""
     reasons = (
-        (facts.comparing, tr("The thickness is being compared.")),
+        (facts.comparing, tr("An artefact is being compared.")),
         (facts.measuring, tr("The scan is being measured.")),
         (bool(facts.cannot_write), facts.cannot_write),
-        (not facts.measured, tr("Measure the thickness of the artefact first, like that of a part.")),
-        (facts.outdated, tr("The measured thickness is out of date; measure it again.")),
+        (not facts.measured, tr("Measure the artefact first, like a part.")),
+        (facts.outdated, tr("What was measured is out of date; measure it again.")),
     )
     return next((why for true, why in reasons if true), "")
 

@@ -15,6 +15,7 @@ from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.workbench.hand_lane import HandLane
 from workbench.notices import Level
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
+from workbench.views import ask
 from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
@@ -48,7 +49,15 @@ def opened(page, qtbot):
 
 
 def fill(dialog, **values):
-    full = {"id": "GB 50-7", "value_mm": 50.0003, "U_mm": 0.0004, "k": 2.0, "certificate": "", "due": ""}
+    full = {
+        "id": "GB 50-7",
+        "kind": "block",
+        "value_mm": 50.0003,
+        "U_mm": 0.0004,
+        "k": 2.0,
+        "certificate": "",
+        "due": "",
+    }
     dialog.form.set_values({**full, "register": "own", **values})
     press(dialog.add)
 
@@ -61,7 +70,7 @@ def press(button):
 def test_nothing_is_compared_before_a_thickness_is_measured_nor_where_nothing_can_be_kept(page, monkeypatch):
     page.refresh()
     assert not page.check.compare.isEnabled()
-    assert page.check.compare.toolTip() == "Measure the thickness of the artefact first, like that of a part."
+    assert page.check.compare.toolTip() == "Measure the artefact first, like a part."
     monkeypatch.setattr(type(page.presenter.model), "is_read_only", property(lambda _: True))
     page.refresh()
     assert "read-only" in page.check.compare.toolTip()
@@ -72,7 +81,7 @@ def test_a_thickness_that_is_out_of_date_is_not_compared(measured):
     model = measured.presenter.model
     model.edit("use another fan", replace(model.project, accepted=replace(model.project.accepted, fan="fan-2")))
     measured.refresh()
-    assert measured.check.compare.toolTip() == "The measured thickness is out of date; measure it again."
+    assert measured.check.compare.toolTip() == "What was measured is out of date; measure it again."
 
 
 def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):
@@ -82,7 +91,7 @@ def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):
     dialog = opened(measured, qtbot)
     first, second = dialog.table.rows()
     assert first == (
-        "GB 50-7", "50.00030", "0.00040 (k = 2)", "D-K-15070 2026-03", BLOCK.due.isoformat(), "mine",
+        "GB 50-7", "block, thickness", "50.00030", "0.00040 (k = 2)", "D-K-15070 2026-03", str(BLOCK.due), "mine",
     )  # fmt: skip
     assert second[0] == "GB 50-8" and second[-2:] == (f"{LAPSED.due}, lapsed", "project")
     assert not dialog.compare.isEnabled() and dialog.compare.toolTip() == "Choose an artefact."
@@ -98,11 +107,11 @@ def test_the_thickness_is_compared_with_the_chosen_artefact_and_the_card_shows_t
     dialog.table.set_current_row(0)
     press(dialog.compare)
     assert dialog.isHidden()
-    (_, job, (folder, project, artefact), _), *_ = lane.waiting
+    (_, job, (folder, project, artefact, characteristic), _), *_ = lane.waiting
     assert (job, folder, project) == (jobs.COMPARE_WITH_ARTEFACT, bench.model.folder, bench.model.project)
-    assert artefact == BLOCK
+    assert artefact == BLOCK and characteristic == "", "the thickness of the part"
     measured.refresh()
-    assert measured.check.compare.toolTip() == "The thickness is being compared."
+    assert measured.check.compare.toolTip() == "An artefact is being compared."
     check = ArtefactCheck(BLOCK, 50.05, 0.009, date.today())
     quick.answers[jobs.ARTEFACT_CHECKS] = lambda folder, project: (check,)
     lane.finish(check)
@@ -158,6 +167,77 @@ def test_why_the_users_register_cannot_be_read_is_said(measured, qtbot):
 
     quick.answers[jobs.OWN_ARTEFACTS] = damaged
     assert "the register is damaged" in opened(measured, qtbot).problem.text()
+
+
+def test_a_sphere_is_compared_with_a_diameter_of_the_features_that_can_be_chosen(measured, qtbot):
+    bench, model = measured.presenter.bench, measured.presenter.model
+    cast(HandLane, bench.quick).answers[jobs.COMPARABLE_LENGTHS] = lambda _: {
+        "block": ("",), "sphere": ("ball diameter", "other diameter"), "step": (),
+    }  # fmt: skip
+    keep_own(replace(BLOCK, id="B 25", kind="sphere"))
+    keep_own(replace(BLOCK, id="S 20", kind="step"))
+    dialog = opened(measured, qtbot)
+    dialog.table.set_current_row(0)
+    assert dialog.compare.toolTip() == "Measure the artefact first, like a part.", "no features are measured yet"
+    model.record_all({"features": finished("features", model.project, model.results)})
+    dialog.table.set_current_row(1)
+    assert dialog.length.isHidden() and "(step, height)" in dialog.compare.toolTip()
+    dialog.table.set_current_row(0)
+    assert not dialog.length.isHidden() and dialog.length.count() == 2
+    dialog.length.setCurrentIndex(1)
+    press(dialog.compare)
+    (_, _, (_, _, artefact, characteristic), _), *_ = cast(HandLane, bench.measuring).waiting
+    assert (artefact.id, characteristic) == ("B 25", "other diameter")
+
+
+def chosen_in_the_project(page, qtbot):
+    """The dialog with the project's only artefact chosen."""
+    model = page.presenter.model
+    model.edit("add", replace(model.project, artefacts=(BLOCK,)))
+    dialog = opened(page, qtbot)
+    dialog.table.set_current_row(0)
+    return dialog
+
+
+def test_an_artefact_of_the_project_is_changed_and_removed_each_undone_in_one_step(measured, qtbot):
+    dialog, model = chosen_in_the_project(measured, qtbot), measured.presenter.model
+    assert dialog.form.values()["value_mm"] == BLOCK.value_mm, "the fields are those of the chosen artefact"
+    dialog.form.set_values({"id": "B 50", "kind": "sphere"})
+    press(dialog.change)
+    changed = replace(BLOCK, id="B 50", kind="sphere")
+    assert model.project.artefacts == (changed,) and dialog.chosen == changed
+    press(dialog.remove)
+    assert model.project.artefacts == () and not dialog.remove.isEnabled()
+    model.undo_stack.undo()
+    assert model.project.artefacts == (changed,)
+    model.undo_stack.undo()
+    assert model.project.artefacts == (BLOCK,)
+
+
+def test_an_artefact_stays_in_its_register_where_it_is_changed(measured, qtbot):
+    dialog = chosen_in_the_project(measured, qtbot)
+    dialog.form.set_values({"register": "own"})
+    press(dialog.change)
+    assert "add it to the other one" in dialog.form.help_of("register")
+    assert measured.presenter.model.project.artefacts == (BLOCK,) and own_register() == {}
+
+
+def test_an_artefact_of_the_users_own_is_changed_and_removed_once_that_is_confirmed(measured, qtbot, monkeypatch):
+    keep_own(BLOCK)
+    dialog = opened(measured, qtbot)
+    dialog.table.set_current_row(0)
+    dialog.form.set_values({"value_mm": 50.5})
+    press(dialog.change)
+    changed = replace(BLOCK, value_mm=50.5)
+    qtbot.waitUntil(lambda: dialog.chosen == changed)
+    assert own_register() == {BLOCK.id: changed}
+    monkeypatch.setattr(ask, "ask", lambda *_: 1)
+    press(dialog.remove)
+    assert own_register() == {BLOCK.id: changed}, "kept"
+    monkeypatch.setattr(ask, "ask", lambda *_: 0)
+    press(dialog.remove)
+    qtbot.waitUntil(lambda: dialog.table.rows() == ())
+    assert own_register() == {} and not measured.presenter.model.undo_stack.canUndo()
 
 
 @pytest.mark.parametrize(
