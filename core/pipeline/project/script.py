@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from importlib import resources
 from pathlib import Path
 from string import Template
-from typing import Any
+from typing import Any, TypeAlias
 
 from core.errors import InputError
 from core.files.atomic import write_text
@@ -22,14 +22,18 @@ from core.files.project.folder import read_project, results_folder, source_folde
 from core.files.project.keys import changed, relocated, rests_on
 from core.files.reading import resolved
 from core.files.recording.rig import rig_to_toml
+from core.files.results.artefact_register import REGISTER, register_text
 from core.files.results.nominal_surface import nominal_names
 from core.files.results.run_file import RunRecord, read_run
 from core.files.study.study_file import study_path
 from core.files.toml_text import toml_text
 from core.messages import Message, label
-from core.pipeline.project.workspace import part_name
-from core.pipeline.steps.workspace import FILES
+from core.pipeline.project.workspace import part_name, project_set
+from core.pipeline.steps.artefact_step import frames_id
+from core.pipeline.steps.validity import history_of
+from core.pipeline.steps.workspace import FILES, read_calibration
 from core.report.wording import Words
+from core.study.artefact_check import ArtefactCheck
 
 SET, OUT, RIG, PLAN = "set", "results", "rig.toml", "plan.toml"
 """What the script makes in the folder it is run in."""
@@ -37,6 +41,8 @@ SET, OUT, RIG, PLAN = "set", "results", "rig.toml", "plan.toml"
 LIVE = label("recorded live into this project; the pictures are used as they are: {folder}")
 CHANGED = label("changed since {step} was done, and taken as it is now: {what}")
 NOT_SAID = label("chosen in the window, and no option of the command: {what}")
+
+_Compared: TypeAlias = tuple[ArtefactCheck, float | None]
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,8 +81,12 @@ def script_text(folder: Path, words: Words) -> str:
     files = {RIG: rig_to_toml(project.rig)}
     if _inspects(project, there):
         files[PLAN] = toml_text(plan_tables(project.inspection))
+    compared = _compared(folder, project, record)
+    known = {one.id: one for one in (*project.artefacts, *(check.artefact for check, _ in compared))}
+    if known:
+        files[f"{SET}/{REGISTER}"] = register_text(known.values())
     commands = []
-    for line in _lines(folder, file, record, there, words):
+    for line in _lines(folder, file, record, there, words, compared):
         commands += [f"    # {_plain(remark)}" for remark in line.remarks]
         commands += [f"    trisect({', '.join(map(repr, line.words))})"] if line.words else []
     template = (resources.files("resources") / "script" / "session.txt").read_text(encoding="utf-8")
@@ -92,7 +102,21 @@ def _inspects(project: Project, there: set[str]) -> bool:
     return "inspection" in there and bool(project.inspection.features)
 
 
-def _lines(folder: Path, file: ProjectFile, record: RunRecord, there: set[str], words: Words) -> Iterator[_Line]:
+def _compared(folder: Path, project: Project, record: RunRecord) -> list[_Compared]:
+    """The comparisons with artefacts of what was measured, as the rig's history has them, and the air's °C."""
+    results = results_folder(folder)
+    if not all((results / FILES[name]).exists() for name in ("camera", "planes")):
+        return []
+    calibration, found = read_calibration(results), project_set(folder, project)
+    checks, frames = history_of(project.rig, calibration.id).of_calibration(calibration.id), frames_id(found, record)
+    return [
+        (known, one.celsius) for one in checks if one.pictures_id == frames and (known := one.of_artefact) is not None
+    ]
+
+
+def _lines(
+    folder: Path, file: ProjectFile, record: RunRecord, there: set[str], words: Words, compared: Sequence[_Compared]
+) -> Iterator[_Line]:
     """The commands in the order of the steps, as far as their results are there."""
     project = file.project
     for step, done in file.results.items():
@@ -132,6 +156,9 @@ def _lines(folder: Path, file: ProjectFile, record: RunRecord, there: set[str], 
         yield _Line(("gauge", *at))
     if _inspects(project, there):
         yield _Line(("inspect", *at, "--plan", PLAN))
+    for one, celsius in compared:
+        which = (*_option("--characteristic", one.characteristic), *_option("--celsius", celsius))
+        yield _Line(("artefact", *at, "--id", one.artefact.id, *which))
     if "report" in there:
         yield _report(folder, project, words)
     yield _Line((), (words(label("Copies for other programs are not recorded; each is: trisect export DIR -f NAME")),))
@@ -200,8 +227,8 @@ def _excluded(told: Mapping[str, Any]) -> tuple[str, ...]:
 
 
 def _option(name: str, value: object) -> tuple[str, ...]:
-    """An option with its value; nothing for an empty text."""
-    return (name, str(value)) if value != "" else ()
+    """An option with its value; nothing for an empty text, or where it is not known."""
+    return (name, str(value)) if value not in ("", None) else ()
 
 
 def _with_whole_paths(folder: Path, file: ProjectFile) -> ProjectFile:

@@ -12,6 +12,7 @@ from core.files.recording.set_listing import taken_at
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import AGAIN, InspectionFile, read_inspection
 from core.files.results.rig_history import PastCheck, keep_check
+from core.files.results.run_file import RunRecord
 from core.files.results.scan_file import read_scan
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.temperature import COMPARED
@@ -57,7 +58,7 @@ def artefact_step(
         characteristic = length.name
     when = taken_at(found.frames)
     check = ArtefactCheck(artefact, length.value, length.u, when.astimezone().date(), characteristic)
-    past = PastCheck.of_measured(check, when, (calibration.id, frames_id(found, work)), celsius)
+    past = PastCheck.of_measured(check, when, (calibration.id, frames_id(found, work.record())), celsius)
     keep_check(history_name(found.rig, calibration.id), past)
     return check
 
@@ -70,10 +71,9 @@ def lengths_of(file: InspectionFile, kind: ArtefactKind) -> tuple[Characteristic
     )
 
 
-def frames_id(found: RecordingSet, work: Workspace) -> str:
+def frames_id(found: RecordingSet, record: RunRecord) -> str:
     """Twelve hex digits that name the frames by what was in them when they were measured."""
-    inputs = work.record().inputs
-    text = "\n".join(inputs.get(found.name_of(path), "") for path in found.frames)
+    text = "\n".join(record.inputs.get(found.name_of(path), "") for path in found.frames)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

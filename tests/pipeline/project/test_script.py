@@ -2,9 +2,11 @@
 
 import ast
 import json
+import runpy
 import subprocess
 import sys
 from dataclasses import replace
+from datetime import date
 from pathlib import Path
 
 import pytest
@@ -14,11 +16,17 @@ from core.errors import InputError
 from core.files.project.data import ProjectFile, ReportChoices
 from core.files.project.folder import create_project, read_project, results_folder, write_project
 from core.files.project.keys import finished
+from core.files.results.artefact_register import register_in
+from core.files.results.rig_history import history_file
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.pipeline.project.inspection import measure_features
+from core.pipeline.project.interim_check import compare_with_artefact
 from core.pipeline.project.report import make_report
 from core.pipeline.project.script import write_script
+from core.pipeline.steps.validity import history_name, history_of
+from core.pipeline.steps.workspace import read_calibration
+from core.study.artefact_check import Artefact
 from tests.pipeline.project.test_measuring import MEASURED
 from tests.simulated import copy_of
 
@@ -65,6 +73,31 @@ def test_pictures_left_out_and_stated_stripes_are_told_as_they_were_and_not_as_c
     assert told["camera"][-2:] == ["--exclude", "camera/view01.png"]
     assert told["planes"][-4:] == ["--stripe-width", "4.5", "--contrast", "60.0"]
     assert "--stripe-width" not in told["scan"]
+
+
+def compared(folder):
+    """The project after its thickness was compared with one of its artefacts, and with one of the user's own."""
+    file = read_project(folder)
+    own = Artefact("own", 50.1, 0.0003, 3.0, kind="block")
+    project = replace(
+        file.project,
+        info=replace(file.project.info, air_celsius=21.5),
+        artefacts=(Artefact("GB 7", 50.0, 0.0004, due=date(2030, 1, 2)), Artefact("B 9", 9.0, 0.001, kind="sphere")),
+    )
+    write_project(folder, replace(file, project=project))
+    compare_with_artefact(folder, project, project.artefacts[0])
+    return project, compare_with_artefact(folder, project, own)
+
+
+def test_artefacts_and_what_was_compared_with_them_are_in_the_script(project, tmp_path):
+    changed, last = compared(project)
+    script = write_script(project, tmp_path / "session.py")
+    told = {words[0]: words for words in commands(script)}
+    assert list(told)[-2:] == ["artefact", "report"]
+    assert told["artefact"][-4:] == ["--id", "own", "--celsius", "21.5"], "of one thickness the last comparison counts"
+    text = runpy.run_path(str(script))["FILES"]["set/artefacts.toml"]
+    (tmp_path / "artefacts.toml").write_text(text)
+    assert register_in(tmp_path) == {one.id: one for one in (*changed.artefacts, last.artefact)}
 
 
 def test_a_camera_of_another_program_is_taken_from_its_file(project, tmp_path):
@@ -115,7 +148,10 @@ def test_the_command_writes_the_same_script(project, tmp_path, capsys):
 
 @pytest.mark.slow
 def test_the_script_gives_the_same_bytes_in_an_empty_folder(project, tmp_path):
+    _, check = compared(project)
     script = write_script(project, tmp_path / "session.py")
+    calibration, rig = read_calibration(results_folder(project)), read_project(project).project.rig
+    history_file(history_name(rig, calibration.id)).unlink()
     (tmp_path / "empty").mkdir()
     subprocess.run([sys.executable, str(script)], cwd=tmp_path / "empty", check=True)
     for name in MEASURED:
@@ -125,4 +161,5 @@ def test_the_script_gives_the_same_bytes_in_an_empty_folder(project, tmp_path):
         for folder in (tmp_path / "empty" / "results", results_folder(project))
     )
     assert there["characteristics"] == here["characteristics"]
+    assert [one.of_artefact for one in history_of(rig, calibration.id).checks] == [check], "and so is the history"
     assert (tmp_path / "empty" / "results" / "report.pdf").stat().st_size > 0
