@@ -16,9 +16,10 @@ from typing import NamedTuple
 import numpy as np
 
 from core.calibrate.camera.reprojection import ray_changes
-from core.messages import Message
+from core.calibrate.change import STABLE, Stability
+from core.messages import Message, plural_message
 from core.model.arrays import Array
-from core.plan.design import Design
+from core.plan.design import USUAL_CHECK, Design
 from core.plan.information import (
     CAMERA,
     PlannedScan,
@@ -27,6 +28,8 @@ from core.plan.information import (
     ball_scan,
     block_scan,
     calibration_information,
+    change_covariance,
+    check_information,
     covariance,
 )
 from core.plan.light_bounds import crossing_bound
@@ -66,9 +69,12 @@ def bounds_of(
     *,
     ball_mm: float = BALL_MM,
     seed: int = 1,
+    stability: Stability = STABLE,
     progress: Progress = silent,
 ) -> tuple[Bound, ...]:
     """The bounds of a `design` for blocks of `heights_mm` (None: those of the design) and a ball, in one table.
+
+    Of a rig that may change between calibration and scan (`stability`) those of a thickness with and without a check.
 
     Raises
     ------
@@ -79,7 +85,7 @@ def bounds_of(
     found = []
     for number, speckle in enumerate((False, True)):
         progress("bounds", number, 2)
-        found.append(list(_Bounds(Sensing.of(design, speckle=speckle), seed).rows(heights, ball_mm)))
+        found.append(list(_Bounds(Sensing.of(design, speckle=speckle), seed, stability).rows(heights, ball_mm)))
     progress("bounds", 2, 2)
     pairs = zip(*found, strict=True)
     return tuple(Bound(clean.quantity, clean.unit, clean.u, grainy.u) for clean, grainy in pairs)
@@ -91,6 +97,7 @@ class _Bounds:
 
     sensing: Sensing
     seed: int
+    stability: Stability
 
     def rows(self, heights_mm: Sequence[float], ball_mm: float) -> Iterator[_Row]:
         """All of them, in the order of the table."""
@@ -110,13 +117,15 @@ class _Bounds:
         yield _Row(of_point, "mm", self._of_points(scans[-1]))
         for height, scan in zip(heights_mm, scans, strict=True):
             thickness = Message("plan.bound_thickness", "thickness of {height_mm:g} mm", height_mm=height)
-            yield _Row(thickness, "mm", self._thickness(scan, known=False))
+            yield _Row(thickness, "mm", self._thickness(scan, self.calibration))
+            if self.stability != STABLE:
+                yield from self._changed(scan, height)
             alone = Message(
                 "plan.bound_thickness_known",
                 "thickness of {height_mm:g} mm, camera and fan known",
                 height_mm=height,
             )
-            yield _Row(alone, "mm", self._thickness(scan, known=True))
+            yield _Row(alone, "mm", self._thickness(scan, None))
         ball = Message("plan.bound_ball", "diameter of a ball of {diameter_mm:g} mm", diameter_mm=ball_mm)
         yield _Row(ball, "mm", self._diameter(ball_scan(self.sensing, ball_mm, self.seed)))
 
@@ -125,20 +134,49 @@ class _Bounds:
         """(U, U) information of the calibrations' pictures."""
         return calibration_information(self.sensing, self.seed)
 
-    def _together(self, scan: PlannedScan) -> Array:
-        """Covariance of camera, fan and the scan's surfaces from all pictures."""
+    @cached_property
+    def changed(self) -> Array:
+        """(U, U) information of the calibrations' pictures on camera and fan as they may be at the scan."""
+        return covariance(covariance(self.calibration) + change_covariance(self.sensing, self.stability))
+
+    def _changed(self, scan: PlannedScan, height_mm: float) -> Iterator[_Row]:
+        """A thickness by a rig that may have changed, without a check of the day and with one."""
+        unchecked = Message(
+            "plan.bound_thickness_changed",
+            "thickness of {height_mm:g} mm, changed since the calibration and not checked",
+            height_mm=height_mm,
+        )
+        yield _Row(unchecked, "mm", self._thickness(scan, self.changed))
+        poses = self.sensing.design.check_poses or USUAL_CHECK
+        checked = plural_message(
+            "plan.bound_thickness_checked",
+            "thickness of {height_mm:g} mm, changed and checked by {n} picture",
+            "thickness of {height_mm:g} mm, changed and checked by {n} pictures",
+            n=poses,
+            height_mm=height_mm,
+        )
+        known = self.changed + check_information(self.sensing, self.seed, poses)
+        yield _Row(checked, "mm", self._thickness(scan, known))
+
+    def _together(self, scan: PlannedScan, known: Array) -> Array:
+        """Covariance of camera, fan and the scan's surfaces from its pictures, the two first `known` (U, U) before."""
         information = scan.information()
-        information[: self.sensing.unknowns, : self.sensing.unknowns] += self.calibration
+        information[: self.sensing.unknowns, : self.sensing.unknowns] += known
         return covariance(information)
 
-    def _thickness(self, scan: PlannedScan, *, known: bool) -> float:
+    def _thickness(self, scan: PlannedScan, known: Array | None) -> float:
+        """With this information on camera and fan beforehand; None: they are known for certain."""
         first = self.sensing.unknowns
-        own = covariance(scan.information()[first:, first:]) if known else self._together(scan)[first:, first:]
+        own = (
+            covariance(scan.information()[first:, first:])
+            if known is None
+            else self._together(scan, known)[first:, first:]
+        )
         difference = np.array([0.0, 0.0, 1.0, -1.0])
         return float(np.sqrt(difference @ own @ difference))
 
     def _diameter(self, scan: PlannedScan) -> float:
-        return 2 * float(np.sqrt(self._together(scan)[-1, -1]))
+        return 2 * float(np.sqrt(self._together(scan, self.calibration)[-1, -1]))
 
     def _of_fan(self, scan: PlannedScan, known: Array) -> float:
         """RMS over the points of the fan's lines on table and block."""

@@ -8,7 +8,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.messages import Message
-from core.plan.design import Design
+from core.plan.design import USUAL_CHECK, Design
 from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent, steps
 
@@ -79,12 +79,10 @@ def _grey(value: float) -> Message:
     return Message("plan.grey_levels", "{value:.3g} grey levels", value=value)
 
 
-_CHECKED = 3
-"""Pictures of a check on the day, as the manual advises."""
 _MORE_CHECKS = Change(
-    Message("plan.change_check", "pictures of a check on the day of the scan: {n} more", n=_CHECKED),
-    lambda design: Message("plan.number", "{n}", n=design.check_poses + _CHECKED),
-    lambda design: _with(design, "check_poses", design.check_poses + _CHECKED),
+    Message("plan.change_check", "pictures of a check on the day of the scan: {n} more", n=USUAL_CHECK),
+    lambda design: Message("plan.number", "{n}", n=design.check_poses + USUAL_CHECK),
+    lambda design: _with(design, "check_poses", design.check_poses + USUAL_CHECK),
 )
 
 CHANGES = (

@@ -57,6 +57,9 @@ class Range(NamedTuple):
     unit: str = ""
 
 
+USUAL_CHECK = 3
+"""Pictures of a check on the day, as the manual advises."""
+
 RANGES: Mapping[str, Range] = {
     "pixel_um": Range(0.5, 50.0, "µm"),
     "focal_mm": Range(1.0, 500.0, "mm"),

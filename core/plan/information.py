@@ -17,7 +17,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibrate.camera.reprojection import linearise, ray_changes
+from core.calibrate.camera.reprojection import linearise, parameters_of, ray_changes
+from core.calibrate.change import Stability, changes
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet, pencil_near
 from core.calibrate.fan.poses.target_plane import target_plane_changes
 from core.image.stripes.noise import ROUNDING_VARIANCE, NoiseModel
@@ -25,7 +26,7 @@ from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.stripes.stripe import PIXEL_VARIANCE
 from core.image.targets import BlackSquare, Target
 from core.image.targets.target_view import TargetView
-from core.model import Camera, Pose
+from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
 from core.plan.calibrating import plates_under_fan, square_covariance, view_poses
 from core.plan.design import Design
@@ -98,7 +99,20 @@ def calibration_information(sensing: Sensing, seed: int) -> Array:
     """(U, U) information on camera and fan of the planned views and poses, all in one adjustment."""
     information = np.zeros((sensing.unknowns, sensing.unknowns))
     information[:CAMERA, :CAMERA] += _of_views(sensing, seed)
-    return information + _of_plates(sensing, seed)
+    return information + check_information(sensing, seed, sensing.design.poses)
+
+
+def change_covariance(sensing: Sensing, stability: Stability) -> Array:
+    """(U, U) covariance that camera and fan have by what may have changed since they were calibrated."""
+    fan, here = Fan(tuple(LightPlane(pi) for pi in sensing.fan.pis)), parameters_of(sensing.camera)
+    columns = []
+    for one, share in zip(changes(sensing.camera, fan), stability.over_default, strict=True):
+        by_camera = (parameters_of(one.camera) - here)[:CAMERA]
+        moved = one.fan.pis - sensing.fan.pis
+        by_fan = np.linalg.lstsq(sensing.fan.jacobian, moved.ravel(), rcond=None)[0]
+        columns.append(share * np.concatenate([by_camera, by_fan]))
+    root = np.column_stack(columns)
+    return np.asarray(root @ root.T)
 
 
 def flat_stripe(sensing: Sensing, line: LitLine, density: float, pi: Array, tau: Array, by: Array) -> Array:
@@ -159,12 +173,12 @@ def _of_views(sensing: Sensing, seed: int) -> Array:
     return information
 
 
-def _of_plates(sensing: Sensing, seed: int) -> Array:
-    """(U, U) information on camera and fan of the poses of the plane target and the stripes on them."""
+def check_information(sensing: Sensing, seed: int, poses: int) -> Array:
+    """(U, U) information on camera and fan of so many poses of the plane target and the stripes on them."""
     size = sensing.unknowns
     information = np.zeros((size, size))
     columns = np.concatenate([np.arange(CAMERA), size + np.arange(_POSE)])
-    for pose, pieces in plates_under_fan(sensing.design, seed, sensing.design.poses):
+    for pose, pieces in plates_under_fan(sensing.design, seed, poses):
         own = np.zeros((size + _POSE, size + _POSE))
         rows = _target_rows(sensing, sensing.design.plane_target, pose, PLANE_GREY)
         own[np.ix_(columns, columns)] += rows.T @ rows

@@ -7,12 +7,13 @@ import pytest
 from scipy.stats import norm
 
 from core.calibrate.camera.reprojection import camera_of, parameters_of
+from core.calibrate.change import DEFAULT_STABILITY, changes
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.targets import Checkerboard, CircleGrid
-from core.model import LightPlane
+from core.model import Fan, LightPlane
 from core.plan.bounds import bounds_of
-from core.plan.information import Sensing, covariance, eliminated, flat_stripe, round_stripe
+from core.plan.information import Sensing, change_covariance, covariance, eliminated, flat_stripe, round_stripe
 from core.plan.light_bounds import crossing_bound, edge_density, point_bound, stripe_density
 from core.plan.light_lines import LitLine, lit_ball
 from core.plan.scanning import Stage
@@ -183,6 +184,28 @@ def test_speckle_costs_and_the_part_is_known_less_well_than_with_perfect_calibra
     whole, alone = bounds["thickness of 50 mm"], bounds["thickness of 50 mm, camera and fan known"]
     assert 0 < alone.with_speckle < whole.with_speckle
     assert 0 < alone.without < whole.without
+
+
+def test_planes_of_the_fan_are_as_unsure_as_the_rigs_changes_move_them(sensing):
+    stability = DEFAULT_STABILITY.times(2.0, 0.5, 1.0, 3.0)
+    found = change_covariance(sensing, stability)
+    fan = Fan(tuple(LightPlane(pi) for pi in sensing.fan.pis))
+    moved = [one.fan.pis - fan.pis for one in changes(sensing.camera, fan)]
+    expected = sum(share**2 * np.outer(by, by) for share, by in zip(stability.over_default, moved, strict=True))
+    planes = sensing.fan.jacobian @ found[9:, 9:] @ sensing.fan.jacobian.T
+    assert planes == pytest.approx(expected, rel=1e-3, abs=1e-6 * np.abs(expected).max()), "a pencil stays one"
+    assert np.sqrt(np.diag(found)[[3, 4]]) == pytest.approx(stability.centre_px)
+    assert np.sqrt(found[0, 0]) == pytest.approx(stability.focal_share * sensing.camera.focal, rel=1e-3)
+
+
+def test_what_may_have_changed_since_the_calibration_costs_and_a_check_of_the_day_saves_most_of_it(bounds):
+    rows = {str(one.quantity): one for one in bounds_of(SMALL, (50.0,), stability=DEFAULT_STABILITY)}
+    assert {name: rows[name] for name in bounds} == bounds, "the others stay as they are"
+    still = bounds["thickness of 50 mm"].with_speckle
+    unchecked = rows["thickness of 50 mm, changed since the calibration and not checked"].with_speckle
+    checked = rows["thickness of 50 mm, changed and checked by 3 pictures"].with_speckle
+    assert still < checked < 0.9 * unchecked
+    assert checked - still < 0.5 * (unchecked - still)
 
 
 @pytest.mark.accuracy

@@ -101,6 +101,8 @@ def test_people_are_told_in_lines(tmp_path):
     assert "block 40 mm" in said.out and "U = 0." in said.out
     assert "common to the scan" in said.out
     assert "no program below" in said.out and "thickness of 40 mm: u 0.0" in said.out
+    assert "changed since the calibration and not checked: u 0.0" in said.out
+    assert "changed and checked by 3 pictures: u 0.0" in said.out
 
 
 @pytest.mark.parametrize(

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from core import __version__
+from core.calibrate.change import DEFAULT_STABILITY
 from core.files.atomic import make_folder, write_bytes, write_text
 from core.files.json_text import rounded, to_json
 from core.messages import Message, as_json
@@ -78,7 +79,8 @@ def plan(
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()
-    limits = bounds_of(design, progress=progress) if bounds else ()
+    reckoned = DEFAULT_STABILITY if stability is None else stability
+    limits = bounds_of(design, stability=reckoned, progress=progress) if bounds else ()
     said = advice(effects) if changes else None
     return PlanResult(design, predictions, effects, said, limits, light_not_foretold(part))
 
