@@ -17,6 +17,7 @@ from core.files.atomic import write_bytes
 from core.files.limits import check_file, check_pixels
 from core.files.picture_size import declared_sizes
 from core.files.reading import read_bytes
+from core.image.mosaic import Pattern, colours_of
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.messages import Message
 
@@ -102,7 +103,7 @@ def is_picture(path: Path) -> bool:
     return path.suffix.lower() in SUFFIXES and not path.name.startswith(".")
 
 
-def read_picture(path: Path, channel: Channel | None = None) -> Picture:
+def read_picture(path: Path, channel: Channel | None = None, mosaic: Pattern | None = None) -> Picture:
     """Read a picture as grey levels.
 
     Parameters
@@ -111,6 +112,8 @@ def read_picture(path: Path, channel: Channel | None = None) -> Picture:
         png, tif, bmp, jpg or pgm; 8 or 16 bit; grey or colour.
     channel
         The channel of a colour picture to take; without it, colour is reduced to grey (0.299 R + 0.587 G + 0.114 B).
+    mosaic
+        The colour mosaic of raw pictures.
 
     Returns
     -------
@@ -122,16 +125,21 @@ def read_picture(path: Path, channel: Channel | None = None) -> Picture:
     InputError
         If the file cannot be read, is no picture, ends early or is damaged, or has an unsupported depth.
     """
-    return decode_picture(read_bytes(path), path, channel)
+    return to_grey(decode_colours(read_bytes(path), path, mosaic), channel)
 
 
-def decode_picture(data: bytes, path: Path, channel: Channel | None = None) -> Picture:
-    """Decode the bytes of a picture file; `path` names it in messages. Else as :func:`read_picture`."""
-    return to_grey(decode_colours(data, path), channel)
+def decode_colours(data: bytes, path: Path, mosaic: Pattern | None = None) -> NDArray[Any]:
+    """Decode the bytes of a picture file with all channels; `path` names it in messages. Else as :func:`read_picture`.
+
+    (height, width), or (height, width, 1 … 4) in OpenCV's order.
+    A raw picture of a `mosaic` has the colours of its sites, between them their means.
+    """
+    picture = _decoded(data, path)
+    return picture if mosaic is None or picture.ndim > 2 else colours_of(picture, mosaic)
 
 
-def decode_colours(data: bytes, path: Path) -> NDArray[Any]:
-    """Decode with all channels, in OpenCV's order: (height, width), or (height, width, 1 … 4). Else as above."""
+def _decoded(data: bytes, path: Path) -> NDArray[Any]:
+    """The picture as its file has it."""
     damage = _damage(data)
     if damage is not None:
         raise InputError(

@@ -22,9 +22,6 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
-from typing import Any
-
-from numpy.typing import NDArray
 
 from core.acquire.folder import read_ahead
 from core.acquire.grey import Channel, is_difference, to_grey
@@ -41,7 +38,7 @@ from core.files.recording.set_listing import (
     scan_frames,
     second_exposures,
 )
-from core.image.mosaic import ALL_SITES, Sites, colours_of, even_grey, sites_of
+from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
 from core.messages import Message
 from core.stage_times import StageTimes, stage
 
@@ -143,7 +140,7 @@ class RecordingSet:
         part = self.part_of(path)
         if part == "camera":
             return self._decoded_target(data, path, self.rig.channel_of("camera"))
-        return to_grey(self._colours(data, path), self.laser_channel(part).channel)
+        return to_grey(decode_colours(data, path, self.rig.mosaic), self.laser_channel(part).channel)
 
     def read_target(self, path: Path) -> Picture:
         """Read one picture of the set in the channel in which a target is looked for, else as `read`.
@@ -164,11 +161,6 @@ class RecordingSet:
         if self.rig.mosaic is not None and picture.ndim == 2:
             return even_grey(picture)
         return to_grey(picture, channel)
-
-    def _colours(self, data: bytes, path: Path) -> NDArray[Any]:
-        """All channels of a picture, of a raw one as well."""
-        picture = decode_colours(data, path)
-        return picture if self.rig.mosaic is None or picture.ndim > 2 else colours_of(picture, self.rig.mosaic)
 
     def sites(self, part: str) -> Sites:
         """The sites that see the laser: all, unless pictures are raw and looked at in one colour."""
@@ -212,8 +204,8 @@ class RecordingSet:
         for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
             try:
                 data = read_bytes(on)
-                lit = self._colours(data, on)
-                dark = None if off is None else self._colours(read_bytes(off), off)
+                lit = decode_colours(data, on, self.rig.mosaic)
+                dark = None if off is None else decode_colours(read_bytes(off), off, self.rig.mosaic)
             except InputError:
                 continue  # told when it is measured
             if lit.ndim < 3 or lit.shape[2] < 3:

@@ -12,6 +12,7 @@ from core.acquire.folder import read_ahead
 from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.pictures import read_picture
+from core.image.mosaic import Pattern
 from core.pipeline.live.display import Display
 from core.progress import Progress, silent
 
@@ -22,21 +23,24 @@ LEAST_CONTRAST = 16.0
 
 
 def display_picture(
-    path: Path, channel: Channel | None, width_px: int, progress: Progress = silent
+    path: Path, channel: Channel | None, width_px: int, mosaic: Pattern | None = None, progress: Progress = silent
 ) -> tuple[Thumbnail, int]:
     """A picture in 8 bit, reduced by a whole factor to at most `width_px` across, and the factor.
+
+    Raw pictures of a `mosaic` are shown in the `channel`, without the checkerboard they are.
 
     Raises
     ------
     InputError
         If it cannot be read.
     """
-    return Display(width_px).reduced(read_picture(path, channel))
+    return Display(width_px).reduced(read_picture(path, channel, mosaic))
 
 
 def thumbnails(
     paths: Sequence[Path],
     channel: Channel | None = None,
+    mosaic: Pattern | None = None,
     width_px: int = 120,
     progress: Progress = silent,
     *,
@@ -44,12 +48,13 @@ def thumbnails(
 ) -> tuple[Thumbnail | None, ...]:
     """A small 8-bit picture (h, w ≤ `width_px`) of each of `paths`; None for one that cannot be read.
 
-    With `of_stripes` they are brightened until the stripes of light are, which a small picture makes faint.
+    As `display_picture` shows it. With `of_stripes` they are brightened until the stripes of light are, which a small
+    picture makes faint.
     """
 
     def small(path: Path) -> Thumbnail | None:
         try:
-            picture = Display(width_px).reduced(read_picture(path, channel))[0]
+            picture = Display(width_px).reduced(read_picture(path, channel, mosaic))[0]
             return brightened(picture) if of_stripes else picture
         except InputError:
             return None  # the step that measures it says why
@@ -62,10 +67,13 @@ def thumbnails(
 
 
 def stripe_thumbnails(
-    paths: Sequence[Path], channel: Channel | None = None, progress: Progress = silent
+    paths: Sequence[Path],
+    channel: Channel | None = None,
+    mosaic: Pattern | None = None,
+    progress: Progress = silent,
 ) -> tuple[Thumbnail | None, ...]:
     """Small pictures of the frames of a scan: as `thumbnails`, with stripes that can be seen."""
-    return thumbnails(paths, channel, progress=progress, of_stripes=True)
+    return thumbnails(paths, channel, mosaic, progress=progress, of_stripes=True)
 
 
 def brightened(picture: Thumbnail) -> Thumbnail:

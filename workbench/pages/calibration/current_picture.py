@@ -61,6 +61,7 @@ class CurrentPicture(QObject):
             jobs.READ_PICTURE,
             path,
             self._model.project.rig.channel_of(self._work.STEP),
+            self._model.project.rig.mosaic,
             label=self._label,
             on_done=lambda found: self.picture.emit(name, found) if name == self.current else None,
             offers={},

@@ -59,7 +59,7 @@ class StepPictures(QObject):
     def follow(self) -> None:
         """The project is another: list its pictures, unless that was done."""
         project, folder = self._model.project, folder_of(self._model, self._step)
-        of = f"{getattr(project.sources, self._step)}|{project.rig.channel_of(self._step)}"
+        of = f"{getattr(project.sources, self._step)}|{project.rig.channel_of(self._step)}|{project.rig.mosaic}"
         if of == self._listed:
             return
         if of != self._thumbnails_of:
@@ -98,6 +98,7 @@ class StepPictures(QObject):
             jobs.THUMBNAILS,
             list(now),
             self._model.project.rig.channel_of(self._step),
+            self._model.project.rig.mosaic,
             label=tr("Small pictures"),
             on_done=made,
         )

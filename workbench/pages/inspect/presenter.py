@@ -220,6 +220,7 @@ class InspectPresenter(StepPresenter):
             jobs.READ_PICTURE,
             scans / Path(name).name,
             self.project.rig.channel_of("scan"),
+            self.project.rig.mosaic,
             label=tr("Reading a picture"),
             on_done=lambda picture: self.picture_ready.emit(name, picture) if name == self.picture else None,
             on_failed=lambda _: self.choose_picture(RELIEF),

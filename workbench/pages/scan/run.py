@@ -139,6 +139,7 @@ class ScanRun(QObject):
             folder / short(detail.preview.name),
             self._model.project.rig.channel_of("scan"),
             DISPLAY_PX,
+            self._model.project.rig.mosaic,
             label=tr("Reading a picture"),
             on_done=lambda answer: self._seen(detail, *answer),
             on_failed=lambda _: self.shown(),

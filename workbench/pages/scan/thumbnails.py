@@ -71,6 +71,7 @@ class FrameThumbnails(QObject):
             jobs.STRIPE_THUMBNAILS,
             [folder / short(name) for name in names],
             self._model.project.rig.channel_of("scan"),
+            self._model.project.rig.mosaic,
             label=tr("Small pictures"),
             on_done=ended,
             on_failed=lambda _: ended((None,) * len(names)),
@@ -79,4 +80,5 @@ class FrameThumbnails(QObject):
 
     def _source(self) -> str:
         project = self._model.project
-        return f"{self._model.folder}|{project.sources.scan}|{project.rig.channel_of('scan')}"
+        rig = project.rig
+        return f"{self._model.folder}|{project.sources.scan}|{rig.channel_of('scan')}|{rig.mosaic}"

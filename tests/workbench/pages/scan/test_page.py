@@ -118,7 +118,7 @@ def test_a_page_entered_again_reads_nothing_twice(on_table, scan_bench, qtbot):
 
 def test_points_that_grow_are_in_the_cameras_frame_until_the_part_is_known(on_table, measuring, qtbot):
     quick = cast(HandLane, on_table.presenter.bench.quick)
-    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda *_: (np.full((24, 32), 70, np.uint8), 2)
     qtbot.mouseClick(on_table.card.buttons["run"], LEFT)
     measuring.current.reported.emit(cases.detail(0, renewed=True))
     qtbot.waitUntil(lambda: on_table.cloud.scene.state().points == 30)
@@ -377,7 +377,7 @@ def test_every_setting_has_a_line_of_help(page):
 
 def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cloud(recorded, measuring, qtbot):
     quick = cast(HandLane, recorded.presenter.bench.quick)
-    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda *_: (np.full((24, 32), 70, np.uint8), 2)
     recorded.refreshing.at_once()
     qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
     recorded.refreshing.at_once()
@@ -407,7 +407,7 @@ def test_a_recording_that_is_measured_shows_frames_marks_gauges_and_a_growing_cl
 
 def test_a_cancelled_measurement_shows_the_result_before_again(measured, measuring, qtbot):
     quick = cast(HandLane, measured.presenter.bench.quick)
-    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.full((24, 32), 70, np.uint8), 2)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda *_: (np.full((24, 32), 70, np.uint8), 2)
     measured.refreshing.at_once()
     qtbot.mouseClick(measured.card.buttons["run"], LEFT)
     measured.refreshing.at_once()

@@ -179,7 +179,7 @@ def test_another_project_stops_measuring_and_is_not_given_the_result(recorded, m
 
 
 def test_pictures_are_fetched_one_at_a_time_and_bring_all_points_since_the_last(recorded, measuring, quick, qtbot):
-    quick.answers[jobs.DISPLAY_PICTURE] = lambda path, channel, width: (np.zeros((24, 32), np.uint8), 2)
+    quick.answers[jobs.DISPLAY_PICTURE] = lambda *_: (np.zeros((24, 32), np.uint8), 2)
     seen = []
     recorded.run.frame_seen.connect(
         lambda detail, picture, scale: seen.append((detail.index, scale, len(detail.points), detail.renewed))
@@ -199,7 +199,7 @@ def test_pictures_are_fetched_one_at_a_time_and_bring_all_points_since_the_last(
 
 
 def test_a_picture_that_cannot_be_read_does_not_stop_the_others(recorded, measuring, quick, qtbot):
-    def read(path, channel, width):
+    def read(path, *_):
         if path.name == "frame0000.png":
             raise InputError("is damaged", where=path)
         return np.zeros((24, 32), np.uint8), 2
