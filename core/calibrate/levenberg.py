@@ -59,14 +59,15 @@ Model = TypeVar("Model", bound=Linearised)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Solution(Generic[State, Model]):
-    """A minimum: the state, and the residuals with their derivatives there."""
+    """The state, and the residuals with their derivatives there; a minimum if it has `converged`."""
 
     state: State
     linear: Model
+    converged: bool
 
 
 MOST_STEPS = 50
-"""After so many steps it stops where it is."""
+"""After so many steps it stops where it is: it has not converged."""
 LEAST_GAIN = 1e-9
 """It has converged when a step lowers the sum by no more than this share of it."""
 
@@ -97,10 +98,10 @@ def minimise(
                 break
             damping *= DAMPING_FACTOR
             if damping > MOST_DAMPING:
-                return Solution(state, linear)
+                return Solution(state, linear, converged=True)
         gain = linear.cost - trial_linear.cost
         state, linear = trial, trial_linear
         damping = max(damping / DAMPING_FACTOR, LEAST_DAMPING)
         if gain <= LEAST_GAIN * linear.cost:
-            return Solution(state, linear)
-    return Solution(state, linear)
+            return Solution(state, linear, converged=True)
+    return Solution(state, linear, converged=False)

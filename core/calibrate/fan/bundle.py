@@ -76,6 +76,8 @@ class Bundle:
     without_each
         (P, U + B): the step of the planes' own unknowns and the plate's bows that leaving out each pose makes, to first
         order, the camera taken as known.
+    converged
+        Whether it is a minimum; else it is where the steps ended.
     """
 
     planes: PlaneSet
@@ -91,6 +93,7 @@ class Bundle:
     pose_errors: Array
     expected_mm: float
     without_each: Array
+    converged: bool
 
     @property
     def covariance(self) -> Array:
@@ -204,6 +207,7 @@ def _result(seen: Observations, solution: Solution[State, PoseEquations], trust:
         pose_errors=_pose_errors(seen, alone.residuals, _errors(seen, state, trust)),
         expected_mm=expected_mm,
         without_each=without_each,
+        converged=solution.converged,
     )
 
 

@@ -29,6 +29,7 @@ from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.stripe_distances import BOWS
 from core.calibrate.fan.summary import summarise
 from core.calibrate.fan.verdict import Constrained, judge
+from core.calibrate.levenberg import MOST_STEPS
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
 from core.messages import Field, Message
@@ -53,6 +54,12 @@ BENDS_MM = 0.03
 assumed, for a sheet on a board of some mm."""
 OUTLYING = 5.0
 """A pose this many times worse than the median pose is left out."""
+NOT_CONVERGED = Message(
+    "fan.not_converged",
+    "Planes and poses had not settled after {n} steps and stay as they were then: what is measured with them may be "
+    "off by more than U. Record more poses of the target, at different distances and tilts, and calibrate again.",
+    n=MOST_STEPS,
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -142,7 +149,8 @@ def fit_fan(
     if camera_covariance is not None and camera_covariance.any():
         joint = solve(verdict.start, _bundle_poses(located), camera, camera_covariance, plate=plate)
         again = fit_fan(features, joint.camera, options, progress, excluded)
-        return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance)
+        notes = again.notes if joint.converged else tuple(dict.fromkeys((NOT_CONVERGED, *again.notes)))
+        return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance, notes=notes)
     used = free
     if not isinstance(verdict.start, FreePlanes):
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
@@ -151,9 +159,12 @@ def fit_fan(
     if plate is not None and options.seen_bowed is None:
         flat = solve(verdict.start, _bundle_poses(located), camera)
     summary = summarise(located, free, used, verdict, foretold, further, flat)
+    converged = verdict.converged and all(one.converged for one in (free, used, flat) if one is not None)
+    of_fit = () if converged else (NOT_CONVERGED,)
+    of_target = options.target.notes("plane_target", shape_known=options.seen_bowed is not None)
     return replace(
         summary,
-        notes=(*summary.notes, *options.target.notes("plane_target", shape_known=options.seen_bowed is not None)),
+        notes=(*of_fit, *summary.notes, *of_target),
         scale_sd=options.target.size_sd,
         scale_assumed=options.target.scale_sd is None,
     )

@@ -105,6 +105,8 @@ def _chance(used: Bundle, index: int, poses: Sequence[BundlePose], camera: Camer
     """Probability that a pose with nothing wrong is off the planes of the others as far as that one."""
     left_out = poses[index]
     others = solve(used.planes, [*poses[:index], *poses[index + 1 :]], camera, plate=plate)
+    if not others.converged:
+        return 1.0  # planes that are no best ones prove nothing against a pose
     (pose, of_pose), here = _distances(left_out, others.planes, others.shape, camera, plate)
     off = here.mm[:, :2]
     bows = len(others.joint) - others.planes.jacobian.shape[1]

@@ -31,8 +31,9 @@ Constrained = Literal["auto", "always", "axis", "never"]
 class Verdict:
     """What to use and why.
 
-    `start` are the planes to solve for in the end, `constrained_angles` those of the constrained planes. The other
-    fields are those of :class:`core.calibrate.results.FanCalibration`.
+    `start` are the planes to solve for in the end, `constrained_angles` those of the constrained planes; `converged`
+    is whether the pencils compared were fitted to the end. The other fields are those of
+    :class:`core.calibrate.results.FanCalibration`.
     """
 
     start: PlaneSet
@@ -40,6 +41,7 @@ class Verdict:
     suits: bool | None
     pencil_gap_mm: float
     sentence: Message
+    converged: bool = True
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -48,6 +50,7 @@ class _Trial:
 
     pencil: Pencil
     p: float
+    converged: bool
 
 
 def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constrained: Constrained) -> Verdict:
@@ -90,6 +93,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
         suits,
         gap,
         _sentence(start, tied, axis_only, free, angle, gap, constrained != "auto"),
+        tied.converged and axis_only.converged,
     )
 
 
@@ -110,9 +114,10 @@ def _trial(free: Bundle, angle: float | None) -> _Trial:
     solution = minimise(pencil_near(pis, angle), linearise, Pencil.moved)
     constraints = pis.size - solution.linear.jacobian.shape[1]
     if constraints == 0:
-        return _Trial(solution.state, 1.0)
+        return _Trial(solution.state, 1.0, solution.converged)
     excess = solution.linear.cost / constraints
-    return _Trial(solution.state, float(fdtrc(constraints, max(free.freedom, 1.0), excess)))
+    p = float(fdtrc(constraints, max(free.freedom, 1.0), excess))
+    return _Trial(solution.state, p, solution.converged)
 
 
 def _onto(pi: Array, points: Array) -> Array:

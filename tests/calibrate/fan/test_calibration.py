@@ -3,6 +3,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate import levenberg
 from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.fan.calibration import FanOptions, fit_fan
@@ -61,6 +62,14 @@ def test_exact_features_give_the_exact_fan():
     assert worst_mm(result.fan.pis, PAPER) < 1e-5
     assert worst_mm(result.free.pis, PAPER) < 1e-5
     assert max(result.rms_mm) < 1e-5
+
+
+def test_a_fit_that_has_not_settled_says_so_and_one_that_has_does_not(monkeypatch):
+    noisy = features(WHERE, Noise(), 2)
+    for each in (noisy, features(WHERE, QUIET, 1)):
+        assert "fan.not_converged" not in [note.code for note in fit_fan(each, CAMERA, THREE).notes]
+    monkeypatch.setattr(levenberg, "MOST_STEPS", 1)
+    assert fit_fan(noisy, CAMERA, THREE).notes[0].code == "fan.not_converged"
 
 
 def test_noisy_features_give_lines_in_order_and_a_fit_as_good_as_the_noise():
