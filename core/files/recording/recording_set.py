@@ -19,6 +19,7 @@ from __future__ import annotations
 import contextlib
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
@@ -215,8 +216,13 @@ class RecordingSet:
         return laser_channel(pictures, raw=self.rig.mosaic is not None)
 
     def id_of(self, paths: Iterable[Path]) -> str:
-        """Twelve hex digits that name some pictures by what is in them, as far as they have been read."""
-        text = "\n".join(sorted(self.hashes.get(self.name_of(path), "") for path in paths))
+        """Twelve hex digits that name some pictures by what is in them; those not read yet are hashed, too."""
+        named = {self.name_of(path): path for path in paths}
+        for name, path in named.items():
+            if name not in self.hashes:
+                with suppress(InputError):  # told where it is looked at
+                    self.hashes[name] = file_hash(path)
+        text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
     def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:

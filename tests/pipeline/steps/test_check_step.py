@@ -106,6 +106,16 @@ def check_of(folder, work: Workspace):
     return check_step(work, poses=poses)
 
 
+def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged, tmp_path):
+    poses, hashes = check_seen_in(unchanged)
+    read = work_in(unchanged, tmp_path / "read")
+    read.found.hashes.update(hashes)
+    not_read = work_in(unchanged, tmp_path / "not read")
+    ids = [check_step(work, poses=poses).pictures_id for work in (read, not_read)]
+    assert ids[0] == ids[1]
+    assert {name: not_read.record().inputs.get(name) for name in hashes} == hashes, "and stand among the inputs"
+
+
 def scan_of(folder, work: Workspace) -> Measured:
     poses, hashes = check_seen_in(folder)
     work.found.hashes.update(hashes)
