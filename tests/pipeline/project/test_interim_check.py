@@ -11,11 +11,15 @@ from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
 from core.files.recording.options import Options
 from core.files.results.check_file import read_check
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
+from core.pipeline.project.inspection import measure_features
 from core.pipeline.project.interim_check import (
     accept_readjustment,
     artefact_checks,
     check_history,
     check_rig,
+    comparable_lengths,
     compare_with_artefact,
     propose_project_readjustment,
     show_check,
@@ -78,6 +82,23 @@ def test_the_thickness_of_a_project_is_compared_with_an_artefact_and_the_rig_rem
     assert check.verdict == "passed" and check.e_n == pytest.approx(0.5, abs=0.01)
     compare_with_artefact(folder, done.project, replace(block, id="GB 8", value_mm=gauge.thickness_mm + 1))
     assert [(one.artefact.id, one.verdict) for one in artefact_checks(folder, done.project)] == [("GB 8", "failed")]
+
+
+def test_a_step_of_a_project_is_compared_by_its_features(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    assert comparable_lengths(folder) == {"block": ("",), "sphere": (), "step": ()}
+    plan = InspectionPlan((FeatureSpec("stairs", "steps"), FeatureSpec("block", "thickness")))
+    shown = measure_features(folder, replace(done.project, inspection=plan))
+    (height,) = shown.features[0].rows
+    lengths = {"block": ("", "block thickness"), "sphere": (), "step": ("stairs height 1",)}
+    assert comparable_lengths(folder) == lengths
+    step = Artefact("S 50", height.value - 0.5 * height.U, 0.0004, kind="step")
+    check = compare_with_artefact(folder, done.project, step, "stairs height 1")
+    assert (check.verdict, check.characteristic) == ("passed", "stairs height 1")
+    block = compare_with_artefact(folder, done.project, Artefact("GB 50", 40.0, 0.0004), "block thickness")
+    assert (block.verdict, block.characteristic) == ("failed", "block thickness")
+    kept = [(one.artefact, one.verdict) for one in artefact_checks(folder, done.project)]
+    assert kept == [(block.artefact, "failed"), (step, "passed")], "two lengths of one scan"
 
 
 def test_artefacts_beside_the_rig_come_into_its_project(unchanged, tmp_path):
