@@ -60,7 +60,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
                 look.text(words(CHECKS[one.verdict]), "small"),
             ]
         )
-    shares = (0.14, 0.12, 0.1, 0.17, 0.14, 0.08, 0.06, 0.1, 0.09)
+    shares = (0.125, 0.135, 0.1, 0.17, 0.14, 0.08, 0.06, 0.1, 0.09)
     note = look.say(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
         "was measured with k = 2. E_n is the error over the U of both together; above 1 nothing is conforming.",
