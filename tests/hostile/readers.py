@@ -269,7 +269,7 @@ def _of_a_set(folder: Path, recording: Path) -> None:
     """What lies in and beside a recording set, and in the user's own folder."""
     inside = folder / "set"
     inside.mkdir()
-    block = 'id = "GB 50"\nvalue_mm = 50.0\nU_mm = 0.001\ndue = 2028-03-01'
+    block = 'id = "GB 50"\nkind = "step"\nvalue_mm = 50.0\nU_mm = 0.001\ndue = 2028-03-01'
     (inside / "artefacts.toml").write_text(f"[[artefact]]\n{block}\n")
     (inside / "import.json").write_text(json.dumps({"imports": [{"version": "1", "pictures": []}]}))
     (inside / "marks.csv").write_text("name\nframe1.png\nframe2.png\n")
