@@ -248,7 +248,11 @@ def notes_on_form(
     """
     part = np.zeros(len(indices), dtype=np.int64) if part is None else part
     # Where a face is looked for, farther points are of something else; a region or a section holds them as well.
-    on = np.abs(shape.misfit(cloud.points[indices], part)) <= search_tolerance(cloud) * _FARTHEST
+    # What all points of a face share is nothing of its form: on a rig that has changed it may be more than that.
+    away = shape.misfit(cloud.points[indices], part)
+    for number in np.unique(part):
+        away[part == number] -= np.median(away[part == number])
+    on = np.abs(away) <= search_tolerance(cloud) * _FARTHEST
     if not on.any():
         return ()
     cloud, part = cloud.select(indices[on]), part[on]

@@ -195,7 +195,7 @@ def _correlation_px(pieces: Sequence[Centreline]) -> float:
 def patches(flat: Array, face: NDArray[np.int64]) -> NDArray[np.int64]:
     """Number of the patch of its `face` (N,) each point (N, 2) lies in: PATCHES × PATCHES over each face's extent."""
     number = np.zeros(len(flat), dtype=np.int64)
-    for index in range(int(face.max()) + 1):
+    for index in np.unique(face):
         mine = face == index
         low, size = flat[mine].min(axis=0), np.maximum(np.ptp(flat[mine], axis=0), 1e-9)
         column, row = np.minimum((flat[mine] - low) / size * PATCHES, PATCHES - 1).astype(np.int64).T

@@ -8,7 +8,7 @@ import pytest
 import trimesh
 
 from core.inspect.evaluate import Inspection, evaluate
-from core.inspect.fit.judged_form import FACE, notes_on_form
+from core.inspect.fit.judged_form import FACE, LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.gauge import measure_gauge
 from core.inspect.plan.feature_spec import Cut, Deviation, FeatureSpec, InSphere, Polygon, Section
@@ -183,6 +183,21 @@ def test_a_form_that_known_errors_explain_is_not_told() -> None:
     assert [note.code for note in told] == ["form.bowed"]
     common: Any = Explained(bow(0.1), BLOCK.points, np.vstack([BLOCK.pis, BLOCK.fan_pis]))
     assert notes_on_form(cloud, top, shape, replace(BLOCK_ERRORS, common=common), (FACE,)) == ()
+
+
+@pytest.mark.parametrize("aside_mm", [0.0, 3.0])
+def test_faces_of_which_all_points_lie_aside_by_what_they_share_are_judged_by_the_rest(aside_mm: float) -> None:
+    """On a rig that has changed, the points' common error is larger than any error of form."""
+    cloud = lifted(block(5), bow(0.12))
+    faces = [np.flatnonzero(BLOCK.upper), np.flatnonzero(~BLOCK.upper)]
+    part = np.repeat([0, 1], [len(face) for face in faces])
+    where = (
+        np.array([TABLE_MM - BLOCK.height, TABLE_MM])[:, None] * NORMAL + aside_mm * np.array([[1.0], [0.0]]) * NORMAL
+    )
+    shape = ParallelPlanes.through(-NORMAL, where)
+    told = notes_on_form(cloud, np.concatenate(faces), shape, BLOCK_ERRORS, (UPPER_FACE, LOWER_FACE), part)
+    assert [note.code for note in told] == ["form.bowed"]
+    assert "the upper face" in str(told[0])
 
 
 class Explained:
