@@ -60,7 +60,6 @@ class BarsWithThreshold(Plot):
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setAccessibleName(tr("Errors as bars: Left and Right go along, Up and Down move the threshold"))
         self._column.setContentsMargins(1, 1, 1, 1)
-        self._canvas.scene().sigMouseClicked.connect(self._clicked)
 
     def set_bars(self, bars: Sequence[Bar], *, label: str, unit: str, threshold: float | None = None) -> None:
         """Show bars; without a threshold there is no line."""
@@ -111,6 +110,9 @@ class BarsWithThreshold(Plot):
 
     def paintEvent(self, event: QPaintEvent) -> None:
         draw_focus(self)
+
+    def _prepare(self) -> None:
+        self._item.scene().sigMouseClicked.connect(self._clicked)
 
     def _has_data(self) -> bool:
         return bool(self._bars)

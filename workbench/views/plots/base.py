@@ -5,9 +5,20 @@ from __future__ import annotations
 from typing import Any
 
 import pyqtgraph as pg
-from PySide6.QtCore import QEvent, QPointF, Qt
-from PySide6.QtGui import QColor, QContextMenuEvent, QCursor, QFont, QGuiApplication, QPen, QResizeEvent, QWheelEvent
-from PySide6.QtWidgets import QMenu, QToolTip, QWidget
+from PySide6.QtCore import QEvent, QPointF, QSize, Qt
+from PySide6.QtGui import (
+    QColor,
+    QContextMenuEvent,
+    QCursor,
+    QFont,
+    QGuiApplication,
+    QPainter,
+    QPaintEvent,
+    QPen,
+    QResizeEvent,
+    QWheelEvent,
+)
+from PySide6.QtWidgets import QMenu, QSizePolicy, QToolTip, QWidget
 
 from workbench.language import number, numeral, tr
 from workbench.theme import shades
@@ -17,6 +28,8 @@ from workbench.views.layouts import in_column
 
 LEAST_HEIGHT = 96
 """Pixels that a plot is high at least."""
+_USUAL_SIZE, _LEAST_SIZE = QSize(640, 480), QSize(68, 68)
+"""What a plot asks for, whether it has something to show or not: nothing moves when it comes."""
 _TICK_PIXELS = 11
 """Size in pixels of the letters at the axes."""
 
@@ -35,37 +48,53 @@ class Canvas(pg.PlotWidget):  # type: ignore[misc]
         event.ignore()
 
 
+class _Field(QWidget):
+    """Where a plot is drawn, in the colour of its ground; what stands there while there is nothing to draw fills it."""
+
+    def __init__(self, least_height: int) -> None:
+        super().__init__()
+        self.setMinimumHeight(least_height)
+        self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Expanding)
+        self.empty = EmptyState(self)
+
+    def sizeHint(self) -> QSize:
+        return _USUAL_SIZE
+
+    def minimumSizeHint(self) -> QSize:
+        return _LEAST_SIZE
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        QPainter(self).fillRect(self.rect(), QColor(shades().panel))
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        for child in self.findChildren(QWidget, options=Qt.FindChildOption.FindDirectChildrenOnly):
+            child.setGeometry(self.rect())
+
+
 class Plot(QWidget):
-    """A plot. A subclass keeps what it was given, and draws it in `_draw` with the colours of the theme."""
+    """A plot. A subclass keeps what it was given, and draws it in `_draw` with the colours of the theme.
+
+    What it is drawn on takes as long to make as all else of a panel together, and most plots have nothing to show
+    yet: it is made when there is something.
+    """
 
     def __init__(self, parent: QWidget | None = None, *, least_height: int = LEAST_HEIGHT) -> None:
         super().__init__(parent)
-        self._canvas = Canvas(background=None, axisItems={side: Axis(side) for side in ("left", "bottom")})
-        self._canvas.setAntialiasing(True)
-        self._canvas.setMenuEnabled(False)
-        self._canvas.setMouseEnabled(x=False, y=False)
-        self._canvas.hideButtons()
-        self._canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
-        self._canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
-        self._canvas.setMinimumHeight(least_height)
-        self._item: Any = self._canvas.getPlotItem()
-        self._box: Any = self._item.getViewBox()
-        self._item.setContentsMargins(4, 6, 10, 2)
-        self._empty = EmptyState(self._canvas)
-        self._column = in_column((self._canvas, 1), on=self, spacing=2)
+        self._canvas: Canvas | None = None
+        self._field = _Field(least_height)
+        self._empty = self._field.empty
+        self._column = in_column((self._field, 1), on=self, spacing=2)
         self._labels: dict[str, str] = {}
-        self._canvas.scene().sigMouseMoved.connect(self._moved)
-        self._canvas.sigDeviceRangeChanged.connect(self._resized)
-        self._dress()
         self.clear()
 
     def clear(self, message: str = "") -> None:
         """Show nothing but a sentence."""
-        self._item.clear()
-        self._show_axes(False)
+        if self._canvas is not None:
+            self._item.clear()
+            self._show_axes(False)
         self._empty.say(message)
         self._empty.show()
-        self._resized()
 
     @property
     def empty_state(self) -> EmptyState:
@@ -74,9 +103,8 @@ class Plot(QWidget):
 
     @property
     def canvas(self) -> QWidget:
-        """The widget it is drawn on, which takes the mouse."""
-        viewport: QWidget = self._canvas.viewport()
-        return viewport
+        """The widget it is drawn on, which takes the mouse; while there is nothing to show, the one it will be on."""
+        return self._field if self._canvas is None else self._canvas.viewport()
 
     def to_screen(self, x: float, y: float) -> QPointF:
         """Where a place of the plot is in `canvas`."""
@@ -89,22 +117,21 @@ class Plot(QWidget):
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
-        if event.type() == QEvent.Type.PaletteChange:
+        if event.type() == QEvent.Type.PaletteChange and self._canvas is not None:
             self._dress()
             self._redraw()
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._resized()
-
     def contextMenuEvent(self, event: QContextMenuEvent) -> None:
         menu = QMenu(self)
-        menu.addAction(tr("Copy picture"), lambda: copy_picture(self._canvas))
-        menu.addAction(tr("Save picture …"), lambda: save_picture(self._canvas, tr("Save picture"), "plot.png"))
+        menu.addAction(tr("Copy picture"), lambda: copy_picture(self._field))
+        menu.addAction(tr("Save picture …"), lambda: save_picture(self._field, tr("Save picture"), "plot.png"))
         menu.exec(event.globalPos())
         menu.deleteLater()
 
     # ---- for subclasses
+
+    def _prepare(self) -> None:
+        """Add what stays on what it is drawn on, which has just been made."""
 
     def _draw(self) -> None:
         """Draw what was given; the plot is empty."""
@@ -120,6 +147,8 @@ class Plot(QWidget):
     def _redraw(self) -> None:
         """Draw anew, after new data or in another theme."""
         if self._has_data():
+            if self._canvas is None:
+                self._make_canvas()
             self._item.clear()
             self._empty.hide()
             self._show_axes(True)
@@ -156,9 +185,27 @@ class Plot(QWidget):
 
     # ---- inside
 
+    def _make_canvas(self) -> None:
+        axes = {side: Axis(side) for side in ("left", "bottom")}
+        self._canvas = canvas = Canvas(self._field, background=None, axisItems=axes, enableMenu=False)
+        canvas.setAntialiasing(True)
+        canvas.setMouseEnabled(x=False, y=False)
+        canvas.hideButtons()
+        canvas.setContextMenuPolicy(Qt.ContextMenuPolicy.NoContextMenu)
+        canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
+        self._item: Any = canvas.getPlotItem()
+        self._box: Any = self._item.getViewBox()
+        self._item.setContentsMargins(4, 6, 10, 2)
+        canvas.scene().sigMouseMoved.connect(self._moved)
+        canvas.setGeometry(self._field.rect())  # at once: what is drawn next may go by its size
+        canvas.show()
+        self._empty.raise_()
+        self._dress()
+        self._prepare()
+
     def _dress(self) -> None:
         s = shades()
-        self._canvas.setBackground(s.panel)
+        self._item.getViewWidget().setBackground(s.panel)
         for side in ("left", "bottom"):
             axis = self._item.getAxis(side)
             axis.autoSIPrefix, axis.autoSIPrefixScale = False, 1.0  # enableAutoSIPrefix(False) scales once more
@@ -178,10 +225,6 @@ class Plot(QWidget):
             QToolTip.showText(QCursor.pos(), tip, self._canvas)
         elif QToolTip.isVisible():
             QToolTip.hideText()
-
-    def _resized(self, *_: object) -> None:
-        if not self._empty.isHidden():
-            self._empty.setGeometry(0, 0, self._canvas.width(), self._canvas.height())
 
 
 def small_font() -> QFont:

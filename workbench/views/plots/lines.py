@@ -31,8 +31,6 @@ class LineChart(Plot):
         self._names = ("", "", "", "")
         self._from_zero = False
         super().__init__(parent)
-        self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
-        self._legend.hide()
 
     def set_axes(self, x_label: str, x_unit: str, y_label: str, y_unit: str, *, from_zero: bool = False) -> None:
         """Name both axes and their units; the upward one begins at zero where there is nothing below."""
@@ -50,6 +48,9 @@ class LineChart(Plot):
     def clear(self, message: str = "") -> None:
         self._curves = {}
         super().clear(message)
+
+    def _prepare(self) -> None:
+        self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
 
     def _has_data(self) -> bool:
         return any(len(curve.x) for curve in self._curves.values())

@@ -40,7 +40,6 @@ class RunChart(Plot):
         self._runs: _Runs | None = None
         self._words_shown: list[tuple[pg.TextItem, float]] = []
         super().__init__(parent)
-        self._box.sigResized.connect(self._place_words)
 
     def set_runs(
         self,
@@ -66,6 +65,9 @@ class RunChart(Plot):
     def clear(self, message: str = "") -> None:
         self._runs = None
         super().clear(message)
+
+    def _prepare(self) -> None:
+        self._box.sigResized.connect(self._place_words)
 
     def _has_data(self) -> bool:
         return self._runs is not None
