@@ -97,7 +97,7 @@ def measured(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _measure(simulated: Path, out: Path) -> None:
     from tests.simulated import CUT, trisect
 
-    said = trisect("run", simulated, "--out", out, *CUT)
+    said = trisect("run", simulated, "--out", out, *CUT, cores=2)
     assert said.code in (0, 1), said.err
 
 

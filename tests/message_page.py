@@ -10,6 +10,7 @@ import ast
 import re
 from collections.abc import Iterable, Iterator
 from fnmatch import fnmatchcase
+from functools import cache
 from itertools import groupby
 from string import Formatter
 
@@ -114,6 +115,7 @@ def is_name(code: str) -> bool:
     return any(fnmatchcase(code, pattern) for pattern in NAMES)
 
 
+@cache
 def errors() -> dict[str, list[str]]:
     """By the code of an error, what the calls that tell it say to do."""
     trees = [

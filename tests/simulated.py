@@ -5,6 +5,7 @@ import shutil
 from contextlib import redirect_stderr, redirect_stdout
 from dataclasses import dataclass
 from pathlib import Path
+from unittest.mock import patch
 
 from core.cli import main
 from core.simulate.recording import simulate_set
@@ -35,10 +36,14 @@ class Said:
         return lines[0]
 
 
-def trisect(*words: object) -> Said:
-    """Run the command line in this process."""
+def trisect(*words: object, cores: int = 1) -> Said:
+    """Run the command line in this process; with a second core, a second one takes over a part of a measurement.
+
+    On one core by default, as tests run side by side: starting another process costs more than a small set. That the
+    results are the same bytes is proven in tests/pipeline/test_run_beside.py.
+    """
     out, err, code = io.StringIO(), io.StringIO(), 0
-    with redirect_stdout(out), redirect_stderr(err):
+    with redirect_stdout(out), redirect_stderr(err), patch("core.second_process.cores", return_value=cores):
         try:
             main([str(word) for word in words])
         except SystemExit as leave:

@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Iterator
+from functools import cache
+from itertools import chain
 from pathlib import Path
 
 import pytest
@@ -15,12 +17,23 @@ COMMANDS = ("command", "callback")
 """Decorators of typer's: the parameters of such a function are the options of a command line."""
 
 
+@cache
+def modules_in(folder: str) -> tuple[tuple[str, str, ast.Module], ...]:
+    """Path, text and syntax tree of every module in a folder."""
+    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
+    return tuple((path.relative_to(ROOT).as_posix(), text, ast.parse(text)) for path, text in texts.items())
+
+
 def modules(*folders: str) -> Iterator[tuple[str, str, ast.Module]]:
-    """Path, text and syntax tree of every module in some folders."""
-    for folder in folders:
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            text = path.read_text(encoding="utf-8")
-            yield path.relative_to(ROOT).as_posix(), text, ast.parse(text)
+    """The same of some folders."""
+    return chain.from_iterable(map(modules_in, folders))
+
+
+@pytest.fixture(scope="module", autouse=True)
+def syntax_trees_go() -> Iterator[None]:
+    """They take hundreds of megabytes."""
+    yield
+    modules_in.cache_clear()
 
 
 def is_number(value: ast.expr | None) -> bool:
