@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Sequence
-from functools import cache
+from functools import cache, lru_cache
 from pathlib import Path
 
 import matplotlib
@@ -71,21 +71,33 @@ def embedded_font(character: str) -> str:
         name = f"Foreign-{Path(path).stem}"
         if name in pdfmetrics.getRegisteredFontNames():
             return name
-        try:
-            font = truetype(name, path)
-        except (TTFError, OSError, ValueError):  # outlines or licences that cannot be embedded
-            continue
-        if ord(character) in font.face.charToGlyph:
+        font = _embeddable(name, path)
+        if font is not None and ord(character) in font.face.charToGlyph:
             pdfmetrics.registerFont(font)
             return name
     return ""
+
+
+@cache
+def _embeddable(name: str, path: str) -> TTFont | None:
+    """A font for reportlab; None where outlines or licence forbid it, which is known once all of it has been read."""
+    try:
+        return truetype(name, path)
+    except (TTFError, OSError, ValueError):
+        return None
+
+
+@lru_cache(maxsize=16)
+def _opened(path: str) -> FT2Font:
+    """One of this computer's fonts; those asked last stay open, as most characters of a text are in the same one."""
+    return FT2Font(path)
 
 
 def _having(character: str) -> Iterator[tuple[str, str]]:
     """Those of this computer's fonts that have it."""
     for family, path in system_fonts():
         try:
-            if FT2Font(path).get_char_index(ord(character)):
+            if _opened(path).get_char_index(ord(character)):
                 yield family, path
         except (RuntimeError, OSError):
             continue
