@@ -31,10 +31,10 @@ from tests.pipeline.project.test_measuring import MEASURED
 from tests.simulated import copy_of
 
 
-@pytest.fixture
-def project(done, tmp_path) -> Path:
+@pytest.fixture(scope="module")
+def with_everything(done, tmp_path_factory) -> Path:
     """A saved project with everything done, and its own words in the report."""
-    folder = copy_of(done.folder, tmp_path / "a block's project")
+    folder = copy_of(done.folder, tmp_path_factory.mktemp("with_everything") / "project")
     info = replace(done.project.info, part='Block "A"', serial="7", notes="seen")
     plan = InspectionPlan(features=(FeatureSpec(name="top", kind="plane"),))
     changed = replace(done.project, info=info, inspection=plan, report=ReportChoices(paper="Letter", language="de"))
@@ -42,6 +42,12 @@ def project(done, tmp_path) -> Path:
     measure_features(folder, changed)
     make_report(folder, changed)
     return folder
+
+
+@pytest.fixture
+def project(with_everything, tmp_path) -> Path:
+    """A copy of it."""
+    return copy_of(with_everything, tmp_path / "a block's project")
 
 
 def commands(script: Path) -> list[list[str]]:
