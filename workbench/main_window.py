@@ -38,6 +38,7 @@ from workbench.pages.project.operator_page import OperatorPage
 from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.project.rig_plan import RigPlans
 from workbench.pages.project.welcome_page import WelcomePage
+from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
 from workbench.steps import STEPS
@@ -77,6 +78,7 @@ class MainWindow(QMainWindow):
         self.setAcceptDrops(True)
         self.projects = ProjectActions(bench, self)
         self.presenters: dict[str, StepPresenter] = {step.name: step.presenter(bench) for step in STEPS}
+        self._scan_presenter().offer_whole(self._project_presenter().whole)
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
         self.rail = StepRail([(step.name, tr(step.title), step.icon) for step in STEPS])
         self.banner, self.notice_list, self.task_bar = Banner(), NoticeList(), TaskBar()
@@ -367,6 +369,11 @@ class MainWindow(QMainWindow):
         assert isinstance(presenter, ProjectPresenter)
         return presenter
 
+    def _scan_presenter(self) -> ScanPresenter:
+        presenter = self.presenters["scan"]
+        assert isinstance(presenter, ScanPresenter)
+        return presenter
+
     def _show_mode(self) -> None:
         """The operator's page, or that of the step."""
         self.operator.refresh()
@@ -399,14 +406,19 @@ class MainWindow(QMainWindow):
         """What to do next in the first measurement."""
         solved = (name for name, presenter in self.presenters.items() if presenter.waits_to_be_accepted)
         states = {name: state.state for name, state in self.model.states.items()}
-        facts = first_measurement.Facts(self._current, states, frozenset(solved), self._task is not None)
+        facts = first_measurement.Facts(self._current, states, frozenset(solved), self._is_working)
         return first_measurement.instruction(facts)
+
+    @property
+    def _is_working(self) -> bool:
+        """Whether what to do next is not known yet: something is calibrated or measured."""
+        return self._task is not None or any(one.is_working for one in self.presenters.values())
 
     def _show_instruction(self) -> None:
         if self._led_in is None or self._led_in != self.model.folder:
             self._leave_instructions()
             return
-        now, waiting = self._instruction(), self._task is not None
+        now, waiting = self._instruction(), self._is_working
         number, count = first_measurement.ORDER.index(now) + 1, len(first_measurement.ORDER)
         text = tr(first_measurement.WAIT if waiting else now.text)
         can_show = not waiting and now is not first_measurement.FINISHED

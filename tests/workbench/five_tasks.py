@@ -205,16 +205,13 @@ def next_part(m: Mouse) -> None:
     m.menu("File", "Next part …")
     m.until(lambda: m.window.model.folder not in (before, None), "the next part's project")
     m.idle()
-    if m.window.current != "scan":
-        m.step("scan")
+    assert m.window.current == "scan"
     scan: Any = m.window.pages["scan"]
     ask.choose_folder = lambda *_: pictures
     m.effort.clicks += FILE_CLICKS
-    m.click(scan.source.recorded)  # a new part begins with the live source
     m.click(scan.source.browse)
     m.idle()
-    m.step("project")
-    m.click(cast(Any, m.window.pages["project"]).whole)
+    m.click(scan.card.buttons["whole"])
     m.until(lambda: "report" in m.window.model.results, "the report")
     m.idle()
 
@@ -254,7 +251,6 @@ def step_by_clicking(m: Mouse) -> None:
         m.until(lambda: len(inspect.clicked.proposal.faces) == face and not m.bench.quick.busy, "the face")  # noqa: B023
     m.key(canvas, Qt.Key.Key_Return)
     m.until(lambda: len(inspect.features.plan.features) > count, "the feature")
-    m.click(page.features.measure)
     m.until(lambda: not inspect.features.measuring and inspect.features.shown is not None, "its value")
 
 

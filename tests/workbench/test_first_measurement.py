@@ -82,6 +82,18 @@ def test_it_begins_in_a_project_of_its_own_and_says_what_to_do(begun: MainWindow
     assert bar.words.text() == first.SOLVE_CAMERA.text
 
 
+@pytest.mark.parametrize(("of", "what"), [("work", "solving"), ("acceptance", "keeping")])
+def test_while_a_calibration_is_solved_or_kept_nothing_is_to_be_pressed(begun: MainWindow, of: str, what: str) -> None:
+    camera: Any = begun.presenters["camera"]
+    begun.go_to("camera")
+    for working, said in ((True, first.WAIT), (False, first.SOLVE_CAMERA.text)):
+        setattr(getattr(camera, of), what, working)
+        camera.changed.emit()
+        QApplication.processEvents()
+        assert begun.instructions.words.text() == said
+        assert begun.instructions.show_button.isHidden() == working
+
+
 def test_going_back_or_elsewhere_is_no_mistake(begun: MainWindow) -> None:
     begun.go_to("report")
     QApplication.processEvents()

@@ -49,6 +49,11 @@ class StepPresenter(QObject):
         """Whether a calibration is there that could be accepted."""
         return False
 
+    @property
+    def is_working(self) -> bool:
+        """Whether a calibration is on its way, or being kept."""
+        return False
+
     def opened(self) -> None:
         """Another project is open (or none): forget what belonged to the last one, load what this one has."""
 

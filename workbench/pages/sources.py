@@ -2,12 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 from core.acquire.source import Step
-from core.files.project.folder import source_folder, stored_source
+from core.files.project.folder import free_folder, source_folder, stored_source
 from workbench.project_model import ProjectModel
+
+_RECORDINGS = "recordings"
+_RECORDED = re.compile(rf"(^|/){_RECORDINGS}/[a-z]+-\d{{8}}-\d{{6}}([ -]\d+)?$")
+"""The names that `recording_folder` gives."""
 
 
 def folder_of(model: ProjectModel, step: Step) -> Path | None:
@@ -29,3 +35,18 @@ def put_source(model: ProjectModel, step: Step, folder: Path, label: str, *, kee
         return
     kept = frozenset(name for name in project.options.excluded if keep_left_out or not name.startswith(f"{step}/"))
     model.edit(label, replace(project, sources=sources, options=replace(project.options, excluded=kept)))
+
+
+def recording_folder(project: Path, step: Step) -> Path:
+    """A folder for a live recording that is not there yet, named by the step and the time."""
+    return free_folder(project / _RECORDINGS, f"{step}-{datetime.now():%Y%m%d-%H%M%S}")
+
+
+def scan_begins_live(model: ProjectModel) -> bool:
+    """Whether the scan's page begins with the live source: there is no scan, and no pictures of other programs.
+
+    The next part of a series has no scan, but the pictures of its calibrations: it is recorded as these were.
+    """
+    sources = model.project.sources
+    last = sources.planes or sources.camera
+    return not sources.scan and (not last or _RECORDED.search(last) is not None)

@@ -150,6 +150,10 @@ class CalibrationPresenter(StepPresenter):
         return self._sentence(buttons_of(self._facts()).accept)
 
     @property
+    def is_working(self) -> bool:
+        return self.work.searching or self.work.solving or self.acceptance.keeping
+
+    @property
     def waits_to_be_accepted(self) -> bool:
         return not self.can_accept
 

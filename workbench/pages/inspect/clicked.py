@@ -104,7 +104,7 @@ class InspectClicked(QObject):
         self.changed.emit()
 
     def take(self) -> None:
-        """Put what is shown into the plan; one edit, undoable."""
+        """Put what is shown into the plan, one edit, undoable, and measure it."""
         proposal = self.proposal
         if proposal is None or self._growing is not None or (self.mode == "step" and len(proposal.faces) < 2):
             return
@@ -113,6 +113,7 @@ class InspectClicked(QObject):
         else:
             self._take_step(proposal)
         self._drop()
+        self._features.measure_first()
 
     def hint(self) -> str:
         """What is shown, and what click and Enter do."""

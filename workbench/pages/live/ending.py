@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from datetime import datetime
 from pathlib import Path
 
 from PySide6.QtCore import QObject
@@ -83,13 +82,6 @@ class LiveEnding(QObject):
             forget_recording(project)
         except InputError as error:
             self._bench.notices.failed(error)
-
-
-def new_folder(recordings: Path, step: str) -> Path:
-    """A folder that is not there yet, named by the step and the time."""
-    name = f"{step}-{datetime.now():%Y%m%d-%H%M%S}"
-    folders = (recordings / (name if number == 1 else f"{name}-{number}") for number in range(1, 1000))
-    return next(folder for folder in folders if not folder.exists())
 
 
 def calibrated_s(results: Mapping[str, Done]) -> float | None:

@@ -50,9 +50,9 @@ from core.scan.preview.preflight import Check
 from workbench.bench import Bench
 from workbench.language import number, text_of, tr
 from workbench.pages.live.buttons import LiveButtons, LiveFacts, live_buttons
-from workbench.pages.live.ending import LiveEnding, calibrated_s, new_folder
+from workbench.pages.live.ending import LiveEnding, calibrated_s
 from workbench.pages.live.settings import LiveSettings
-from workbench.pages.sources import folder_of
+from workbench.pages.sources import folder_of, recording_folder
 from workbench.work import jobs
 from workbench.work.tasks import Task
 from workbench.work.worker import Failure
@@ -438,7 +438,7 @@ class LivePresenter(QObject):
             source=self.settings.choice,
             settings=self.settings.values,
             rig=self.model.project.rig,
-            folder=new_folder(project / "recordings", self.step),
+            folder=recording_folder(project, self.step),
             camera=camera,
             fan=fan,
             options=self.model.project.options,

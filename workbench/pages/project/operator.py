@@ -13,8 +13,8 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.keys import left_to_do
 from workbench.bench import Bench
 from workbench.language import tr
-from workbench.pages.project.whole import MeasuringAll
 from workbench.pages.sources import put_source
+from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
 from workbench.work import jobs
 

@@ -9,6 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollA
 from workbench.language import tr
 from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.step_page import StepPage
+from workbench.pages.whole import EVERYTHING
 from workbench.theme import icon
 from workbench.views.common import breakable
 from workbench.views.forms.editors import NumberRange
@@ -63,11 +64,7 @@ class ProjectPage(StepPage):
             form.set_values({key: value for key, value in values.items() if key in form.values()})
         self.rows.set_rows(self.presenter.progress_rows())
         self.next_words.setText(self.presenter.next_words())
-        enable(
-            self.whole,
-            self.presenter.whole.cannot_start,
-            tr("Do every step that is not done yet or out of date, to the report; stops where you have to decide"),
-        )
+        enable(self.whole, self.presenter.whole.cannot_start, tr(EVERYTHING))
         self.place.setText(breakable(self.presenter.place()))
 
     def _columns(self) -> QWidget:

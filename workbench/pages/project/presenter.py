@@ -10,7 +10,7 @@ from core.states import STEP_STATES
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
-from workbench.pages.project.whole import MeasuringAll
+from workbench.pages.whole import MeasuringAll
 from workbench.step_state import ORDER, State
 
 ProgressLevel = Literal["", "good", "warn", "bad"]

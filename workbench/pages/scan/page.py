@@ -22,6 +22,7 @@ from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.profiles import ProfilesPanel
 from workbench.pages.scan.run import short
 from workbench.pages.scan.stage import Stage
+from workbench.pages.sources import scan_begins_live
 from workbench.pages.step_page import StepPage
 from workbench.pages.words import mm
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
@@ -170,7 +171,7 @@ class ScanPage(StepPage):
         self._folded = ""
         self._rows = None
         self.views.show_alone(None)
-        self.source.set_mode("folder" if self.presenter.project.sources.scan else "live")
+        self.source.set_mode("live" if scan_begins_live(self.presenter.model) else "folder")
 
     def _begin_live(self, _: Any) -> None:
         self.running.show_detail(None, 0.0)

@@ -18,6 +18,7 @@ from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY
 from workbench.pages.scan.stage import Stage
 from workbench.pages.stripes import add_stripe, set_stripe_editable
+from workbench.pages.whole import EVERYTHING
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import heading, in_column, muted
@@ -37,6 +38,7 @@ class ScanCard(StageCard):
         super().__init__(
             [
                 CardButton("run", tr("Measure"), "mdi6.play", p.do_run),
+                CardButton("whole", tr("Measure everything"), "mdi6.play-circle-outline", p.measure_everything),
                 CardButton("cancel", tr("Cancel"), "mdi6.stop", p.cancel),
             ],
             parent,
@@ -46,11 +48,14 @@ class ScanCard(StageCard):
         """Show the stage."""
         p, stage = self._presenter, self._presenter.stage
         measuring = stage is Stage.MEASURING
+        self.buttons["whole"].setVisible(p.whole is not None and not measuring)
+        self.buttons["cancel"].setVisible(measuring or p.whole is None)
         self.buttons["run"].setText(tr("Measure again") if stage in (Stage.MEASURED, Stage.OUTDATED) else tr("Measure"))
         self.show_stage(
             *self._words(stage),
             {
                 "run": (p.cannot_measure, tr("Measure the surface and the thickness from the recording (Ctrl+R)")),
+                "whole": (p.whole.cannot_start if p.whole is not None else "", tr(EVERYTHING)),
                 "cancel": (
                     "" if measuring else tr("Nothing is being measured."),
                     tr("Stop measuring; the recording and the result before are kept"),

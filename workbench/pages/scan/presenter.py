@@ -31,6 +31,7 @@ from workbench.pages.scan.work import ScanWork
 from workbench.pages.sources import folder_of, put_source
 from workbench.pages.stripe_settings import FIELDS as STRIPE_FIELDS
 from workbench.pages.stripe_settings import changed_stripe, stripe_values
+from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
 
 VALIDITY: tuple[tuple[str, str, float], ...] = (
@@ -62,6 +63,8 @@ class ScanPresenter(StepPresenter):
         self.live.check = lambda: self.check.valid
         self.scrub = FrameScrub(bench, self.work, self)
         self.thumbnails = FrameThumbnails(bench, self)
+        self.whole: MeasuringAll | None = None
+        """The whole job, offered here too where the window has it: the next part of a series begins on this page."""
         self.live_stage = ""
         self._shown = False
         self.live.changed.connect(self._look_again)
@@ -76,6 +79,11 @@ class ScanPresenter(StepPresenter):
         self.check_live.ended.connect(self._check_taken)
         self.scrub.changed.connect(self.changed)
         self.model.results_changed.connect(self._results_changed)
+
+    def offer_whole(self, whole: MeasuringAll) -> None:
+        """Have the page offer the whole job."""
+        self.whole = whole
+        whole.changed.connect(self.changed)
 
     # ---- state
 
@@ -247,6 +255,11 @@ class ScanPresenter(StepPresenter):
         """Measure the recording."""
         if not self.cannot_measure:
             self.run.start()
+
+    def measure_everything(self) -> None:
+        """Do every step that is not up to date, to the report."""
+        if self.whole is not None:
+            self.whole.start()
 
     def cancel(self) -> None:
         """Stop measuring; what was measured before stays."""

@@ -107,6 +107,16 @@ def test_a_click_proposes_enter_adds_and_one_undo_takes_it_back(presenter, qtbot
     assert presenter.features.plan.features == ()
 
 
+def test_what_is_taken_is_measured_even_where_nothing_was_measured_before(presenter, measuring, qtbot):
+    presenter.start_clicking("step")
+    for number in (8, 10):
+        click(presenter, qtbot, number)
+    assert jobs.MEASURE_FEATURES not in measuring.ran and "features" not in presenter.model.results
+    presenter.clicked.take()
+    qtbot.waitUntil(lambda: presenter.features.result("thickness 1") is not None)
+    assert measuring.ran.count(jobs.MEASURE_FEATURES) == 1 and edits(presenter) == 1
+
+
 def test_another_click_replaces_what_is_shown_and_a_double_click_changes_nothing(presenter, qtbot, asked):
     presenter.start_clicking("face")
     click(presenter, qtbot, 7)

@@ -4,7 +4,7 @@ from itertools import product
 
 import pytest
 
-from workbench.pages.project.whole import WholeFacts, why_not_measure_all
+from workbench.pages.whole import WholeFacts, why_not_measure_all
 
 BOTH = (False, True)
 LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "inspect", "report"), ("camera", "scan", "report"))))

@@ -10,6 +10,7 @@ from PySide6.QtCore import Qt
 
 from core.errors import InputError
 from core.files.pictures import write_picture
+from core.files.project.data import Sources
 from core.files.project.keys import finished
 from core.inspect.shown.view_frame import FrameKind
 from core.messages import plain
@@ -24,6 +25,7 @@ from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.stage import Stage
+from workbench.pages.whole import MeasuringAll
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -145,6 +147,37 @@ def test_an_empty_page_offers_to_start_where_a_live_source_is_chosen(page, lane,
     assert page.source.mode == "live" and start.text() == "Start live"
     qtbot.mouseClick(start, LEFT)
     assert lane.current is not None and page.presenter.stage is Stage.LIVE
+
+
+def test_the_next_part_of_a_series_measured_from_folders_begins_with_the_choice_of_a_folder(page, qtbot):
+    model = page.presenter.model
+    model.edit("series", replace(model.project, sources=Sources(camera="/set/camera", planes="/set/planes")))
+    page._opened()
+    assert page.source.mode == "folder"
+    qtbot.waitUntil(lambda: page.picture.image.empty_state.button.text() == "Choose folder …")
+
+
+def test_everything_can_be_measured_from_here_where_the_window_has_that(page, scan_folder, qtbot):
+    run, whole, cancel = (page.card.buttons[name] for name in ("run", "whole", "cancel"))
+    assert whole.isHidden() and cancel.isVisible(), "a page by itself"
+    page.presenter.offer_whole(MeasuringAll(page.presenter.bench))
+    page.presenter.changed.emit()
+    qtbot.waitUntil(whole.isVisible)
+    assert cancel.isHidden()
+    assert not whole.isEnabled() and "Choose or record the pictures first" in whole.toolTip()
+    page.source.folder_chosen.emit(scan_folder)
+    qtbot.waitUntil(whole.isEnabled)
+    lane = cast(HandLane, page.presenter.bench.measuring)
+    lane.held = {jobs.MEASURE_ALL, jobs.WATCH_SCAN}
+    qtbot.mouseClick(whole, LEFT)
+    qtbot.waitUntil(lambda: not whole.isEnabled())
+    assert [job for _, job, *_ in lane.waiting] == [jobs.MEASURE_ALL]
+    assert whole.toolTip() == "Everything is being measured."
+    lane.current.cancel()
+    qtbot.waitUntil(whole.isEnabled)
+    qtbot.mouseClick(run, LEFT)
+    qtbot.waitUntil(cancel.isVisible)
+    assert whole.isHidden() and cancel.isEnabled()
 
 
 def test_an_empty_page_says_why_it_cannot_start(page, qtbot):

@@ -205,6 +205,11 @@ class InspectFeatures(QObject):
 
         self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
+    def measure_first(self) -> None:
+        """Measure a plan that has not been measured yet; later, every edit of it is measured by itself."""
+        if "features" not in self.model.results:
+            self.measure()
+
     def follow(self, before: InspectionPlan) -> None:
         """The plan was edited, or an edit undone: what was measured once is measured anew."""
         if self.plan == before:

@@ -10,11 +10,14 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import ProjectFile
 from core.files.project.keys import STEPS, left_to_do
+from core.messages import label
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
+EVERYTHING = label("Do every step that is not done yet or out of date, to the report; stops where you have to decide")
+"""What *Measure everything* does."""
 EDIT = "whole job"
 """What it accepts is one edit, undone as a whole."""
 
