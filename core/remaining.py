@@ -38,6 +38,7 @@ USUAL_S: Mapping[str, Mapping[str, float]] = MappingProxyType(
         "measure_scan": _SCAN | _GAUGE,
         "measure_watched": _SCAN | _GAUGE,
         "make_report": _REPORT,
+        "measure_set": _CAMERA | _PLANES | _SCAN | _GAUGE | _REPORT,
         "measure_all": _CAMERA | _PLANES | _SCAN | _GAUGE | _FEATURES | _REPORT,
     }
 )

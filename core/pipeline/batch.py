@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import threading
 import time
-from collections.abc import Callable, Sequence
-from concurrent.futures import FIRST_COMPLETED, Executor, Future, wait
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
 from core.errors import Cancelled, InputError
@@ -16,13 +17,16 @@ from core.files.recording.recording_set import RIG
 from core.messages import Message, label
 from core.pipeline.executors import THREADS, executor_of
 from core.pipeline.run import RunResult, run
-from core.pipeline.set_result import SetResult
+from core.pipeline.set_result import SetProgress, SetResult
 from core.progress import Progress, silent
+from core.remaining import USUAL_S, Remaining
 
 STOP = ".stop"
 """This file in the batch's folder stops all sets that are being measured, on whatever machine that sees it."""
 
 STEP = label("measuring sets")
+PARTS_OF_A_SET = 100
+"""So many parts of a set's measurement are told of to the progress of the batch."""
 _LOOK_EVERY_S = 0.2
 """How often in s it is looked whether a set is done or the batch is to stop."""
 _LET_END_S = 30.0
@@ -33,11 +37,12 @@ _LONGEST_REASON = 200
 """Characters of another library's words."""
 
 
-Watch = Callable[[tuple[int, SetResult | None]], None]
-"""Told the place of a set, and what became of it; None when it begins."""
+Told = tuple[int, SetProgress | SetResult | None]
+"""The place of a set, and how far it is or what became of it; None when it begins."""
+Watch = Callable[[Told], None]
 
 
-def unwatched(told: tuple[int, SetResult | None]) -> None:
+def unwatched(told: Told) -> None:
     """Take it without a word: the default."""
 
 
@@ -62,9 +67,11 @@ def run_batch(
     options
         Method and cuts, for all.
     progress
-        Called with how many are done; may raise Cancelled: sets being measured then stop, what is finished stays.
+        Called with how much is done, in hundredths of a set; may raise Cancelled: sets being measured then stop, what is
+        finished stays.
     watch
-        Told of each set when it begins, as far as the executor knows, and when it is done.
+        Told of each set when it begins, as far as the executor knows, and when it is done; in threads of this process
+        how far it is, too.
 
     Returns
     -------
@@ -80,9 +87,13 @@ def run_batch(
     stop = resolved(out) / STOP
     _remove(stop)
     chosen = options or Options()
-    futures = [executor.submit(measure_set, folder, place, chosen, stop) for folder, place in places]
+    near = {number: _UnderWay() for number in range(len(places))} if isinstance(executor, ThreadPoolExecutor) else {}
+    futures = [
+        executor.submit(measure_set, folder, place, chosen, stop, *([near[number]] if near else []))
+        for number, (folder, place) in enumerate(places)
+    ]
     try:
-        return _watched(futures, places, progress, watch)
+        return _watched(futures, places, near, progress, watch)
     except BaseException:
         _stop(futures, stop)
         raise
@@ -122,11 +133,11 @@ def sets_in(folder: Path) -> tuple[Path, ...]:
     return found
 
 
-def measure_set(folder: Path, out: Path, options: Options, stop: Path) -> SetResult:
+def measure_set(folder: Path, out: Path, options: Options, stop: Path, progress: Progress = silent) -> SetResult:
     """Measure one set, in whatever process this is; `stop` is a file that ends it with Cancelled when it appears."""
     began = time.perf_counter()
     try:
-        measured = run(folder, out, options, _stopped_by(stop))
+        measured = run(folder, out, options, _stopped_by(stop, progress))
     except InputError as error:
         return SetResult(folder, out, seconds=time.perf_counter() - began, error=error.message)
     except Cancelled:
@@ -179,13 +190,39 @@ def _places(sets: Sequence[Path], out: Path) -> list[tuple[Path, Path]]:
     return [(folder, out / folder.name) for folder in whole]
 
 
+class _UnderWay:
+    """The progress of one set, which the thread that measures it tells, and the one that waits for it asks for."""
+
+    def __init__(self) -> None:
+        self._remaining, self._telling, self._stage = Remaining(USUAL_S["measure_set"]), threading.Lock(), ""
+
+    def __call__(self, step: str, done: int, total: int) -> None:
+        with self._telling:
+            self._stage = step
+            self._remaining.tell(step, done, total)
+
+    def now(self) -> SetProgress:
+        """How far it is."""
+        with self._telling:
+            return SetProgress(self._stage, (self._remaining.share or 0.0) if self._stage else 0.0)
+
+
 def _watched(
-    futures: Sequence[Future[SetResult]], places: Sequence[tuple[Path, Path]], progress: Progress, watch: Watch
+    futures: Sequence[Future[SetResult]],
+    places: Sequence[tuple[Path, Path]],
+    near: Mapping[int, _UnderWay],
+    progress: Progress,
+    watch: Watch,
 ) -> tuple[SetResult, ...]:
-    """Wait for all, telling how many are done and which."""
+    """Wait for all, telling how much is done and which; of those `near` also how far they are."""
     waiting, begun, results = dict(enumerate(futures)), set[int](), dict[int, SetResult]()
+    whole = PARTS_OF_A_SET * len(futures)
     while waiting:
-        progress(STEP, len(results), len(futures))
+        under_way = {number: near[number].now() for number in begun - results.keys() if number in near}
+        for told in under_way.items():
+            watch(told)
+        done = len(results) + sum(one.share for one in under_way.values())
+        progress(STEP, int(PARTS_OF_A_SET * done), whole)
         wait(waiting.values(), _LOOK_EVERY_S, FIRST_COMPLETED)
         for number, future in list(waiting.items()):
             if future.done():
@@ -195,7 +232,7 @@ def _watched(
             elif future.running() and number not in begun:
                 begun.add(number)
                 watch((number, None))
-    progress(STEP, len(futures), len(futures))
+    progress(STEP, whole, whole)
     return tuple(results[number] for number in range(len(futures)))
 
 
@@ -238,12 +275,13 @@ def _remove(stop: Path) -> None:
         raise cannot_write(stop, error) from error
 
 
-def _stopped_by(stop: Path) -> Progress:
-    """A progress that cancels when the file `stop` appears."""
+def _stopped_by(stop: Path, told: Progress) -> Progress:
+    """A progress that passes on what it is `told` and cancels when the file `stop` appears."""
     looked = time.monotonic()
 
     def progress(step: str, done: int, total: int) -> None:
         nonlocal looked
+        told(step, done, total)
         if time.monotonic() - looked < _LOOK_EVERY_S:
             return
         looked = time.monotonic()

@@ -1,4 +1,4 @@
-"""What became of one recording set of a batch, and how a table tells it: the same for command line and window."""
+"""How far one recording set of a batch is, what became of it, and how a table tells it: the same for command line and window."""
 
 from __future__ import annotations
 
@@ -43,6 +43,14 @@ class SetResult:
     frames_used: int = 0
     seconds: float = 0.0
     error: Message | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class SetProgress:
+    """How far a recording set is that is being measured: its stage, and the share of the whole that is done, 0 … 1."""
+
+    stage: str
+    share: float
 
 
 def set_cells(result: SetResult, words: Words) -> tuple[str, str, str, str, str, str]:

@@ -5,6 +5,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
@@ -20,6 +21,8 @@ from core.pipeline import batch
 from core.pipeline.batch import STEP, STOP, run_batch, sets_in
 from core.pipeline.executors import executor_of
 from core.pipeline.run import run
+from core.pipeline.set_result import SetProgress
+from core.remaining import USUAL_S
 from core.scan.method import Method
 from tests.simulated import trisect
 
@@ -60,7 +63,7 @@ def test_results_come_in_the_order_of_the_sets_each_in_its_folder(quick, tmp_pat
     assert [result.folder.name for result in results] == ["b", "a", "c"]
     assert [result.out for result in results] == [tmp_path / "out" / name for name in "bac"]
     assert all((result.thickness_mm, result.frames_used, result.error) == (50.0, 1, None) for result in results)
-    assert told[-1] == (STEP, 3, 3)
+    assert told[-1] == (STEP, 300, 300)
     assert not (tmp_path / "out" / STOP).exists()
 
 
@@ -116,7 +119,35 @@ def test_a_set_is_told_of_when_it_begins(quick, tmp_path):
     with ThreadPoolExecutor(1) as executor, pytest.raises(Cancelled):
         some = sets(tmp_path, "endless", "next")
         run_batch(some, tmp_path / "out", executor, progress=cancel_once_begun, watch=told.append)
-    assert told == [(0, None)]
+    assert told[0] == (0, None)
+
+
+@pytest.mark.parametrize(("begun", "seen"), [(1, [0]), (2, [0, 1])])
+def test_how_far_sets_are_that_are_being_measured_is_told_as_a_share_of_each_and_of_all(
+    begun, seen, monkeypatch, tmp_path
+):
+    go_on = threading.Event()
+
+    def run(folder, out, options, progress):
+        for stage in USUAL_S["measure_set"]:
+            progress(stage, 0, 1)
+            time.sleep(0.02)
+            if stage == "network":
+                assert go_on.wait(10)
+        return SimpleNamespace(gauge=None, points=0, frames=())
+
+    def told_all(step, done, total):
+        whole.append(done / total)
+        if len({number for number, what in told if isinstance(what, SetProgress) and what.stage == "network"}) == begun:
+            go_on.set()
+
+    monkeypatch.setattr(batch, "run", run)
+    told, whole = [], []
+    with ThreadPoolExecutor(begun) as executor:
+        run_batch(sets(tmp_path, "a", "b")[:begun], tmp_path / "out", executor, progress=told_all, watch=told.append)
+    shares = {number: what.share for number, what in told if isinstance(what, SetProgress) and what.stage == "network"}
+    assert sorted(shares) == seen and all(0.1 < share < 1 for share in shares.values())
+    assert whole == sorted(whole) and any(0 < share < 1 for share in whole) and whole[-1] == 1
 
 
 def test_the_sets_of_a_folder_are_itself_or_those_in_it(tmp_path):

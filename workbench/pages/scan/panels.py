@@ -9,15 +9,14 @@ from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from core.pipeline.live.events import ScanDetail
-from core.scan.method import Method
 from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
-from workbench.pages.channels import add_channel
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY
 from workbench.pages.scan.stage import Stage
-from workbench.pages.stripes import add_stripe, set_stripe_editable
+from workbench.pages.scan_form import add_scan_settings
+from workbench.pages.stripes import set_stripe_editable
 from workbench.pages.whole import EVERYTHING
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
@@ -123,22 +122,7 @@ class SettingsPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.form = form = SettingsForm()
-        methods = [
-            (Method.NETWORK.value, tr("Network")),
-            (Method.THREE_CROSSINGS.value, tr("Three crossings a frame")),
-        ]
-        form.add_choice(
-            "method", tr("Method"), methods,
-            tr("Network: all frames adjusted together, the most accurate. Three crossings: each frame by itself."),
-        )  # fmt: skip
-        form.add_number(
-            "sigma_cut_mm",
-            tr("Largest σ"),
-            NumberRange(0.001, 10.0, decimals=3, step=0.01, unit="mm"),
-            tr("Points with a larger standard uncertainty of depth are left out."),
-        )
-        add_stripe(form, tr("Width and contrast of the stripes are taken from the pictures, for each laser."))
-        add_channel(form)
+        add_scan_settings(form)
         form.add_section(tr("Shutter of the camera"))
         form.add_number(
             "row_time_us",

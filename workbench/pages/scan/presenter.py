@@ -12,10 +12,10 @@ from core.files.project.data import Project
 from core.files.project.keys import changed, rests_on
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
+from core.image.stripes.stripe import StripeSettings
 from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.scan.features.frames import FrameRecord
-from core.scan.preview.shown import ShownScan
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
@@ -28,9 +28,8 @@ from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
+from workbench.pages.scan_settings import changed_options, values_of
 from workbench.pages.sources import folder_of, put_source
-from workbench.pages.stripe_settings import FIELDS as STRIPE_FIELDS
-from workbench.pages.stripe_settings import changed_stripe, stripe_values
 from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
 
@@ -210,11 +209,16 @@ class ScanPresenter(StepPresenter):
 
     # ---- settings
 
+    @property
+    def _stripe_found(self) -> StripeSettings | None:
+        """Width and contrast as the last measurement took them."""
+        return None if self.work.look is None else self.work.look.stripe
+
     def settings(self) -> dict[str, Any]:
         """How the scan is measured, as the fields of a form."""
         rig = self.project.rig
         return {
-            **values_of(self.project.options, self.work.look),
+            **values_of(self.project.options, self._stripe_found),
             **stability.shown(rig.stability),
             **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
             "row_time_us": rig.row_time_us,
@@ -242,7 +246,7 @@ class ScanPresenter(StepPresenter):
             self.model.edit(tr("change how long calibration and check hold"), after, f"scan {field}")
             return
         try:
-            options = changed_options(self.project.options, self.work.look, field, value)
+            options = changed_options(self.project.options, self._stripe_found, field, value)
         except (InputError, ValueError) as error:
             self.bench.notices.failed(error)
             self.changed.emit()
@@ -375,17 +379,3 @@ class ScanPresenter(StepPresenter):
             self.bench.notices.info(
                 tr("The scan is recorded. It can be measured once camera and laser planes are accepted.")
             )
-
-
-def values_of(options: Options, look: ShownScan | None) -> dict[str, Any]:
-    """The fields; width and contrast as they were found where they are found automatically."""
-    stripe = stripe_values(options.stripe, look.stripe if look is not None else None)
-    return {"method": str(options.method), "sigma_cut_mm": options.sigma_cut_mm, **stripe}
-
-
-def changed_options(options: Options, look: ShownScan | None, field: str, value: Any) -> Options:
-    """The options with one field changed; InputError or ValueError if it cannot be so."""
-    if field in STRIPE_FIELDS:
-        found = look.stripe if look is not None else None
-        return replace(options, stripe=changed_stripe(options.stripe, found, field, value))
-    return replace(options, **{field: value})

@@ -39,7 +39,7 @@ class StudyEditor(QWidget):
         self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add a project …"))
         self.make = QPushButton(icon("mdi6.check"), tr("Make the study"))
         self.cancel = QPushButton(tr("Cancel"))
-        self.make.setObjectName("primary")
+        self.make.setProperty("primary", True)
         self.cancel.setToolTip(tr("Make no study; the table is given up"))
         self.open.clicked.connect(self._open)
         self.add.clicked.connect(self._add)
