@@ -17,18 +17,22 @@ _NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
 _Index = QModelIndex | QPersistentModelIndex
 _NONE = QModelIndex()
 
+Header = tuple[str, str] | tuple[str, str, str]
+"""Title and unit of a column, "" for none, and perhaps a tip that says what a short title means."""
+
 
 class _Texts(QAbstractTableModel):
     """Rows of texts with titles and tips; a column of numbers stands right."""
 
     titles: tuple[str, ...] = ()
+    title_tips: tuple[str, ...] = ()
     rows: tuple[Sequence[str], ...] = ()
     _tips: Sequence[str] | None = None
     _right: tuple[bool, ...] = ()
 
-    def set_titles(self, titles: Sequence[str]) -> None:
+    def set_titles(self, titles: Sequence[str], tips: Sequence[str]) -> None:
         self.beginResetModel()
-        self.titles, self.rows, self._tips, self._right = tuple(titles), (), None, ()
+        self.titles, self.title_tips, self.rows, self._tips, self._right = tuple(titles), tuple(tips), (), None, ()
         self.endResetModel()
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None) -> None:
@@ -68,6 +72,8 @@ class _Texts(QAbstractTableModel):
     def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
             return self.titles[section]
+        if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.ToolTipRole:
+            return self.title_tips[section]
         if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.TextAlignmentRole and self.rows:
             return self._placed(section)
         return None
@@ -121,9 +127,10 @@ class DataTable(QWidget):
         self.setFocusProxy(self.table)
         in_column(self.table, on=self)
 
-    def set_headers(self, headers: Sequence[tuple[str, str]]) -> None:
-        """(title, unit) of each column; rows shown before are gone."""
-        self._model.set_titles([f"{title} [{unit}]" if unit else title for title, unit in headers])
+    def set_headers(self, headers: Sequence[Header]) -> None:
+        """The columns; rows shown before are gone."""
+        titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]
+        self._model.set_titles(titles, [tip[0] if tip else "" for _, _, *tip in headers])
 
     def set_rows(self, rows: Sequence[Sequence[str]], tips: Sequence[str] | None = None) -> None:
         """Rows of texts, as many as there are columns; `tips` one a row. The chosen row and the scrolling are kept.

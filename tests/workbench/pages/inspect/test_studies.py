@@ -11,12 +11,17 @@ from PySide6.QtWidgets import QStyle
 
 from core.errors import InputError
 from core.files.study.study_file import study_path
+from core.translations import language
 from tests.study.grr_tables import AIAG
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
+from workbench.language import choose, tr
+from workbench.theme import apply_theme
 from workbench.views import ask
 from workbench.work import jobs
 
+RAIL = 186
+"""Pixels of the steps at the left."""
 STUDIES = 4
 """Place of the tab."""
 ROWS = "".join(
@@ -270,3 +275,26 @@ def test_the_characteristic_of_a_series_is_asked_of_the_projects_that_are_added(
     tab.editor.add.click()
     qtbot.waitUntil(lambda: "0.03" in tab.editor.text.toPlainText())
     assert asked[0][0] == "series" and asked[0][6] == "top flatness"
+
+
+def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_page, qapp, qtbot):
+    sheet = qapp.styleSheet()
+    choose(language("de"), qapp)
+    try:
+        apply_theme(qapp, "light")
+        page = show_page(presenter, 1280 - RAIL, 700)
+        page.tabs.setCurrentIndex(STUDIES)
+        studies = presenter.studies
+        studies.begin("grr")
+        studies.write("part;operator;value\n" + ROWS)
+        studies.finish()
+        made(studies, qtbot)
+        page.refreshing.at_once()
+        table = page.studies.table
+        qtbot.waitUntil(lambda: table.isVisible() and len(table.rows()) == 7)
+        assert len(table._model.titles) == 5 and table.table.horizontalScrollBar().maximum() == 0
+        tip = table._model.headerData(3, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
+        assert tip == tr("s over that of the whole scatter")
+    finally:
+        choose(language("en"), qapp)
+        qapp.setStyleSheet(sheet)

@@ -17,6 +17,7 @@ from workbench.language import number, text_of, tr
 from workbench.pages.inspect import words as inspect_words
 from workbench.pages.words import wording
 from workbench.views.colours import Level
+from workbench.views.lists.data_table import Header
 from workbench.views.lists.value_rows import ValueRow
 
 if TYPE_CHECKING:
@@ -34,8 +35,8 @@ LEVELS: dict[str, Level] = {
     "not proven": "warn",
     "not conforming": "bad",
 }
-Table = tuple[list[tuple[str, str]], list[Sequence[str]]]
-"""Headers (title, unit) and rows of texts."""
+Table = tuple[list[Header], list[Sequence[str]]]
+"""Headers and rows of texts."""
 
 
 def kind_title(kind: str) -> str:
@@ -142,8 +143,13 @@ def _components(study: GrrStudy) -> Table:
         "total": tr("total"),
     }
     with_tolerance = study.tolerance is not None
-    headers = [(tr("Source"), ""), (tr("s"), study.unit), (tr("% of s²"), ""), (tr("% of total"), "")]
-    headers += [(tr("% of T"), "")] if with_tolerance else []
+    headers: list[Header] = [
+        (tr("Source"), ""),
+        (tr("s"), study.unit, tr("Standard deviation")),
+        (tr("% of s²"), "", tr("Share of the whole variance")),
+        (tr("% of total"), "", tr("s over that of the whole scatter")),
+    ]
+    headers += [(tr("% of T"), "", tr("6 s over the tolerance T"))] if with_tolerance else []
     body: list[Sequence[str]] = []
     for one in study.components:
         shares = [one.contribution, one.of_total] + ([one.of_tolerance or 0.0] if with_tolerance else [])
@@ -157,7 +163,7 @@ def _acceptance_rows(study: AcceptanceCheck) -> list[ValueRow]:
 
 
 def _quantities(study: AcceptanceCheck) -> Table:
-    headers = [
+    headers: list[Header] = [
         (tr("Quantity"), ""),
         (tr("Positions"), ""),
         (tr("Largest error"), "mm"),
@@ -208,7 +214,11 @@ def _values(study: SeriesStudy) -> Table:
         broken.setdefault(one.place, []).append(str(one.rule))
     points = study.values if charts is None else charts.location.points
     called = study.labels if charts is None else [study.label_of(place) for place in range(len(points))]
-    headers = [(tr("Part"), ""), (tr("Value") if study.size == 1 else tr("X̄"), study.unit), (tr("Rule broken"), "")]
+    headers: list[Header] = [
+        (tr("Part"), ""),
+        (tr("Value") if study.size == 1 else tr("X̄"), study.unit),
+        (tr("Rule broken"), ""),
+    ]
     body: list[Sequence[str]] = [
         [name, wording().fixed(float(value), 4), ", ".join(broken.get(place, ()))]
         for place, (name, value) in enumerate(zip(called, points, strict=True))
