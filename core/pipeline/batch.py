@@ -67,8 +67,8 @@ def run_batch(
     options
         Method and cuts, for all.
     progress
-        Called with how much is done, in hundredths of a set; may raise Cancelled: sets being measured then stop, what is
-        finished stays.
+        Called with how much is done, in hundredths of a set; may raise Cancelled: sets being measured then stop, what
+        is finished stays.
     watch
         Told of each set when it begins, as far as the executor knows, and when it is done; in threads of this process
         how far it is, too.

@@ -1,4 +1,4 @@
-"""How far one recording set of a batch is, what became of it, and how a table tells it: the same for command line and window."""
+"""One recording set of a batch: how far it is, what became of it, how tables of command line and window tell it."""
 
 from __future__ import annotations
 

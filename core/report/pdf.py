@@ -11,12 +11,13 @@ from typing import Any, NamedTuple
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
-from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate, Paragraph
+from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
 
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
 from core.report.layout.blocks import LEAST_SCALE, Limits
+from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
     HAIRLINE,
     INK,

@@ -8,9 +8,10 @@ from dataclasses import dataclass
 
 from reportlab.lib.units import mm
 from reportlab.pdfgen.canvas import Canvas
-from reportlab.platypus import Flowable, Frame, Paragraph, Table, TableStyle
+from reportlab.platypus import Flowable, Frame, Table, TableStyle
 
 from core.messages import label
+from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
     ACCENT,
     HAIRLINE,

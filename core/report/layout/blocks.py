@@ -11,8 +11,9 @@ from typing import TypeAlias
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether, Paragraph, Table, TableStyle
+from reportlab.platypus import Flowable, KeepTogether, Table, TableStyle
 
+from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, ReportLook, color
 from core.report.wording import grouped
 
@@ -80,7 +81,7 @@ class Bookmark(Flowable):  # type: ignore[misc]
         self.canv.addOutlineEntry(self.title, self.key, self.level)
 
 
-class Heading(Paragraph):  # type: ignore[misc]
+class Heading(Paragraph):
     """A heading that links lead to. The bookmark is its own: before it, its space above would not be counted."""
 
     def __init__(self, look: ReportLook, key: str, title: str, style: str = "section", level: int = 0) -> None:

@@ -18,10 +18,10 @@ from reportlab.lib.pagesizes import A4, LETTER
 from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase import pdfmetrics
-from reportlab.platypus import Paragraph
 
 from core.messages import Message
 from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian, truetype
+from core.report.layout.paragraph import Paragraph
 from core.report.template import Paper
 from core.report.wording import Words
 
@@ -90,8 +90,8 @@ def prepare_reportlab() -> None:
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
-WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?!\w))")
-"""The space between a number and its unit, which no line break may part."""
+WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
+"""The space between a number and its unit, which no line break may part; East Asian words follow without a space."""
 
 
 def markup(text: str) -> str:

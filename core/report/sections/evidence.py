@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
-from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Paragraph, Spacer, TableStyle
+from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
 from core.messages import Message, plural_message
 from core.report.content import LeftOut, ReportContent
@@ -22,6 +22,7 @@ from core.report.layout.blocks import (
     section,
     side_by_side,
 )
+from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
 from core.report.wording import decimals_of, grouped, with_uncertainty

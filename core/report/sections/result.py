@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 from reportlab.lib.units import mm
-from reportlab.platypus import Flowable, Paragraph, Spacer, Table, TableStyle
+from reportlab.platypus import Flowable, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
@@ -15,6 +15,7 @@ from core.messages import capital, plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import heads, plain_table, ruled_table
 from core.report.layout.control_frame import ControlFrameMark
+from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
     BOLD,
     HAIRLINE,
