@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from rich.table import Table
 
@@ -12,15 +13,16 @@ from core.cli.bar import bar
 from core.cli.language import spoken, told, tr
 from core.files.recording.import_pictures import IMPORTED, Imported, import_pictures, require_free
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where, plan_import
+from core.files.recording.recording_set import CHECK
 from core.messages import Message, label, plural_message, visible
 
 _COLUMNS = (label("name in the set"), label("picture"), label("fan off"), label("taken at"))
 
 
-def understood(camera: str, planes: str, planes_off: str, scan: str, reference: Path | None, order: str) -> ImportPlan:
-    """The plan of what was typed; '' is what there is none of."""
-    views, on, off, frames = (Where.typed(text) if text else None for text in (camera, planes, planes_off, scan))
-    return plan_import(ImportRequest(views, on, off, frames, reference, Order(order)))
+def understood(parts: Mapping[str, str], reference: Path | None, order: str) -> ImportPlan:
+    """The plan of what was typed for each field of an `ImportRequest`; '' is what there is none of."""
+    asked: dict[str, Any] = {part: Where.typed(text) for part, text in parts.items() if text}
+    return plan_import(ImportRequest(**asked, reference=reference, order=Order(order)))
 
 
 def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_json: bool) -> None:
@@ -74,7 +76,7 @@ def _part_in_words(plan: ImportPlan, part: str) -> str:
     pairs = sum(one.off is not None for one in pictures)
     counted = (
         plural_message("import.pictures", "{n:,} picture", "{n:,} pictures", n=len(pictures))
-        if part != "planes"
+        if part not in ("planes", CHECK)
         else plural_message(
             "import.poses", "{n:,} pose, {pairs} paired", "{n:,} poses, {pairs} paired", n=len(pictures), pairs=pairs
         )

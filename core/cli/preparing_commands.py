@@ -107,6 +107,13 @@ def import_(
     reference: Annotated[
         Path | None, typer.Option(metavar="FILE", help="The scan's picture with the fan alone.")
     ] = None,
+    check: Annotated[
+        str, typer.Option(metavar="WHERE", help="Poses of the plane target on the day of the scan, the fan on.")
+    ] = "",
+    check_off: Annotated[
+        str,
+        typer.Option("--check-off", metavar="WHERE", help="The same poses, the fan off; else NAME_off beside NAME."),
+    ] = "",
     order: Annotated[
         OrderBy, typer.Option(help="name: numbers in names count as numbers. time: when each was taken (EXIF).")
     ] = OrderBy.name,
@@ -121,5 +128,9 @@ def import_(
     """
     from core.cli import importing
 
-    plan = importing.understood(camera, planes, planes_off, scan, reference, order.value)
+    parts = {
+        **{"camera": camera, "planes": planes, "planes_off": planes_off, "scan": scan},
+        **{"check": check, "check_off": check_off},
+    }
+    plan = importing.understood(parts, reference, order.value)
     importing.show(plan, folder, rig, dry_run=dry_run, as_json=json)

@@ -18,6 +18,8 @@ from core.states import DECISIONS
 from core.study.repeats import THICKNESS
 from core.translations import language
 
+WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
+"""The space between a number and its unit, which no line break may part; East Asian words follow without a space."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -154,6 +156,11 @@ def shown_unit(one: Characteristic) -> tuple[str, float]:
 def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
     """A number with its unit, which no line break parts: '0.02 mm', but '90°', as ISO 80000-1 has it."""
     return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
+
+
+def unparted(text: str) -> str:
+    """`text` with a space between each number and its unit that no line break parts."""
+    return WITH_UNIT.sub("\u00a0", text)
 
 
 def _line(value: float, U: float, k: float, unit: str, words: Words) -> str:

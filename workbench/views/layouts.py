@@ -20,6 +20,8 @@ from PySide6.QtWidgets import (
 )
 from superqt import QElidingLabel
 
+from core.report.wording import unparted
+
 NO_MARGINS = (0, 0, 0, 0)
 """Pixels left, above, right and below."""
 STRETCH: Final = None
@@ -148,11 +150,22 @@ def heading(text: str) -> QLabel:
     return label
 
 
-def muted(text: str = "") -> QLabel:
-    """An explaining sentence, wrapped."""
-    label = QLabel(text)
+class Sentence(QLabel):
+    """Words that are wrapped, but for a number and its unit."""
+
+    def __init__(self, text: str = "") -> None:
+        super().__init__()
+        self.setWordWrap(True)
+        self.setText(text)
+
+    def setText(self, text: str) -> None:
+        super().setText(unparted(text))
+
+
+def muted(text: str = "") -> Sentence:
+    """An explaining sentence."""
+    label = Sentence(text)
     label.setObjectName("muted")
-    label.setWordWrap(True)
     return label
 
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QWidget
 
 from workbench.theme import icon
-from workbench.views.layouts import enable, in_column
+from workbench.views.layouts import Sentence, enable, in_column, muted
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,11 +27,8 @@ class StageCard(QFrame):
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self.title, self.words = QLabel(), QLabel()
+        self.title, self.words = Sentence(), muted()
         self.title.setObjectName("heading")
-        self.words.setObjectName("muted")
-        for label in (self.title, self.words):
-            label.setWordWrap(True)
         row = QHBoxLayout()
         row.setSpacing(6)
         self.buttons: dict[str, QPushButton] = {}

@@ -17,8 +17,8 @@ from core.files.atomic import cannot_write, make_folder, remove_leftovers, write
 from core.files.json_text import write_json
 from core.files.linking import Way, link
 from core.files.reading import MISSING, read_bytes, read_json, resolved
-from core.files.recording.import_plan import ImportPlan
-from core.files.recording.recording_set import PARTS, RIG
+from core.files.recording.import_plan import ImportPlan, Where
+from core.files.recording.recording_set import CHECK, PARTS, RIG
 from core.files.recording.rig import read_rig
 from core.files.recording.set_listing import check_sizes, pictures_in
 from core.messages import Message, as_json, plural_message
@@ -105,7 +105,7 @@ def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
                 where=place,
                 todo=Message("import.advice_other_set", "name another set, or remove this folder first"),
             )
-    kept = [path for part in PARTS for path in pictures_in(target / part)]
+    kept = [path for part in (*PARTS, CHECK) for path in pictures_in(target / part)]
     check_sizes([*kept, *(path for one in plan.pictures for _, path in one.files())])
     if rig is not None:
         read_rig(rig)
@@ -165,7 +165,8 @@ def _record(plan: ImportPlan, ways: Mapping[str, Way], notes: tuple[Message, ...
     """One import as the log keeps it; every file with its place, so that its origin stays known."""
     taken = {name: one.taken_at for one in plan.pictures for name, _ in one.files()[:1]}
     request = plan.request
-    asked = {"camera": request.camera, "planes": request.planes, "planes_off": request.planes_off, "scan": request.scan}
+    names = ("camera", "planes", "planes_off", "scan", "check", "check_off")
+    asked: dict[str, Where | None] = {name: getattr(request, name) for name in names}
     return {
         "imported_at": datetime.now(UTC).astimezone().isoformat(timespec="seconds"),
         "version": __version__,

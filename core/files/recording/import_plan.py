@@ -24,6 +24,7 @@ from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read, resolved
+from core.files.recording.recording_set import CHECK
 from core.files.recording.set_listing import check_sizes, pictures_in
 from core.messages import Message, plural_message
 
@@ -69,7 +70,7 @@ class ImportRequest:
     """Which pictures are to be what; None for what there is none of.
 
     `planes` are the poses of the plane target with the fan on, `planes_off` the same with it off; `scan` are frames,
-    `reference` is the picture of the fan alone.
+    `reference` is the picture of the fan alone. `check` and `check_off` are as the poses, taken on the day of the scan.
     """
 
     camera: Where | None = None
@@ -78,6 +79,8 @@ class ImportRequest:
     scan: Where | None = None
     reference: Path | None = None
     order: Order = Order.NAME
+    check: Where | None = None
+    check_off: Where | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -124,18 +127,20 @@ def plan_import(request: ImportRequest) -> ImportPlan:
         If nothing is asked for, a folder or its pictures are not there, the pictures are not all of one size, or
         nothing says which pictures have the fan on.
     """
-    asked = (request.camera, request.planes, request.planes_off, request.scan, request.reference)
+    poses, check = (request.planes, request.planes_off), (request.check, request.check_off)
+    asked = (request.camera, *poses, request.scan, request.reference, *check)
     if all(one is None for one in asked):
         raise InputError(
             Message("import.nothing", "nothing says which pictures to import"),
-            todo=Message("import.advice_folders", "name a folder for camera, planes or scan"),
+            todo=Message("import.advice_folders", "name a folder for camera, planes, scan or check"),
         )
-    if request.planes is None and request.planes_off is not None:
-        raise InputError(
-            Message("import.off_without_on", "these have the fan off, and nothing says which have it on"),
-            where=request.planes_off,
-            todo=Message("import.advice_planes", "name those, too: the poses are measured in them"),
-        )
+    for on, off in (poses, check):
+        if on is None and off is not None:
+            raise InputError(
+                Message("import.off_without_on", "these have the fan off, and nothing says which have it on"),
+                where=off,
+                todo=Message("import.advice_planes", "name those, too: the poses are measured in them"),
+            )
     if request.scan is None and request.reference is not None:
         raise InputError(
             Message("import.reference_without_frames", "this is a reference, and nothing says which are its frames"),
@@ -144,8 +149,9 @@ def plan_import(request: ImportRequest) -> ImportPlan:
         )
     found = [
         _views(request.camera, request.order) if request.camera else None,
-        _poses(request.planes, request.planes_off, request.order) if request.planes else None,
+        _poses("planes", request.planes, request.planes_off, request.order) if request.planes else None,
         _frames(request.scan, request.reference, request.order) if request.scan else None,
+        _poses(CHECK, request.check, request.check_off, request.order) if request.check else None,
     ]
     parts = [part for part in found if part is not None]
     pictures = tuple(one for part in parts for one in part.pictures)
@@ -190,7 +196,7 @@ def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
     return _Part(tuple(pictures), rule, (*notes, *more))
 
 
-def _poses(on: Where, off: Where | None, order: Order) -> _Part:
+def _poses(part: str, on: Where, off: Where | None, order: Order) -> _Part:
     files, notes = _listed(on)
     if off is None:
         offs = {path.stem.removesuffix(_OFF): path for path in files if path.stem.endswith(_OFF)}
@@ -210,7 +216,7 @@ def _poses(on: Where, off: Where | None, order: Order) -> _Part:
     ordered, rule, more = _in_order(files, order)
     names = _set_names([path for path, _ in ordered], ends_with_off=True)
     pictures = tuple(
-        ImportedPicture("planes", name, path, partners.get(path), at)
+        ImportedPicture(part, name, path, partners.get(path), at)
         for name, (path, at) in zip(names, ordered, strict=True)
     )
     told = (*notes, *more, *_without_partner(pictures, left), *_exchanged(pictures))

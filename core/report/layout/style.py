@@ -23,7 +23,7 @@ from core.messages import Message
 from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian, truetype
 from core.report.layout.paragraph import Paragraph
 from core.report.template import Paper
-from core.report.wording import Words
+from core.report.wording import Words, unparted
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
@@ -90,17 +90,13 @@ def prepare_reportlab() -> None:
     rl_config.useA85 = 0  # its base-85 text costs more time than all the layout, and a quarter of the size
 
 
-WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
-"""The space between a number and its unit, which no line break may part; East Asian words follow without a space."""
-
-
 def markup(text: str) -> str:
     """`text` as markup of a Paragraph, nothing lost whatever its script, no number parted from its unit.
 
     Characters the report's own fonts lack are set in a font of this computer, else in an East Asian one that the
     reader's program brings, and else printed by their code point, [U+1F600]: `font_note` says so.
     """
-    runs = _runs(WITH_UNIT.sub("\u00a0", re.sub(r"[ \t\r\n\f\v]+", " ", text)))
+    runs = _runs(unparted(re.sub(r"[ \t\r\n\f\v]+", " ", text)))
     return "".join(f'<font name="{font}">{escape(part)}</font>' if font else escape(part) for font, part in runs)
 
 

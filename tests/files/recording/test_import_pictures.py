@@ -114,6 +114,40 @@ def test_one_folder_with_names_off_pairs_by_itself(tmp_path):
     assert codes(plan.notes) == ["import.no_partner"]
 
 
+def test_pictures_of_a_check_are_paired_as_poses_are_and_read_as_a_check(tmp_path):
+    day, more = tmp_path / "day", tmp_path / "more"
+    pictures(day, "c1.png", "c2.png", picture=LIT)
+    pictures(day, "c1_off.png", "c2_off.png")
+    pictures(more, "views.png")
+    plan = plan_import(ImportRequest(check=Where(day)))
+    assert [name for one in plan.pictures for name, _ in one.files()] == [
+        "check/c1.png", "check/c1_off.png", "check/c2.png", "check/c2_off.png",
+    ]  # fmt: skip
+    assert plan.rules["check"].values["pairs"].code == "import.pairs_by_off"
+    (tmp_path / "rig.toml").write_text(rig_to_toml(default_rig()))
+    import_pictures(plan_import(ImportRequest(camera=Where(more))), tmp_path / "set", tmp_path / "rig.toml")
+    import_pictures(plan, tmp_path / "set")
+    assert [(pair.on.name, pair.off.name) for pair in open_set(tmp_path / "set").check] == [
+        ("c1.png", "c1_off.png"), ("c2.png", "c2_off.png"),
+    ]  # fmt: skip
+    written = read_json(tmp_path / "set" / "import.json")["imports"][-1]
+    assert written["from"] == {"check": str(day / "*")}
+
+
+def test_off_pictures_of_a_check_without_on_pictures_are_refused(tmp_path):
+    off = pictures(tmp_path / "off", "c1.png")
+    with pytest.raises(InputError, match="nothing says which have it on"):
+        plan_import(ImportRequest(check_off=Where(off)))
+
+
+def test_a_check_of_another_size_than_the_set_is_refused(tmp_path):
+    import_pictures(plan_import(ImportRequest(check=Where(pictures(tmp_path / "a", "c1.png")))), tmp_path / "set")
+    larger = np.zeros((2 * DARK.shape[0], DARK.shape[1]), np.uint8)
+    scan = plan_import(ImportRequest(scan=Where(pictures(tmp_path / "b", "f1.png", picture=larger))))
+    with pytest.raises(InputError, match="pixels"):
+        import_pictures(scan, tmp_path / "set")
+
+
 def test_off_pictures_without_a_pose_are_left_out_and_told(tmp_path):
     on = pictures(tmp_path / "on", "a1.png", picture=LIT)
     off = pictures(tmp_path / "off", "b1.png", "b2.png")

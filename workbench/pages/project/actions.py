@@ -97,11 +97,11 @@ class ProjectActions(QObject):
             self._make(name, imported.name, new_project, then=lambda: self._put_parts(imported, parts))
 
     def _put_parts(self, imported: Path, parts: tuple[str, ...]) -> None:
-        steps: tuple[Step, ...] = ("camera", "planes", "scan")
+        steps: tuple[Step, ...] = ("camera", "planes", "scan", "check")
         for step in steps:
             if step in parts:
                 put_source(self.model, step, imported / step, tr("use imported pictures"))
-        self.go_to.emit(parts[0])
+        self.go_to.emit("scan" if parts[0] == "check" else parts[0])
 
     def open_dropped(self, path: Path) -> None:
         """Open what `path` is: a project, its project.json or NAME.trisect, an earlier version, or a recording set."""

@@ -29,7 +29,7 @@ from workbench.language import text_of, tr
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
-from workbench.views.layouts import in_row, resize_on_screen
+from workbench.views.layouts import Folding, in_row, resize_on_screen
 from workbench.views.lists.data_table import DataTable
 from workbench.work import jobs
 
@@ -57,7 +57,8 @@ class ImportDialog(QDialog):
         self.setWindowTitle(tr("Import pictures"))
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         resize_on_screen(self, 1100, 720)
-        self.camera, self.planes, self.planes_off, self.scan = (QLineEdit() for _ in range(4))
+        self.camera, self.planes, self.planes_off = (QLineEdit() for _ in range(3))
+        self.scan, self.check, self.check_off = (QLineEdit() for _ in range(3))
         self.target, self.order = QLineEdit(str(set_folder)), QComboBox()
         self.order.addItem(tr("By name (2 before 10)"), Order.NAME)
         self.order.addItem(tr("By the time they were taken"), Order.TIME)
@@ -81,24 +82,32 @@ class ImportDialog(QDialog):
 
     def request(self) -> ImportRequest:
         """What is typed."""
-        fields = (self.camera, self.planes, self.planes_off, self.scan)
-        views, on, off, frames = (Where.typed(text) if (text := one.text().strip()) else None for one in fields)
-        return ImportRequest(views, on, off, frames, None, Order(self.order.currentData()))
+        fields = {
+            **{"camera": self.camera, "planes": self.planes, "planes_off": self.planes_off},
+            **{"scan": self.scan, "check": self.check, "check_off": self.check_off},
+        }
+        asked: dict[str, Any] = {
+            name: Where.typed(text) for name, one in fields.items() if (text := one.text().strip())
+        }
+        return ImportRequest(**asked, order=Order(self.order.currentData()))
 
     def _arrange(self) -> None:
-        form = QFormLayout()
         tip = tr("A folder, or a folder and a pattern of names: shots/laser_*.jpg")
-        for label, field in (
-            (tr("Views of the camera's target"), self.camera),
-            (tr("Poses of the plate, fan on"), self.planes),
-            (tr("The same poses, fan off"), self.planes_off),
-            (tr("Frames of a scan"), self.scan),
+        calibration, measurement = QFormLayout(), QFormLayout()
+        for form, label, field in (
+            (calibration, tr("Views of the camera's target"), self.camera),
+            (calibration, tr("Poses of the plate, fan on"), self.planes),
+            (calibration, tr("The same poses, fan off"), self.planes_off),
+            (measurement, tr("Frames of a scan"), self.scan),
+            (measurement, tr("Poses of the check, fan on"), self.check),
+            (measurement, tr("The same poses, fan off"), self.check_off),
         ):
             field.setPlaceholderText(tip)
             field.textChanged.connect(self._changed)
             form.addRow(label, self._with_browse(field, label))
-        form.addRow(tr("Order"), self.order)
-        form.addRow(tr("Recording set to make"), self._with_browse(self.target, tr("Recording set to make")))
+        whole = QFormLayout()
+        whole.addRow(tr("Order"), self.order)
+        whole.addRow(tr("Recording set to make"), self._with_browse(self.target, tr("Recording set to make")))
         pictures = SideBySide()
         pictures.add_view(tr("Picture"), self.on)
         pictures.add_view(tr("Fan off"), self.off)
@@ -107,7 +116,8 @@ class ImportDialog(QDialog):
         preview.addWidget(pictures)
         preview.setSizes([420, 640])
         column = QVBoxLayout(self)
-        column.addLayout(form)
+        column.addWidget(Folding(calibration, measurement, spacing=14))
+        column.addLayout(whole)
         column.addWidget(preview, 1)
         column.addWidget(self.words)
         column.addWidget(self.buttons)

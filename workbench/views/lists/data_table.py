@@ -10,10 +10,11 @@ from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTableView, QWidget
 
 from core.files.csv_text import harmless
+from core.report.wording import unparted
 from workbench.language import tr
 from workbench.views.layouts import in_column
 
-_NUMBER_SIGNS = set("0123456789.,+-−–±×e%° ")
+_NUMBER_SIGNS = set("0123456789.,+-−–±×e%° \u00a0")
 _Index = QModelIndex | QPersistentModelIndex
 _NONE = QModelIndex()
 
@@ -42,7 +43,7 @@ class _Texts(QAbstractTableModel):
             self.beginInsertRows(_NONE, before, now - 1)
         elif now < before:
             self.beginRemoveRows(_NONE, now, before - 1)
-        self.rows, self._tips = tuple(rows), tips
+        self.rows, self._tips = tuple(tuple(map(unparted, row)) for row in rows), tips
         columns = range(len(self.titles))
         self._right = tuple(_are_numbers([row[i] for row in rows if row[i]]) for i in columns)
         if now > before:

@@ -60,6 +60,24 @@ def test_what_was_understood_is_shown_before_the_project_measures_it(
     technician.idle()
 
 
+def test_pictures_of_a_check_become_the_projects_and_are_shown_where_it_is_made(
+    technician: Technician, shots: Path, tmp_path: Path
+) -> None:
+    create_project(tmp_path / "block", ProjectFile(new_project("Block")))
+    technician.window.projects.open_project(tmp_path / "block")
+    dialog = dialog_of(technician)
+    dialog.check.setText(f"{shots}/laser_*")
+    dialog.check_off.setText(f"{shots}/board_*")
+    technician.until(dialog.do_import.isEnabled, "the preview")
+    assert cells(dialog)[0] == ("check/0-laser_1.png", "laser_1.png", "board_1.png")
+    dialog.do_import.click()
+    technician.until(lambda: technician.window.current == "scan", "the page of the check")
+    folder = folder_of(technician.model, "check")
+    assert folder is not None and (folder / "0-laser_1_off.png").samefile(shots / "board_1.png")
+    assert not technician.model.project.sources.scan
+    technician.idle()
+
+
 def test_what_cannot_be_understood_is_told_in_the_dialog(technician: Technician, shots: Path) -> None:
     dialog = dialog_of(technician)
     dialog.planes.setText(str(shots))
