@@ -302,7 +302,7 @@ class MainWindow(QMainWindow):
             "first measurement": projects.begin_first_measurement,
             "quick card": self._print_quick_card,
             "console": self.console.open,
-            "plan rig": self.rig_plans.choose,
+            "plan rig": self.rig_plans.open,
             "many sets": self.many_sets.open,
             "script": projects.copies.save_script,
             "operator mode": self.enter_operator_mode,

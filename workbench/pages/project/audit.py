@@ -1,8 +1,9 @@
-"""The audit trail of the open project in a window: looked through, remarked on, handed over as a table."""
+"""The audit trail of the open project in a window: looked through, checked, remarked on, handed over as a table."""
 
 from __future__ import annotations
 
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from PySide6.QtWidgets import QDialog, QInputDialog, QPlainTextEdit, QPushButton, QWidget
 
@@ -14,7 +15,11 @@ from core.messages import visible
 from workbench.bench import Bench
 from workbench.language import text_of, time_of, tr
 from workbench.views import ask
-from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen
+from workbench.views.layouts import STRETCH, enable, in_column, in_row, muted, resize_on_screen, say
+from workbench.work import jobs
+
+if TYPE_CHECKING:
+    from core.pipeline.project.verify import Verified
 
 
 def ask_reason(parent: QWidget | None, label: str) -> str:
@@ -26,7 +31,7 @@ def ask_reason(parent: QWidget | None, label: str) -> str:
 
 
 class AuditWindow(QDialog):
-    """Every entry, the newest first; whether the chain is whole stands above them."""
+    """Every entry, the newest first; above them whether the chain, and if asked for every file, is what it was."""
 
     def __init__(self, bench: Bench, folder: Path, parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -34,8 +39,8 @@ class AuditWindow(QDialog):
         self._trail = Trail()
         self.setWindowTitle(tr("Audit trail"))
         resize_on_screen(self, 820, 560)
-        self.state, self.entries = muted(), QPlainTextEdit()
-        self.state.setWordWrap(True)
+        self.state, self.found, self.entries = muted(), muted(), QPlainTextEdit()
+        say(self.found, "")
         self.entries.setReadOnly(True)
         self.entries.setAccessibleName(tr("Entries of the audit trail"))
         self.remark = QPushButton(tr("Add a remark …"))
@@ -46,6 +51,9 @@ class AuditWindow(QDialog):
         unnamed = "" if bench.model.rules.people else tr("Nobody is named in this project, so nobody can sign.")
         enable(self.remark, fixed, tr("Say why something was done; it stays for good."))
         enable(self.sign, fixed or unnamed, tr("Sign the project as it is, by name and PIN."))
+        self.verify = QPushButton(tr("Check all files"))
+        self.verify.setToolTip(tr("Compare results and pictures with what they were when the results were made"))
+        self.verify.clicked.connect(self._verify)
         self.export = QPushButton(tr("Export …"))
         self.export.clicked.connect(self._export)
         close = QPushButton(tr("Close"))
@@ -53,8 +61,9 @@ class AuditWindow(QDialog):
         close.clicked.connect(self.accept)
         in_column(
             self.state,
+            self.found,
             (self.entries, 1),
-            in_row(self.remark, self.sign, self.export, STRETCH, close),
+            in_row(self.verify, self.remark, self.sign, self.export, STRETCH, close),
             on=self,
             margins=(14, 10, 14, 12),
         )
@@ -68,6 +77,33 @@ class AuditWindow(QDialog):
             except InputError as error:
                 self._bench.notices.failed(error)
             self._show()
+
+    def _verify(self) -> None:
+        """Compare every file that has a hash, as `trisect verify` does."""
+        reading = tr("The files are being compared.")
+        enable(self.verify, reading, "")
+        say(self.found, reading)
+        task = self._bench.quick.run(
+            self,
+            jobs.VERIFY,
+            self._folder,
+            label=tr("Comparing the files"),
+            on_done=self._verified,
+            on_failed=lambda problem: self.found.setText(text_of(problem)),
+            on_cancelled=lambda: say(self.found, ""),
+        )
+        task.ended.connect(lambda: enable(self.verify, "", tr("Compare them again")))
+
+    def _verified(self, found: Verified) -> None:
+        said: list[Any] = [*found.problems, *found.notes]
+        if not found.problems:
+            all_well = tr(
+                "All files are what they were: {results} results, and {inputs} files they were made of.",
+                results=found.results,
+                inputs=found.inputs,
+            )
+            said.insert(0, all_well)
+        self.found.setText("\n".join(map(text_of, said)))
 
     def _ask_for_signature(self) -> None:
         names = [one.name for one in self._bench.model.rules.people]

@@ -29,7 +29,7 @@ from workbench.language import text_of, tr
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
-from workbench.views.layouts import Folding, in_row, resize_on_screen
+from workbench.views.layouts import NO_MARGINS, Folding, in_row, resize_on_screen
 from workbench.views.lists.data_table import DataTable
 from workbench.work import jobs
 
@@ -94,6 +94,8 @@ class ImportDialog(QDialog):
     def _arrange(self) -> None:
         tip = tr("A folder, or a folder and a pattern of names: shots/laser_*.jpg")
         calibration, measurement = QFormLayout(), QFormLayout()
+        for form in (calibration, measurement):
+            form.setContentsMargins(*NO_MARGINS)
         for form, label, field in (
             (calibration, tr("Views of the camera's target"), self.camera),
             (calibration, tr("Poses of the plate, fan on"), self.planes),

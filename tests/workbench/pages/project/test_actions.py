@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -659,6 +660,25 @@ def test_the_audit_trail_is_shown_remarked_on_and_exported(
     audit = folder / "audit.jsonl"
     audit.write_text(audit.read_text().replace("Other", "Another"))
     assert "was changed" in AuditWindow(projects.bench, folder).state.text()
+
+
+def test_all_files_are_checked_from_the_audit_trail_and_what_differs_is_named(
+    projects: ProjectActions, tmp_path: Path, qtbot: Any, finished_project_folder: Path
+) -> None:
+    folder = Path(shutil.copytree(finished_project_folder, tmp_path / "block"))
+    projects.open_project(folder)
+    window = AuditWindow(projects.bench, folder)
+    assert window.found.isHidden()
+    window.verify.click()
+    assert not window.verify.isEnabled() and "being compared" in window.found.text()
+    qtbot.waitUntil(window.verify.isEnabled, timeout=30_000)
+    assert "All files are what they were" in window.found.text()
+    (folder / "results" / "gauge.json").write_text("{}")
+    next((folder / "recordings" / "scan").glob("*.png")).unlink()
+    window.verify.click()
+    qtbot.waitUntil(window.verify.isEnabled, timeout=30_000)
+    said = window.found.text()
+    assert "results/gauge.json is not what it was" in said and "is missing" in said and "All files" not in said
 
 
 def test_somebody_signs_in_changes_limits_signs_and_signs_out(

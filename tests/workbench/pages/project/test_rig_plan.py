@@ -10,6 +10,7 @@ import pytest
 from PySide6.QtWidgets import QMainWindow
 
 from core.errors import InputError
+from core.files.project.data import new_project
 from core.messages import Message
 from core.pipeline.project.rig_plan import ForetoldRig
 from tests.workbench.hand_lane import HandLane
@@ -18,7 +19,7 @@ from workbench.pages.project.rig_plan import RigPlans
 from workbench.views import ask
 from workbench.work import jobs
 
-ROWS = [("block 50 mm", "U = 0.017 mm (k = 2)"), ("sweeps", "58 of 60 give 40 000 points")]
+ROWS = [("block 50\u00a0mm", "U = 0.017\u00a0mm (k = 2)"), ("sweeps", "58 of 60 give 40 000 points")]
 
 
 @pytest.fixture
@@ -40,7 +41,7 @@ def test_a_chosen_rig_is_planned_shown_and_written(
     bench = plans._bench
     cast(HandLane, bench.measuring).answers[jobs.FORETELL_RIG] = foretold
     monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "rig.toml")
-    plans.choose()
+    plans.open()
     qtbot.waitUntil(lambda: plans.shown is not None)
     shown = plans.shown
     assert shown is not None and shown.isVisible() and shown.windowTitle() == "Plan of rig.toml"
@@ -49,10 +50,37 @@ def test_a_chosen_rig_is_planned_shown_and_written(
     cast(HandLane, bench.quick).answers[jobs.WRITE_RIG_PLAN] = lambda *words: written.append(words)
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path / "plan")
     shown.save.click()
-    qtbot.waitUntil(lambda: written == [("the plan", tmp_path / "plan")])
+    qtbot.waitUntil(lambda: [(one.result, folder) for one, folder in written] == [("the plan", tmp_path / "plan")])
     qtbot.waitUntil(lambda: str(tmp_path / "plan") in bench.notices.all[-1].text)
     shown.close()
     qtbot.waitUntil(lambda: plans.shown is None)
+
+
+def test_with_a_project_its_own_rig_is_planned_and_another_can_be_chosen(
+    plans: RigPlans, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    bench = plans._bench
+    bench.model.create(tmp_path / "block", new_project("Block"))
+    asked: list[tuple[Any, ...]] = []
+    lane = cast(HandLane, bench.measuring)
+
+    def foretold_project(*what: Any) -> ForetoldRig:
+        asked.append(what)
+        return foretold()
+
+    lane.answers[jobs.FORETELL_PROJECT] = foretold_project
+    lane.answers[jobs.FORETELL_RIG] = foretold
+    plans.open()
+    qtbot.waitUntil(lambda: plans.shown is not None)
+    shown = plans.shown
+    assert (
+        shown is not None and shown.windowTitle() == "Plan of Block" and "as they are calibrated" in shown.where.text()
+    )
+    assert asked == [(tmp_path / "block", bench.model.project, "en")]
+    monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "rig.toml")
+    shown.other.click()
+    qtbot.waitUntil(lambda: plans.shown is not shown)
+    assert plans.shown is not None and plans.shown.windowTitle() == "Plan of rig.toml"
 
 
 def test_a_rig_that_cannot_be_planned_is_told_and_nothing_is_shown(
