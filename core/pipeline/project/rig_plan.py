@@ -12,6 +12,7 @@ import numpy as np
 
 from core.files.atomic import write_text
 from core.files.project.data import Project
+from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RIG
 from core.files.recording.rig import rig_tables
 from core.files.toml_text import toml_text
@@ -56,7 +57,9 @@ class ForetoldRig:
     rig: str = ""
 
 
-def foretell_rig(rig: Path, language: str, progress: Progress = silent) -> ForetoldRig:
+def foretell_rig(
+    rig: Path, language: str, progress: Progress = silent, *, sigma_cut_mm: float = Options().sigma_cut_mm
+) -> ForetoldRig:
     """Plan the rig of a rig.toml; the same as `trisect plan RIG`.
 
     Raises
@@ -64,7 +67,7 @@ def foretell_rig(rig: Path, language: str, progress: Progress = silent) -> Foret
     InputError
         If the file cannot be read, or the rig cannot measure a block.
     """
-    result = plan(rig, progress=progress)
+    result = plan(rig, sigma_cut_mm=sigma_cut_mm, progress=progress)
     sigma = result.largest.sigma
     return ForetoldRig(
         plan_rows(result, Words.of(language)), np.hypot(sigma.own, sigma.common), result.design.pixels, result
@@ -86,7 +89,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / RIG
         write_text(file, text, sync=False)
-        foretold = foretell_rig(file, language, progress)
+        foretold = foretell_rig(file, language, progress, sigma_cut_mm=project.options.sigma_cut_mm)
     return ForetoldRig(foretold.rows, foretold.sigma_mm, foretold.image_size, foretold.result, text)
 
 

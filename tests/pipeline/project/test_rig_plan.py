@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from core.files.project.data import new_project
+from core.files.project.data import Project, new_project
 from core.files.project.folder import read_project
 from core.pipeline.project import rig_plan
 from core.pipeline.project.details import accepted_calibration
@@ -19,13 +19,16 @@ from core.plan.design import Design
 from core.plan.from_rig import read_design
 from core.simulate.rig import pencil_fan
 
+CUT_MM = 0.123
+
 
 @pytest.fixture
 def planned(monkeypatch: pytest.MonkeyPatch) -> list[Design]:
     """Planning takes no time: the designs that were asked for."""
     asked: list[Design] = []
 
-    def plan(rig: Path, *_: Any) -> ForetoldRig:
+    def plan(rig: Path, *_: Any, sigma_cut_mm: float) -> ForetoldRig:
+        assert sigma_cut_mm == CUT_MM, "points are left out as in the project's scan"
         asked.append(read_design(rig))
         return ForetoldRig([], np.zeros((1, 1)), (1, 1), None)  # type: ignore[arg-type]
 
@@ -33,10 +36,14 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> list[Design]:
     return asked
 
 
+def cut(project: Project) -> Project:
+    return replace(project, options=replace(project.options, sigma_cut_mm=CUT_MM))
+
+
 def test_what_a_measured_project_shows_of_its_rig_is_planned(
     planned: list[Design], finished_project_folder: Path
 ) -> None:
-    project = read_project(finished_project_folder).project
+    project = cut(read_project(finished_project_folder).project)
     foretell_project(finished_project_folder, project, "en")
     (design,) = planned
     camera, fan = accepted_calibration(finished_project_folder, project)
@@ -53,7 +60,7 @@ def test_what_a_measured_project_shows_of_its_rig_is_planned(
 def test_pictures_left_out_do_not_count_and_a_stated_thickness_goes_before_a_measured_one(
     planned: list[Design], finished_project_folder: Path
 ) -> None:
-    project = read_project(finished_project_folder).project
+    project = cut(read_project(finished_project_folder).project)
     found = project_set(finished_project_folder, project)
     out = frozenset({f"camera/{found.camera[0].name}"})
     foretell_project(finished_project_folder, replace(project, options=replace(project.options, excluded=out)), "en")
@@ -63,7 +70,7 @@ def test_pictures_left_out_do_not_count_and_a_stated_thickness_goes_before_a_mea
 
 
 def test_of_a_project_with_nothing_measured_only_what_is_stated_is_known(planned: list[Design], tmp_path: Path) -> None:
-    project = new_project("New")
+    project = cut(new_project("New"))
     foretell_project(tmp_path, project, "en")
     paper = Design()
     assert (planned[0].pixels, planned[0].baseline_mm, planned[0].views) == (
@@ -81,6 +88,6 @@ def test_the_planned_rig_is_written_beside_its_plan(
     planned: list[Design], finished_project_folder: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(rig_plan, "write_plan", lambda result, folder: {})
-    project = read_project(finished_project_folder).project
+    project = cut(read_project(finished_project_folder).project)
     files = write_foretold(foretell_project(finished_project_folder, project, "en"), tmp_path)
     assert list(files) == ["rig"] and read_design(files["rig"]) == planned[0]

@@ -54,7 +54,7 @@ class ScanCard(StageCard):
             *self._words(stage),
             {
                 "run": (p.cannot_measure, tr("Measure the surface and the thickness from the recording (Ctrl+R)")),
-                "whole": (p.whole.cannot_start if p.whole is not None else "", tr(EVERYTHING)),
+                "whole": (p.cannot_measure if p.whole is None else p.whole.cannot_start, tr(EVERYTHING)),
                 "cancel": (
                     "" if measuring else tr("Nothing is being measured."),
                     tr("Stop measuring; the recording and the result before are kept"),

@@ -127,7 +127,7 @@ def test_each_set_tells_its_state_and_stop_keeps_what_is_done(
     for told in ((0, None), (1, None), (0, done), (1, bad), (2, None), (2, SetProgress("network", 0.43))):
         task.reported.emit(told)
     task.progressed.emit("measuring sets", 243, 300)
-    assert states(shown) == ["done", "not measured", "being measured, 43 %"]
+    assert states(shown) == ["done", "not measured", "being measured, 43\u00a0%"]
     assert shown.table.rows()[0][2:5] == ("50.012", "0.024", "conforming")
     assert (shown.within.value(), shown.stage.text()) == (430, "c: network")
     assert (shown.bar.value(), shown.counted.text()) == (810, "2 of 3 sets")
