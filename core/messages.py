@@ -167,6 +167,8 @@ class Language:
         The decimal sign.
     conjunction
         How the last of several is joined to those before it: '{0} and {1}'.
+    separators
+        What stands between several: of a list, and of parts that are sentences themselves.
     times
         How date and time of day are written, with seconds or without.
     fields
@@ -181,6 +183,7 @@ class Language:
     plural_form: Any = None
     decimal: str = "."
     conjunction: str = "{0} and {1}"
+    separators: tuple[str, str] = (", ", "; ")
     times: Callable[[datetime, bool], str] = iso_time
     fields: Mapping[str, str] = field(default_factory=dict)
     commands: bool = True
@@ -208,9 +211,10 @@ class Language:
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
         """Several texts in a row: see the module."""
+        comma, semicolon = self.separators
         if how == "and" and len(texts) > 1:
-            return self.conjunction.format(", ".join(texts[:-1]), texts[-1])
-        return ("; " if how == ";" else ", ").join(texts)
+            return self.conjunction.format(comma.join(texts[:-1]), texts[-1])
+        return (semicolon if how == ";" else comma).join(texts)
 
     def _label(self, english: str) -> str:
         return self.labels.get(english, english)
@@ -223,6 +227,15 @@ class Language:
         if known is not None:
             return known
         return message.many if message.many and n != 1 else message.text
+
+
+_WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
+"""The space between a number and its unit; East Asian words follow without a space."""
+
+
+def unparted(text: str) -> str:
+    """`text` with a space between each number and its unit that no line break parts."""
+    return _WITH_UNIT.sub(NO_BREAK_SPACE, text)
 
 
 def capital(text: str) -> str:

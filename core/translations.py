@@ -88,8 +88,14 @@ def language(name: str) -> Language:
         plural_form=gettext.c2py(catalog.plural_expr),
         decimal=get_decimal_symbol(locale),
         conjunction=locale.list_patterns["standard"]["end"],
+        separators=_separators(locale.list_patterns["standard"]["middle"].format("", "")),
         times=partial(_local_time, locale),
     )
+
+
+def _separators(comma: str) -> tuple[str, str]:
+    """Both separators of a language, from that of its lists: Chinese ones have no space after them."""
+    return comma, "; " if comma.endswith(" ") else "；"
 
 
 def _local_time(locale: Locale, at: datetime, seconds: bool) -> str:

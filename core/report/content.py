@@ -20,6 +20,7 @@ from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.template import SECTIONS, Paper, ReportTemplate
+from core.report.wording import result_name
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
@@ -409,7 +410,7 @@ class ReportContent:
         """The report's own notes, those of the gauge and of both calibrations, each once."""
         of_gauge = self.gauge.notes if self.gauge else ()
         of_each = [
-            Message("report.note_of_result", "{name}: {note}", name=one.name, note=note)
+            Message("report.note_of_result", "{name}: {note}", name=result_name(one), note=note)
             for one in self.inspected
             for note in one.notes
         ]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from decimal import ROUND_HALF_EVEN, Decimal
@@ -13,13 +14,11 @@ from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.messages import NO_BREAK_SPACE, Language, Message, capital, label, plural_message
+from core.messages import NO_BREAK_SPACE, Language, Message, capital, label, plain, plural_message
 from core.states import DECISIONS
 from core.study.repeats import THICKNESS
 from core.translations import language
 
-WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
-"""The space between a number and its unit, which no line break may part; East Asian words follow without a space."""
 RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -56,6 +55,10 @@ class Words:
         """A value as it was stated: no more digits than it has, a power of ten for very small and large ones."""
         digits, _, power = f"{value:g}".partition("e")
         return self.numeral(digits) + (f"·10{str(int(power)).translate(RAISED)}" if power else "")
+
+    def joined(self, texts: Sequence[str], how: str = "") -> str:
+        """Several texts in a row, `how` as in `core.messages`."""
+        return self.language.joined(texts, how)
 
     def time(self, at: datetime, *, seconds: bool = False) -> str:
         """Date and time of day, in the time zone that `at` is in."""
@@ -132,10 +135,21 @@ def short_value(one: Characteristic, words: Words = ENGLISH) -> str:
 
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
     """What a characteristic is called, its kind in the report's language: "top flatness", "stairs height 2"."""
+    return words(result_name(one))
+
+
+def result_name(one: Characteristic) -> Message:
+    """The same for a message."""
     feature, kind, number = one.name.rpartition(one.kind)
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
-        return one.name  # somebody's own name, as of a cut
-    return f"{feature}{words.known(kind)}{number}"
+        return plain(one.name)  # somebody's own name, as of a cut
+    return Message("report.result_name", "{feature}{kind}{number}", feature=feature, kind=label(kind), number=number)
+
+
+def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
+    """The same where it begins a line: "Thickness", but a feature's name as its user typed it."""
+    shown = shown_name(one, words)
+    return capital(shown) if one.name.startswith(one.kind) else shown
 
 
 def decision(verdict: str, words: Words = ENGLISH) -> str:
@@ -156,11 +170,6 @@ def shown_unit(one: Characteristic) -> tuple[str, float]:
 def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
     """A number with its unit, which no line break parts: '0.02 mm', but '90°', as ISO 80000-1 has it."""
     return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
-
-
-def unparted(text: str) -> str:
-    """`text` with a space between each number and its unit that no line break parts."""
-    return WITH_UNIT.sub("\u00a0", text)
 
 
 def _line(value: float, U: float, k: float, unit: str, words: Words) -> str:
@@ -218,7 +227,10 @@ def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
     if math.isinf(low) and math.isinf(high):
         return ""
     if math.isinf(low):
-        return words("at most {limit}", limit=with_unit(_signed(high, words), unit))
+        limit = (
+            _signed(high, words) if one.limits.nominal else words.general(high)
+        )  # of a form: the largest there may be
+        return words("at most {limit}", limit=with_unit(limit, unit))
     if math.isinf(high):
         return words("at least {limit}", limit=with_unit(_signed(low, words), unit))
     if math.isclose(-low, high):
@@ -333,8 +345,8 @@ def temperatures_line(
     known = {label("air {value}"): air_celsius, label("part {value}"): part_celsius}
     shown = [words(name, value=f"{words.fixed(value, 1)} °C") for name, value in known.items() if value is not None]
     if not shown or corrected:
-        return ", ".join(shown)
-    return f"{', '.join(shown)}; {words('no correction to 20 °C was made')}"
+        return words.joined(shown)
+    return words.joined([words.joined(shown), words("no correction to 20 °C was made")], ";")
 
 
 def target_in_words(target: Target, words: Words = ENGLISH) -> str:

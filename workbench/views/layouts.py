@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
 )
 from superqt import QElidingLabel
 
-from core.report.wording import unparted
+from core.messages import unparted
 
 NO_MARGINS = (0, 0, 0, 0)
 """Pixels left, above, right and below."""

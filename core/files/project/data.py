@@ -11,7 +11,7 @@ from pydantic import ConfigDict, Field
 
 from core.files.recording.options import Options
 from core.files.recording.rig import Rig, default_rig
-from core.files.tables import Finite, Time
+from core.files.tables import Finite, KeptMessage, Time
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.report.template import Paper
 from core.study.artefact_check import Artefact
@@ -81,7 +81,10 @@ class Repeat:
 
 @dataclass(frozen=True, slots=True)
 class KeptStudy:
-    """A study kept in the project: `id` names its folder below studies, `included` puts it into the report."""
+    """A study kept in the project: `id` names its folder below studies, `title` tells what it was made of.
+
+    `included` puts it into the report.
+    """
 
     id: Annotated[str, Field(pattern=r"^[0-9a-f]+$", description="the name of a folder below studies")]
     kind: Annotated[
@@ -91,7 +94,7 @@ class KeptStudy:
             description='"repeats", "type1", "grr", "acceptance" or "series"',
         ),
     ]
-    title: str
+    title: KeptMessage
     included: bool = True
     __pydantic_config__ = _CHECKED
 

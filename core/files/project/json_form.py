@@ -33,7 +33,7 @@ from core.files.reading import read_json
 from core.files.recording.options import Options
 from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
 from core.files.results.artefact_register import ArtefactTable
-from core.files.tables import TIME_WORDS, Time
+from core.files.tables import TIME_WORDS, Time, kept
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.scan.method import Method
@@ -105,7 +105,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     4: lambda tables: tables,  # studies, which may be none
     5: lambda tables: tables,  # the folder of an interim check, which need not be there
     6: lambda tables: tables,  # known artefacts, which may be none
-    7: lambda tables: tables,  # what kind of artefact, which were all blocks
+    7: lambda tables: tables,  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -146,7 +146,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
         "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
         "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
         "inspection": plan_tables(project.inspection),
-        "studies": [asdict(study) for study in project.studies],
+        "studies": [{**asdict(study), "title": kept(study.title)} for study in project.studies],
         "artefacts": [{**asdict(one), "due": one.due and one.due.isoformat()} for one in project.artefacts],
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }

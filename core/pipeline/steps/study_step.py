@@ -19,7 +19,7 @@ from core.files.study.input import Repeats, crossed_of, readings_of, repeats_of
 from core.files.study.results import measured_in
 from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
 from core.files.study.table import separator_of, table_of
-from core.messages import Message
+from core.messages import Message, label
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
@@ -220,15 +220,44 @@ def _series(found: Repeats, limits: Mapping[str, float], name: str) -> SeriesStu
     )
 
 
-def _title(study: Study) -> str:
+def _title(study: Study) -> Message:
     match study:
         case GrrStudy():
-            return "{} parts × {} operators × {} repeats".format(*study.values.shape)
+            parts, operators, repeats = study.values.shape
+            return Message(
+                "study.title_grr",
+                "{parts} parts × {operators} operators × {repeats} repeats",
+                parts=parts,
+                operators=operators,
+                repeats=repeats,
+            )
         case Type1Study():
-            return f"{study.n} repeats, reference {study.reference:g} {study.unit}, T {study.tolerance:g} {study.unit}"
+            return Message(
+                "study.title_type1",
+                "{n} repeats, reference {reference:g} {unit}, T {tolerance:g} {unit}",
+                n=study.n,
+                reference=study.reference,
+                tolerance=study.tolerance,
+                unit=study.unit,
+            )
         case AcceptanceCheck():
-            return ", ".join(f"{one.title} ×{len(one.readings)}" for one in study.quantities)
+            checked = [
+                Message("study.title_quantity", "{quantity} ×{n}", quantity=one.title, n=len(one.readings))
+                for one in study.quantities
+            ]
+            return Message("study.title_acceptance", "{checked}", checked=checked)
         case SeriesStudy() if study.size > 1:
-            return f"{study.points} × {study.size} × {study.name}"
+            return Message(
+                "study.title_subgroups",
+                "{n} × {size} × {name}",
+                n=study.points,
+                size=study.size,
+                name=_named(study.name),
+            )
         case _:
-            return f"{len(study.values)} × {study.name}"
+            return Message("study.title_values", "{n} × {name}", n=len(study.values), name=_named(study.name))
+
+
+def _named(name: str) -> str:
+    """The name of a characteristic: the thickness in the reader's language, a feature's as its user typed it."""
+    return label("thickness") if name == THICKNESS else name

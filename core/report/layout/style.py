@@ -19,11 +19,11 @@ from reportlab.lib.styles import ParagraphStyle
 from reportlab.lib.units import mm
 from reportlab.pdfbase import pdfmetrics
 
-from core.messages import Message
+from core.messages import Message, unparted
 from core.report.layout.foreign_fonts import east_asian_font, embedded_font, is_east_asian, truetype
 from core.report.layout.paragraph import Paragraph
 from core.report.template import Paper
-from core.report.wording import Words, unparted
+from core.report.wording import Words
 
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""

@@ -11,7 +11,7 @@ from reportlab.platypus import Flowable, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
-from core.messages import capital, plural_message
+from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import heads, plain_table, ruled_table
 from core.report.layout.control_frame import ControlFrameMark
@@ -36,6 +36,7 @@ from core.report.wording import (
     decision,
     decision_sentence,
     grouped,
+    headed_name,
     points_counted,
     shown_name,
     shown_unit,
@@ -87,8 +88,7 @@ def _facts(look: ReportLook, facts: dict[str, str], width: float) -> Table:
 
 def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     words, (unit, factor) = look.words, shown_unit(one)
-    name = shown_name(one, words)
-    headline = [look.text(name[:1].upper() + name[1:], "label"), _value(look, one)]
+    headline = [look.text(headed_name(one, words), "label"), _value(look, one)]
     parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
     decimals = max(decimals_of(factor * one.U), 0)
     facts = {}
@@ -131,8 +131,8 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
     headline: list[Flowable] = [look.say("Result", "label"), look.text(words(results), "result")]
     if worst:
         nearest = min((one for one in found if one.verdict == worst), key=lambda one: one.room)
-        title = words("{name}: the worst of {all}", name=shown_name(nearest, words), all=words(results))
-        headline = [look.text(capital(title), "label"), _value(look, nearest)]
+        title = words("{name}: the worst of {all}", name=headed_name(nearest, words), all=words(results))
+        headline = [look.text(title, "label"), _value(look, nearest)]
     facts = {decision(verdict, words): grouped(number) for verdict, number in counts.items() if number}
     said = words(
         "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "

@@ -11,6 +11,7 @@ from core.files.recording.rig import GaugeSpec
 from core.image.targets import Checkerboard
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.messages import plain
 
 START = replace(
     new_project("block"),
@@ -139,8 +140,8 @@ def test_a_report_of_a_project_without_features_does_not_speak_of_them():
 
 
 def test_a_report_rests_on_the_studies_that_are_ticked():
-    project, kept = new_project("block"), KeptStudy("c0ffee", "grr", "3 parts")
-    plain = rests_on("report", project, {})
+    project, kept = new_project("block"), KeptStudy("c0ffee", "grr", plain("3 parts"))
+    without = rests_on("report", project, {})
     left_out = rests_on("report", replace(project, studies=(replace(kept, included=False),)), {})
-    assert left_out == plain
-    assert changed(plain, rests_on("report", replace(project, studies=(kept,)), {})) == ("studies",)
+    assert left_out == without
+    assert changed(without, rests_on("report", replace(project, studies=(kept,)), {})) == ("studies",)

@@ -21,6 +21,7 @@ from core.inspect.characteristic import Limits
 from core.inspect.plan.feature_spec import Deviation, FaceAt, FeatureSpec, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.part import Part
+from core.messages import plain
 from tests.simulated import trisect
 
 HEIGHT = FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),))
@@ -49,7 +50,7 @@ def project(tmp_path: Path) -> Path:
         options=Options(excluded=frozenset({"camera/a", "scan/a"})),
         inspection=InspectionPlan((HEIGHT, SURFACE)),
         repeats=(Repeat("scan-1", 50.0, 0.1, 2.0, "f1", datetime(2026, 1, 1, tzinfo=UTC)),),
-        studies=(KeptStudy("a1", "repeats", "Repeats"),),
+        studies=(KeptStudy("a1", "repeats", plain("Repeats")),),
     )
     results: dict[str, Done] = {}
     for step in ("camera", "planes", "scan", "inspect", "features", "report"):

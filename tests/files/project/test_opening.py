@@ -35,7 +35,7 @@ from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.uncertainty.part import Part
-from core.messages import plain
+from core.messages import Message, plain
 from core.study.artefact_check import Artefact
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
@@ -61,7 +61,7 @@ def full_project():
         (REPEAT, replace(REPEAT, thickness_mm=50.001)),
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
         full_plan(),
-        (KeptStudy("c0ffee012345", "grr", "3 parts", False),),
+        (KeptStudy("c0ffee012345", "grr", Message("study.title_grr", "{parts} parts", parts=3), False),),
         (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1), "sphere"),),
     )  # fmt: skip
 
@@ -248,6 +248,15 @@ def test_what_is_not_there_is_as_usual(tmp_path):
     tables = json.loads(path.read_text())
     path.write_text(json.dumps({"schema_version": 1, "info": {"name": "x"}, "rig": tables["rig"]}))
     assert read_project(tmp_path) == ProjectFile(replace(new_project("x"), rig=full_project().rig))
+
+
+def test_the_title_of_a_study_in_an_older_project_is_told_as_it_was_written(tmp_path):
+    create_project(tmp_path, full_file())
+    path = tmp_path / "project.json"
+    tables = json.loads(path.read_text())
+    tables["schema_version"], tables["studies"][0]["title"] = 7, "3 parts × 2 operators"
+    path.write_text(json.dumps(tables))
+    assert read_project(tmp_path).project.studies[0].title == plain("3 parts × 2 operators")
 
 
 def test_a_newer_project_is_refused_in_one_sentence_whatever_else_it_holds(tmp_path):

@@ -25,6 +25,7 @@ from core.pipeline.steps.study_step import (
     project_rows,
     read_study_table,
 )
+from core.translations import language
 from tests.study.grr_tables import AIAG
 
 
@@ -44,10 +45,19 @@ def test_a_kept_study_has_the_numbers_of_the_command_line_and_its_table_beside_i
     table = path.with_name("table.csv")
     write_study(tmp_path / "theirs", studying.grr(table, "thickness", 4.0))
     assert json.loads(path.read_text()) == json.loads((tmp_path / "theirs" / "study.json").read_text())
-    assert (kept.kind, kept.title, kept.included) == ("grr", "10 parts × 3 operators × 3 repeats", True)
+    assert (kept.kind, str(kept.title), kept.included) == ("grr", "10 parts × 3 operators × 3 repeats", True)
     assert study_values(look_at_study(tmp_path, kept.id))["ndc"]["categories"] == 4
     assert keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 8.0}) == kept
     assert keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 9.0}).id != kept.id
+
+
+def test_a_studys_title_is_told_in_the_readers_language_and_names_as_they_were_typed(tmp_path):
+    told = language("de")
+    kept = keep_study(tmp_path, "grr", crossed(AIAG), tmp_path, {"tolerance": 8.0})
+    assert told(kept.title) == "10 Teile × 3 Bediener × 3 Wiederholungen"
+    table = HEADS["series"] + "\n" + "\n".join(f"{part};{10 + part / 100};" for part in range(3))
+    assert told(keep_study(tmp_path, "series", table, tmp_path, {"size": 1}).title) == "3 × Dicke"
+    assert told(keep_study(tmp_path, "series", table, tmp_path, {"size": 1}, "top height").title) == "3 × top height"
 
 
 def test_an_acceptance_check_and_a_type1_study_are_kept_and_handed_over(tmp_path):

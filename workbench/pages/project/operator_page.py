@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePo
 
 from core.files.project.folder import results_folder
 from core.messages import capital
-from core.report.wording import decision, shown_name, value_line
+from core.report.wording import decision, headed_name, value_line
 from core.states import STEP_STATES
 from workbench.language import tr
 from workbench.pages.project.operator import OperatorMode, Stage
@@ -159,7 +159,7 @@ class OperatorPage(QWidget):
         worst = self._mode.found[0]
         symbol, colour = VERDICT_ICONS[worst.verdict]
         verdict = decision(worst.verdict, wording())
-        line = f"{capital(shown_name(worst, wording()))}: {value_line(worst, wording())}"
+        line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
         return symbol, "text" if colour == "muted" else colour, verdict, line
 
     def _measure(self) -> None:

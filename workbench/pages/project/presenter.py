@@ -6,6 +6,7 @@ from dataclasses import fields, replace
 from typing import Any, Literal
 
 from core.files.project.data import ProjectInfo
+from core.messages import capital
 from core.states import STEP_STATES
 from workbench.bench import Bench
 from workbench.language import tr
@@ -95,5 +96,5 @@ class ProjectPresenter(StepPresenter):
             "laboratory": tr("Laboratory"),
             "air_celsius": tr("Air temperature"),
             "part_celsius": tr("Part temperature"),
-            "notes": tr("Notes"),
+            "notes": capital(tr("notes")),
         }[name]

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
 
+from core.messages import unparted
 from workbench.theme import shades
 from workbench.views.common import dress
 from workbench.views.forms.editors import (
@@ -116,7 +117,7 @@ class SettingsForm(QWidget):
 
     def help_of(self, key: str) -> str:
         """What stands under a setting: its help, or the complaint."""
-        return self._helps[key][0].text()
+        return self._complaints.get(key) or self._helps[key][1]
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -153,5 +154,5 @@ class SettingsForm(QWidget):
     def _show_help(self, key: str) -> None:
         label, help = self._helps[key]
         complaint, s = self._complaints.get(key, ""), shades()
-        label.setText(complaint or help)
+        label.setText(unparted(complaint or help))
         dress(label, f"font-size: 11px; color: {s.bad if complaint else s.muted};")

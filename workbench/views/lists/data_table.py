@@ -10,7 +10,7 @@ from PySide6.QtGui import QGuiApplication, QKeyEvent, QKeySequence
 from PySide6.QtWidgets import QAbstractItemView, QHeaderView, QMenu, QTableView, QWidget
 
 from core.files.csv_text import harmless
-from core.report.wording import unparted
+from core.messages import unparted
 from workbench.language import tr
 from workbench.views.layouts import in_column
 

@@ -17,6 +17,7 @@ from core.files.project.keys import finished
 from core.files.results.export_list import EXPORTS
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.messages import plain
 from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
@@ -182,7 +183,10 @@ def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None
     empty = {name for name, _, _ in report.sections() if report.empty_section(name)}
     assert empty == {"repeats", "studies", "remarks", "budget"}
     at = finished("scan", report.project, {}).at
-    repeats, study = (Repeat("a", 50.0, 0.02, 2.0, "c", at),), KeptStudy("c0ffee", "grr", "3 parts", included=False)
+    repeats, study = (
+        (Repeat("a", 50.0, 0.02, 2.0, "c", at),),
+        KeptStudy("c0ffee", "grr", plain("3 parts"), included=False),
+    )
     report.model.edit("add", replace(report.project, repeats=repeats, studies=(study,)))
     assert "ticked" in report.empty_section("studies")
     report.model.edit("tick", replace(report.project, studies=(replace(study, included=True),)))

@@ -39,8 +39,11 @@ from workbench.views.lists.value_rows import VERDICT_ICONS
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
 
-ROWS = 6
-"""The list shows so many rows, more are scrolled: it is always in sight, and below it the form of a feature."""
+ROWS, MOST_ROWS = 6, 16
+"""The list shows so many rows, on a high page more, others are scrolled: it is always in sight, and below it the form
+of a feature."""
+LOW_PAGE, SHARE = 700, 0.45
+"""Pixels of a page up to which there are the fewest rows; beyond, the list takes this share."""
 
 
 class FeaturesPanel(QWidget):
@@ -64,6 +67,7 @@ class FeaturesPanel(QWidget):
         super().__init__(parent)
         self._features, self._edit = features, edit
         self._shown: object = None
+        self._page_height = LOW_PAGE
         self._frames: dict[str, Frame] = {}
         self._datums: dict[str, Frame] = {}
         self.list, self.add, self.measure = QTreeWidget(), QPushButton(), QPushButton()
@@ -80,6 +84,11 @@ class FeaturesPanel(QWidget):
         column.addLayout(in_row((self.add, 1), (self.templates, 1)))
         self.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Maximum)
         self.form.draw.connect(self.draw)
+
+    def fit(self, page_height: int) -> None:
+        """Take the room that a page of this height has for the list."""
+        self._page_height = page_height
+        self._fit_list()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -141,9 +150,13 @@ class FeaturesPanel(QWidget):
             self.list.blockSignals(False)
 
     def _fit_list(self) -> None:
-        """As high as it ever gets: results that come push nothing below them."""
+        """As high as the page lets it be, whatever is in it: results that come push nothing below them."""
+        row = self.list.sizeHintForRow(0)
+        if row <= 0:
+            return
         header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
-        self.list.setFixedHeight(header + frame + ROWS * self.list.sizeHintForRow(0))
+        rows = ROWS + round(SHARE * max(self._page_height - LOW_PAGE, 0) / row)
+        self.list.setFixedHeight(header + frame + min(rows, MOST_ROWS) * row)
 
     def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
         outdated = self._features.outdated(name)
@@ -152,7 +165,9 @@ class FeaturesPanel(QWidget):
         text = words.value(rows[0]) if len(rows) == 1 else ""
         frames = [self._frames[row.name] for row in rows if row.name in self._frames] if text else []
         named = text and not frames  # the symbol says what it is
-        item = QTreeWidgetItem([f"{name}, {words.short_name(rows[0], name)}" if named else name, text])
+        item = QTreeWidgetItem(
+            [tr("{name}, {kind}", name=name, kind=words.short_name(rows[0], name)) if named else name, text]
+        )
         item.setData(0, Qt.ItemDataRole.UserRole, name)
         item.setData(0, FRAMES_ROLE, [*([self._datums[name]] if name in self._datums else []), *frames])
         item.setIcon(0, icon(kind.icon))

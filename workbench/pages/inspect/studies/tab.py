@@ -84,7 +84,7 @@ class StudiesTab(QWidget):
             ("series", "mdi6.chart-timeline-variant", tr("Series …"), lambda: self._studies.begin("series")),
             ("type1", "mdi6.chart-bell-curve", tr("Keep type-1 of the repeats"), self._studies.keep_type1),
             ))  # fmt: skip
-        column.addWidget(Folding(studies, of_parts, spacing=6))
+        column.addWidget(Folding(studies, of_parts, spacing=6, share=0))
         self.list.setColumnCount(2)
         self.list.setHeaderLabels([tr("In the report"), tr("Made of")])
         self.list.setAccessibleName(tr("Studies"))
@@ -135,7 +135,7 @@ class StudiesTab(QWidget):
                 item = self.list.topLevelItem(number)
                 assert item is not None  # there is one for each
                 item.setText(0, words.kind_title(one.kind))
-                item.setText(1, one.title)
+                item.setText(1, text_of(one.title))
                 item.setData(0, Qt.ItemDataRole.UserRole, one.id)
                 item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
                 item.setToolTip(0, tr("Ticked studies are printed in the report"))
@@ -185,7 +185,7 @@ class StudiesTab(QWidget):
         for chart, one in zip(self.charts, shown, strict=False):
             chart.set_values(one.values, one.good, one.tips, one.limits, axes=one.axes, unit=study.unit)
         headers, body = words.table(kept.kind, study)
-        self.title.setText(f"{words.kind_title(kept.kind)}: {kept.title}")
+        self.title.setText(f"{words.kind_title(kept.kind)}: {text_of(kept.title)}")
         self.rows.set_rows(words.rows(kept.kind, study))
         self.table.set_headers(headers)
         self.table.set_rows(body)
