@@ -118,7 +118,12 @@ class _ThemedIcon(QIconEngine):
         if key not in self._pixmaps:
             if dark not in self._drawn:
                 s = shades()
-                self._drawn[dark] = qtawesome.icon(self._name, color=getattr(s, self._colour), color_disabled=s.line)
+                self._drawn[dark] = qtawesome.icon(
+                    self._name,
+                    color=getattr(s, self._colour),
+                    color_disabled=s.line,
+                    color_selected=s.on_accent,
+                )
             self._pixmaps[key] = self._drawn[dark].pixmap(size, 1.0, mode, state)
         return self._pixmaps[key]
 

@@ -54,6 +54,20 @@ def window_in(name: str, bench: Bench, app: QApplication, qtbot: Any, *, styled:
         app.setStyleSheet(sheet)
 
 
+def fill_inspect_page(window: MainWindow, bench: Bench, qtbot: Any) -> None:
+    """One repeat, of which some statistics cannot be told, a study, and a plane through the surface."""
+    window.go_to("inspect")
+    inspect: Any = window.presenters["inspect"]
+    qtbot.waitUntil(lambda: inspect.scan.view is not None, timeout=60_000)
+    inspect.repeats.add()
+    inspect.studies.begin("grr")
+    inspect.studies.write("part;operator;value\n" + "".join(f"{i % 5};{i // 5 % 2};{i * i % 7}\n" for i in range(20)))
+    inspect.studies.finish()
+    qtbot.waitUntil(lambda: inspect.studies.study is not None, timeout=60_000)
+    inspect.cut.show(True)
+    inspect.cut.hide(1)
+
+
 def laid_out(widget: QWidget) -> None:
     """What a widget wants is known once its layout is done."""
     layout = widget.layout()
@@ -96,6 +110,7 @@ def test_no_word_is_cut_and_next_is_in_sight_on_any_page_before_and_after_measur
         for project in ("empty", "measured"):
             if project == "measured":
                 bench.model.open(measured_project)
+                fill_inspect_page(window, bench, qtbot)
             for step in STEPS:
                 window.go_to(step.name)
                 qtbot.waitUntil(lambda: not bench.quick.busy, timeout=60_000)

@@ -65,7 +65,14 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         part_celsius=info.part_celsius,
         remarks=info.notes,
         repeats=tuple(
-            RepeatLine(one.scan, one.thickness_mm, one.U_mm, one.k, one.calibration_id, one.measured_at)
+            RepeatLine(
+                "/".join(Path(one.scan).parts[-2:]),
+                one.thickness_mm,
+                one.U_mm,
+                one.k,
+                one.calibration_id,
+                one.measured_at,
+            )
             for one in project.repeats
         ),
         hidden=choices.hidden & SECTIONS.keys(),

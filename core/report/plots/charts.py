@@ -48,6 +48,8 @@ from core.scan.surface.fused_surface import Mesh
 DEPTH_MAP, SIGMA_MAP, SIGN_MAP = "cividis", "viridis", "PuOr_r"
 ABOVE_FOOTPRINT = 0.65
 """Share of the picture, from above, that callouts stand in: the dimensions of the footprint stand below."""
+CALLOUT_INSET = 0.006
+"""Share of its width that their words stand from its sides: the frames round them are seen whole."""
 
 
 def height_map(accent: str) -> LinearSegmentedColormap:
@@ -119,7 +121,11 @@ def _draw_footprint(axes: Axes, local: Array) -> None:
     for ends, length in edges:
         seen = ends @ viewer_axes()[:2].T
         axes.annotate(
-            "", seen[1], seen[0], arrowprops={"arrowstyle": "|-|,widthA=0.25,widthB=0.25", "lw": 0.6, "color": MUTED}
+            "",
+            seen[1],
+            seen[0],
+            arrowprops={"arrowstyle": "|-|,widthA=0.25,widthB=0.25", "lw": 0.6, "color": MUTED},
+            annotation_clip=False,  # it lies outside what is measured, perhaps outside the picture of that
         )
         middle, along = seen.mean(axis=0), seen[1] - seen[0]
         along = along if along[0] >= 0 else -along
@@ -162,7 +168,8 @@ def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground) -> None
     seen = [(one.said, *(viewer_axes()[:2] @ ground.local(one.place[None])[0])) for one in shown]
     seen.sort(key=lambda one: one[1])
     half = (len(seen) + 1) // 2
-    for at, align, side in ((left, "left", seen[:half]), (right, "right", seen[half:])):
+    inset = CALLOUT_INSET * (right - left)
+    for at, align, side in ((left + inset, "left", seen[:half]), (right - inset, "right", seen[half:])):
         rows = max(len(side), 4)
         for place, (said, x, y) in enumerate(sorted(side, key=lambda one: -one[2])):
             axes.annotate(

@@ -14,7 +14,7 @@ from core.report.layout.blocks import ShareBar, heads, plain_table, ruled_table
 from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 from core.report.wording import decimals_of, shown_unit
 
-WIDTHS = [size * mm for size in (20, 19, 17, 17, 16, 11, 20)]
+WIDTHS = [size * mm for size in (18, 19, 20, 17, 19, 11, 20)]
 """Value, distribution, u of input, sensitivity, contribution, degrees of freedom, share; the rest is the source's."""
 
 DISTRIBUTIONS = (label("normal"), label("rectangular"), label("triangular"), label("arcsine"), label("t"))
@@ -25,6 +25,9 @@ BAR = 9 * mm
 
 SMALL = 1e-3
 """Below it a power of ten says more than zeros."""
+
+NONE = 1e-20
+"""An input of a smaller share of the variance has no influence: what is left of its sensitivity is rounding."""
 
 MANY = 1000
 """More degrees of freedom are written as infinitely many: the factor k is the same."""
@@ -51,10 +54,12 @@ def budget_table(look: ReportLook, one: Characteristic) -> Table:
         share = row.u_mm**2 / variance if math.isfinite(row.u_mm) else math.nan
         u = factor * row.u_mm
         tiny = math.isfinite(u) and 0 < u < 0.5 * 10.0**-decimals
-        shown = f"< {words.fixed(10.0**-decimals, decimals)}" if tiny else words.fixed(u, decimals)
+        shown = f"<\u00a0{words.fixed(10.0**-decimals, decimals)}" if tiny else words.fixed(u, decimals)
         own = "" if row.point_mm is None else f"{_rounded(look, row.point_mm)} {row.unit}"
         value = "" if row.value is None else f"{words.general(row.value)} {row.unit}"
-        sensitivity = "" if row.sensitivity is None else _rounded(look, factor * row.sensitivity)
+        sensitivity = (
+            "" if row.sensitivity is None else _rounded(look, 0.0 if share < NONE else factor * row.sensitivity)
+        )
         source = words.known(row.source)
         rows.append(
             [

@@ -31,6 +31,9 @@ STEPS = 200
 ARROW_PX = 48
 """Of a list that folds out, beside its text."""
 
+LEAST_SLIDER_PX = 70
+"""A shorter slider cannot be set by hand."""
+
 Shape = Literal["points", "mesh", "both"]
 
 
@@ -139,7 +142,7 @@ class SurfaceChoices(QWidget):
         self.limit.setSuffix(" mm")
         self.limit.setKeyboardTracking(False)
         self.slider.setRange(1, STEPS)
-        self.slider.setMinimumWidth(30)
+        self.slider.setMinimumWidth(LEAST_SLIDER_PX)
         self.slider.setMaximumWidth(150)
         label = QLabel(tr("σ up to"))
         label.setBuddy(self.limit)

@@ -13,7 +13,7 @@ from workbench.pages.inspect.cut import InspectCut
 from workbench.theme import icon
 from workbench.views.colours import PROPOSED
 from workbench.views.common import SpinBox
-from workbench.views.layouts import enable, in_column, in_row
+from workbench.views.layouts import STRETCH, Folding, enable, in_column, in_row
 from workbench.views.plots.lines import LineChart
 
 SIDES = (0, 1, -1)
@@ -44,9 +44,9 @@ class CutPanel(QWidget):
         self.at.setSuffix(" mm")
         self.at.setDecimals(2)
         self.at.setKeyboardTracking(False)
-        row = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, spacing=6)
-        row.addStretch(1)
-        row.addWidget(self.keep)
+        self.side.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # its words follow the direction
+        where = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, STRETCH, spacing=6)
+        row = Folding(where, in_row(STRETCH, self.keep), spacing=6, share=0)
         self._column = in_column(row, on=self, spacing=4)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from PySide6.QtCore import QTimer
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from workbench.language import tr
@@ -83,6 +84,10 @@ class InspectPage(StepPage):
         self.picks.pick.connect(self._pick)
         self.surface.notice.connect(presenter.bench.notices.warning)
         presenter.model.opened.connect(self._show_first_tab)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.features.fit(self.height())
 
     def _show_first_tab(self) -> None:
         self.tabs.setCurrentIndex(0)

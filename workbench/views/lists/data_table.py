@@ -128,6 +128,12 @@ class DataTable(QWidget):
         self.setFocusProxy(self.table)
         in_column(self.table, on=self)
 
+    def let_shrink(self, column: int) -> None:
+        """Let one column take the room that the others leave, cut where that is too little: its tip tells it whole."""
+        header = self.table.horizontalHeader()
+        header.setStretchLastSection(False)
+        header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
+
     def set_headers(self, headers: Sequence[Header]) -> None:
         """The columns; rows shown before are gone."""
         titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Literal
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
 from core.messages import capital
@@ -37,10 +37,14 @@ ValueRow = tuple[str, str, str, Level]
 
 
 class ValueRows(QWidget):
-    """Label at the left, value with unit at the right, and an icon where a value is good or not."""
+    """Label at the left, value with unit at the right, and an icon where a value is good or not.
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    It is at least `least_width` pixels wide, and never narrower than its values.
+    """
+
+    def __init__(self, parent: QWidget | None = None, *, least_width: int = 0) -> None:
         super().__init__(parent)
+        self._least_width = least_width
         self._rows: tuple[ValueRow, ...] = ()
         self._labels: list[tuple[QLabel, QLabel, IconLabel]] = []
         self._grid = QGridLayout(self)
@@ -62,6 +66,10 @@ class ValueRows(QWidget):
     def text_of(self, label: str) -> str:
         """The value shown beside a label, "" if there is none."""
         return next((text for name, text, _, _ in self._rows if name == label), "")
+
+    def minimumSizeHint(self) -> QSize:
+        hint = super().minimumSizeHint()
+        return QSize(max(self._least_width, hint.width()), hint.height())
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)

@@ -39,6 +39,7 @@ class RunChart(Plot):
     def __init__(self, parent: QWidget | None = None) -> None:
         self._runs: _Runs | None = None
         self._words_shown: list[tuple[pg.TextItem, float]] = []
+        self._reach = (0.0, 1.0)
         super().__init__(parent)
 
     def set_runs(
@@ -85,9 +86,7 @@ class RunChart(Plot):
         reach = [*(runs.values - np.nan_to_num(runs.U)), *(runs.values + np.nan_to_num(runs.U))]
         reach += [y for y, *_ in lines]
         low, high = min(reach), max(reach)
-        margin = 0.12 * (high - low) or 0.01
-        self._words_shown = []
-        self._box.setRange(yRange=(low - margin, high + margin), padding=0)
+        self._words_shown, self._reach = [], (low, high)
         for y, text, colour, style in lines:
             self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
             below = text == tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
@@ -101,9 +100,13 @@ class RunChart(Plot):
         self._item.addItem(pg.ScatterPlotItem(at, runs.values, size=8, pen=None, brush=s.accent))
 
     def _place_words(self) -> None:
-        """Leave room for what the lines mean at the right, whatever the width."""
+        """Leave room for what the lines mean: at the right, above and below, whatever the size."""
         if self._runs is None:
             return
+        low, high = self._reach
+        line = self.fontMetrics().height() + 4
+        margin = max(0.12, line / max(self._box.height() - 2 * line, line)) * (high - low) or 0.01
+        self._box.setYRange(low - margin, high + margin, padding=0)
         width = self._box.width()
         end = (len(self._runs.values) + 0.6) * (1 + _WORDS / max(width - _WORDS, _WORDS))
         self._box.setXRange(0.4, end, padding=0)

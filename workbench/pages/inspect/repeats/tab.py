@@ -11,10 +11,13 @@ from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.theme import icon
-from workbench.views.layouts import Tabs, enable, in_column, in_row, muted, say
+from workbench.views.layouts import Tabs, UpAndDown, enable, holding, in_column, in_row, muted, say
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
+
+ROWS_PX = 230
+"""Least width of the statistics."""
 
 
 class RepeatsTab(QWidget):
@@ -24,7 +27,8 @@ class RepeatsTab(QWidget):
         super().__init__(parent)
         self._repeats = repeats
         self._shown: object = None
-        self.table, self.chart, self.rows, self.words = DataTable(), RunChart(), ValueRows(), muted()
+        self.table, self.chart, self.words = DataTable(), RunChart(), muted()
+        self.rows = ValueRows(least_width=ROWS_PX)
         self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
         self.table.set_headers(
             [
@@ -35,6 +39,7 @@ class RepeatsTab(QWidget):
                 (tr("Scanned"), ""),
             ]
         )
+        self.table.let_shrink(0)
         self.add = QPushButton(icon("mdi6.playlist-plus"), tr("Add this scan"))
         self.remove = QPushButton(icon("mdi6.playlist-remove"), tr("Remove"))
         self.copy = QPushButton(icon("mdi6.content-copy"), tr("Copy all"))
@@ -58,8 +63,7 @@ class RepeatsTab(QWidget):
         for widget in (self.rows, self.type1, self.type1_words):
             numbers.addWidget(widget)
         numbers.addStretch(1)
-        row.addLayout(numbers, 2)
-        self.rows.setMinimumWidth(230)
+        row.addWidget(UpAndDown(holding(numbers)), 2)
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
         split.addWidget(below)
