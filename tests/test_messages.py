@@ -8,7 +8,19 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.messages import ENGLISH, Command, Field, Language, Message, as_json, from_json, label, plain, plural_message
+from core.messages import (
+    ENGLISH,
+    Command,
+    Field,
+    Language,
+    Message,
+    as_json,
+    from_json,
+    label,
+    plain,
+    plural_message,
+    unbroken,
+)
 from core.translations import language
 
 GERMAN = Language(
@@ -58,6 +70,19 @@ def test_a_message_within_a_message_is_told_in_the_same_language():
 )
 def test_several_names_are_joined_as_the_text_says(text, said):
     assert str(Message("x.y", text, names=["a", "b", "c"])) == said
+
+
+def test_chinese_names_are_joined_by_their_own_signs():
+    chinese = language("zh_CN")
+    assert [chinese.joined(["一", "二", "三"], how) for how in ("", "and", ";")] == [
+        "一、二、三",
+        "一、二和三",
+        "一；二；三",
+    ]
+
+
+def test_no_line_break_parts_a_number_from_its_unit():
+    assert unbroken("0.02 mm of 20 °C, 5 % and 3 places") == "0.02\u00a0mm of 20\u00a0°C, 5\u00a0% and 3 places"
 
 
 def test_fixed_words_in_a_message_are_told_in_the_readers_language_also_after_a_file():

@@ -13,6 +13,7 @@ from core.report.wording import (
     decision_sentence,
     fixed,
     grouped,
+    headed_name,
     limits_of_thickness,
     points_counted,
     shown_name,
@@ -99,7 +100,8 @@ INF = math.inf
         (Limits(50, -0.2, 0.2), "±0.2\u00a0mm", "±0,2\u00a0mm"),
         (Limits(50, -0.1, 0.3), "−0.1 to +0.3\u00a0mm", "−0,1 bis +0,3\u00a0mm"),
         (Limits(50, 0, 0.3), "0 to +0.3\u00a0mm", "0 bis +0,3\u00a0mm"),
-        (Limits(0, -INF, 0.05), "at most +0.05\u00a0mm", "höchstens +0,05\u00a0mm"),
+        (Limits(50, -INF, 0.05), "at most +0.05\u00a0mm", "höchstens +0,05\u00a0mm"),
+        (Limits(0, -INF, 0.05), "at most 0.05\u00a0mm", "höchstens 0,05\u00a0mm"),
         (Limits(0, -0.05, INF), "at least −0.05\u00a0mm", "mindestens −0,05\u00a0mm"),
         (Limits(0, -INF, INF), "", ""),
         (None, "", ""),
@@ -146,3 +148,8 @@ def test_very_small_values_are_said_with_a_power_of_ten():
 )
 def test_what_a_result_is_stands_in_the_reports_language_and_names_that_people_gave_stay(name, kind, german):
     assert shown_name(Characteristic(name, kind, 1.0, 0.1), Words.of("de")) == german
+
+
+def test_a_name_that_begins_a_line_is_a_title_but_not_one_that_somebody_typed():
+    assert headed_name(Characteristic("thickness", "thickness", 50.0, 0.1)) == "Thickness"
+    assert headed_name(Characteristic("top flatness", "flatness", 0.1, 0.1)) == "top flatness"

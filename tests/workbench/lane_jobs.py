@@ -139,5 +139,5 @@ def leaves_threads_that_compute() -> None:
         threading.Thread(target=compute, daemon=True).start()
 
 
-def project_to_measure(progress: Progress) -> Project:
+def project_to_measure(speaks: str, progress: Progress) -> Project:
     return new_project("Sample")

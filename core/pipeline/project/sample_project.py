@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
@@ -10,17 +11,19 @@ from core.errors import InputError
 from core.files.atomic import cannot_write, make_folder, remove_leftovers
 from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import create_project, project_from_set
-from core.messages import Message, label
+from core.messages import Message
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.whole import measure_all
 from core.progress import Progress, silent
 from core.simulate.sample import sample_folder, sample_set
+from core.translations import language
 
 
-def sample_project(folder: Path, progress: Progress = silent) -> Path:
+def sample_project(folder: Path, speaks: str = "en", progress: Progress = silent) -> Path:
     """Make the sample project in `folder`, every step done, and return the folder.
 
-    It is made beside and put in place whole. The pictures stay in the user's cache, where `trisect demo` keeps them.
+    What it says of itself is in the language called `speaks`. It is made beside and put in place whole. The pictures
+    stay in the user's cache, where `trisect demo` keeps them.
 
     Raises
     ------
@@ -34,7 +37,7 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
             todo=Message("advice.choose_another_name", "choose another name"),
         )
     remove_leftovers(folder)
-    unmeasured = sample_to_measure(progress)
+    unmeasured = sample_to_measure(speaks, progress)
     make_folder(folder.parent)
     try:
         with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
@@ -46,7 +49,7 @@ def sample_project(folder: Path, progress: Progress = silent) -> Path:
     return folder
 
 
-def sample_to_measure(progress: Progress = silent) -> Project:
+def sample_to_measure(speaks: str = "en", progress: Progress = silent) -> Project:
     """Describe the sample's pictures as a project with nothing measured; they are rendered if they are not there yet.
 
     Raises
@@ -56,7 +59,7 @@ def sample_to_measure(progress: Progress = silent) -> Project:
     """
     remove_leftovers(sample_folder())
     compile_ahead(progress)
-    return _described(project_from_set(sample_set(progress), "Sample"))
+    return _described(project_from_set(sample_set(progress), "Sample"), language(speaks).label)
 
 
 def clear_unfinished(folder: Path) -> None:
@@ -80,16 +83,16 @@ def finished_project(folder: Path, project: Project, progress: Progress = silent
     return whole.file
 
 
-def _described(project: Project) -> Project:
+def _described(project: Project, words: Callable[[str], str]) -> Project:
     info = replace(
         project.info,
-        name="Sample",
-        part="Gauge block 50 mm",
-        serial="simulated",
+        name=words("Sample"),
+        part=words("Gauge block 50 mm"),
+        serial=words("simulated"),
         operator="Trisect",
-        laboratory="Simulated rig",
+        laboratory=words("Simulated rig"),
         air_celsius=20.0,
         part_celsius=20.0,
-        notes=label("Every picture of this project is rendered: camera, lasers, speckle and noise are simulated."),
+        notes=words("Every picture of this project is rendered: camera, lasers, speckle and noise are simulated."),
     )
     return replace(project, info=info)

@@ -12,19 +12,24 @@ HEIGHT, SIZE, PADDING = 4.4 * mm, 6.5, 1.1 * mm
 """Of the frame in points, of its letters, and beside them."""
 
 
+ROOM = 0.8 * mm
+"""Above a frame, and below it."""
+
+
 class ControlFrameMark(Flowable):  # type: ignore[misc]
-    """One frame, to the left, with a little room above."""
+    """One frame, to the left, with a little room above and below."""
 
     def __init__(self, look: ReportLook, frame: ControlFrame) -> None:
         super().__init__()
         self.symbol = frame.symbol
         self.cells = (f"{frame.round}{look.words.general(frame.zone_mm)}", *frame.datums)
         self.widths = [max(HEIGHT, words_width(cell, SANS, SIZE) + 2 * PADDING) for cell in self.cells]
-        self.width, self.height = HEIGHT + sum(self.widths), HEIGHT + 0.8 * mm
+        self.width, self.height = HEIGHT + sum(self.widths), HEIGHT + 2 * ROOM
 
     def draw(self) -> None:
         """Paint it (called by reportlab)."""
         canvas = self.canv
+        canvas.translate(0, ROOM)
         canvas.setStrokeColor(color(INK))
         canvas.setFillColor(color(INK))
         canvas.setLineWidth(0.5)

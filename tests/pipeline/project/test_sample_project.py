@@ -8,7 +8,7 @@ from core.errors import Cancelled, InputError
 from core.files.project.folder import read_project
 from core.files.project.keys import STEPS, changed, rests_on
 from core.pipeline.project import sample_project as module
-from core.pipeline.project.sample_project import clear_unfinished, sample_project
+from core.pipeline.project.sample_project import clear_unfinished, sample_project, sample_to_measure
 
 
 @pytest.fixture
@@ -32,7 +32,7 @@ def until(step):
 @pytest.mark.parametrize("stage", ["camera views", "frames"])
 def test_cancelled_in_the_middle_it_leaves_nothing(small, stage):
     with pytest.raises(Cancelled):
-        sample_project(small / "Sample", until(stage))
+        sample_project(small / "Sample", progress=until(stage))
     assert list(small.iterdir()) == []
 
 
@@ -45,6 +45,12 @@ def test_it_is_finished_and_nothing_of_it_is_out_of_date(small):
         assert changed(done.rests_on, rests_on(step, file.project, file.results)) == (), step
     assert (folder / "results" / "report.pdf").read_bytes().startswith(b"%PDF")
     assert file.project.info.notes
+
+
+def test_it_says_what_it_is_in_the_language_of_who_opens_it(small):
+    info = sample_to_measure("de").info
+    assert (info.name, info.part, info.laboratory) == ("Beispiel", "Endmaß 50 mm", "Simulierter Aufbau")
+    assert info.notes.startswith("Jedes Bild")
 
 
 def test_what_is_there_already_is_left_alone(small):

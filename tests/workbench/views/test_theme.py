@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 import shiboken6
 from PySide6.QtCore import QRect, QSize
-from PySide6.QtGui import QColor, QPainter, QPixmap
+from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
@@ -109,6 +109,15 @@ def test_an_icon_has_the_colour_of_the_theme_and_is_drawn_once_a_size(qtbot: Any
         drawn[name] = pixmap.cacheKey()
         assert icon("mdi6.square").pixmap(QSize(24, 24)).cacheKey() == drawn[name]
     assert drawn["light"] != drawn["dark"]
+
+
+def test_an_icon_on_what_is_chosen_has_the_colour_of_the_words_beside_it(
+    qtbot: Any, theme: Callable[[str], None]
+) -> None:
+    for name, shades in (("light", LIGHT), ("dark", DARK)):
+        theme(name)
+        chosen = icon("mdi6.square", colour="good").pixmap(QSize(24, 24), QIcon.Mode.Selected)
+        assert chosen.toImage().pixelColor(12, 12) == QColor(shades.on_accent)
 
 
 def test_an_icon_that_is_set_once_follows_the_theme(qtbot: Any, theme: Callable[[str], None]) -> None:

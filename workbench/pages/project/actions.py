@@ -25,7 +25,7 @@ from core.files.project.folder import (
 from core.files.recording.unfinished import Unfinished, forget_recording, unfinished_recording
 from core.simulate.sample import simulated_project
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import printed, text_of, tr
 from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copies import PACKED, ProjectCopies
 from workbench.pages.project.import_dialog import ImportDialog
@@ -195,6 +195,7 @@ class ProjectActions(QObject):
         self._preparing = self.bench.run_long(
             self,
             jobs.SAMPLE_TO_MEASURE,
+            printed(),
             label=tr("Preparing the first measurement"),
             on_done=make,
             on_failed=self._prepared,

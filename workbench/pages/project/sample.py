@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project.folder import free_folder, is_project
 from workbench.bench import Bench
-from workbench.language import tr
+from workbench.language import printed, tr
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -58,6 +58,7 @@ class SampleProject(QObject):
             self,
             jobs.SAMPLE_PROJECT,
             folder,
+            printed(),
             label=tr("Preparing the sample"),
             on_done=made,
             on_failed=lambda _: self._ended(),

@@ -8,6 +8,7 @@ from typing import Any
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
+from core.messages import capital
 from core.pipeline.live.events import ScanDetail
 from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
@@ -144,7 +145,7 @@ class SettingsPanel(QWidget):
         for key, label, usual in VALIDITY:
             form.add_number(
                 key,
-                tr(label),
+                capital(tr(label)),
                 NumberRange(0.1, 36500.0, decimals=1, step=1.0, unit=tr("days"), none_text=tr("no limit"), first=usual),
                 tr("What is recorded later proves nothing; empty: no limit."),
             )

@@ -35,7 +35,7 @@ from workbench.step_state import State
 
 VALIDITY: tuple[tuple[str, str, float], ...] = (
     ("calibration_days", label("Calibration"), 30.0),
-    ("check_days", label("Check"), 1.0),
+    ("check_days", label("check"), 1.0),
 )
 """Key, name, and where it starts when a limit is first stated, in days."""
 

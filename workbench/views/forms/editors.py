@@ -65,7 +65,7 @@ class NumberEditor(SpinBox):
         below = 0.0 if within.none_text is None else max(within.step, 10.0**-within.decimals)
         self.setRange(within.minimum - below, within.maximum)
         self.setSingleStep(within.step)
-        self.setSuffix(f" {within.unit}" if within.unit else "")
+        self.setSuffix(within.unit if within.unit in ("", "°") else f" {within.unit}")
         if within.none_text is not None:
             self.setSpecialValueText(within.none_text)
         self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)

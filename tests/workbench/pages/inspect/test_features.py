@@ -303,6 +303,18 @@ def test_the_templates_button_lists_the_ones_used_last(presenter, page, features
 # ---- the panel
 
 
+def test_a_high_page_shows_more_features_whatever_is_in_the_list(page, presenter):
+    heights = []
+    for height in (600, 700, 950, 3000):
+        page.features.fit(height)
+        presenter.feature.add("plane")
+        page.refresh()
+        heights.append(page.features.list.height())
+    assert heights[0] == heights[1] < heights[2] < heights[3]
+    page.features.fit(10_000)
+    assert page.features.list.height() == heights[3]
+
+
 def test_without_features_the_panel_is_one_button(page):
     panel = page.features
     assert panel.add.isVisibleTo(page)
