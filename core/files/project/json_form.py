@@ -105,7 +105,9 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     4: lambda tables: tables,  # studies, which may be none
     5: lambda tables: tables,  # the folder of an interim check, which need not be there
     6: lambda tables: tables,  # known artefacts, which may be none
-    7: lambda tables: tables,  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
+    7: lambda tables: (
+        tables
+    ),  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 

@@ -8,7 +8,7 @@ from typing import Literal
 from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
-from core.messages import capital, unbroken
+from core.messages import capital, unparted
 from core.states import DECISIONS
 from workbench.language import tr
 from workbench.theme import shades
@@ -125,7 +125,7 @@ class Verdict(QFrame):
     def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
         """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
         self._kind = kind
-        say(self._detail, unbroken(detail))
+        say(self._detail, unparted(detail))
         self._show()
 
     @property

@@ -447,7 +447,7 @@ def test_what_is_being_typed_is_saved_too(
 # ---- the sample and the simulated rig
 
 
-def made_sample(folder: Path, speaks: str) -> Path:
+def made_sample(folder: Path, speaks: str = "en") -> Path:
     return project(folder, "Sample")
 
 
