@@ -75,7 +75,11 @@ def find_faces(
         If there are no two parallel faces.
     """
     planes = find_planes(cloud, margin_mm=margin_mm, seed=seed, progress=progress)
-    large = [plane for plane in planes if plane.region.area_mm2 >= SMALLEST_MM2]
+    large = [
+        plane
+        for plane in planes
+        if plane.region.area_mm2 >= SMALLEST_MM2 and len(plane.region.indices) >= FEWEST_POINTS
+    ]
     tolerance = search_tolerance(cloud)
     pairs = [
         (a, b)

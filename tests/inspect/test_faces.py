@@ -4,7 +4,10 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect import faces
+from core.inspect.face_region import Region
 from core.inspect.faces import faces_in_polygons, find_faces
+from core.inspect.fit.plane_search import FoundPlane
 from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at, square
 
@@ -133,3 +136,15 @@ def test_polygons_over_one_and_the_same_face_are_refused(scan):
     corners = square(TABLE_MM, scan.reach)
     with pytest.raises(InputError, match=r"one and the same face.*over a face of its own"):
         faces_in_polygons(cloud, corners, corners + 2.0)
+
+
+def test_a_face_with_hardly_a_point_away_from_its_edges_is_none(scan, monkeypatch):
+    cloud = scan.measure(np.random.default_rng(7))
+    pair = find_faces(cloud)
+    sparse = (
+        FoundPlane(NORMAL, TABLE_MM - 40.0, Region(pair.upper, 2000.0)),
+        FoundPlane(NORMAL, TABLE_MM, Region(pair.lower[:2], 2000.0)),
+    )
+    monkeypatch.setattr(faces, "find_planes", lambda *_, **__: sparse)
+    with pytest.raises(InputError, match="no two are parallel"):
+        find_faces(cloud)
