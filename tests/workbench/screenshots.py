@@ -1,6 +1,7 @@
 """Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--language de].
 
-With --readme only the four that the README shows, small (make pictures).
+With --readme only the four that the README shows, small (make pictures). QT_SCALE_FACTOR=2 makes them at twice the
+size, on a screen of 3840 x 2160.
 """
 
 from __future__ import annotations
@@ -42,6 +43,8 @@ THEMES = ("light", "dark")
 README = ("camera", "scan", "inspect", "report")
 README_SIZE, README_WIDTH = QSize(1280, 800), 900
 PATIENCE_S = 600.0
+TURNS = 5
+"""Of the event loop before a picture, however long one of them took: a panel that grows has others laid out anew."""
 NOMINAL = "block.stl"
 PLAN = InspectionPlan(
     (
@@ -256,6 +259,7 @@ def grab(window: MainWindow) -> QImage:
     screen = window.screen()
     shot = screen.grabWindow(window.winId()) if QApplication.platformName() == "xcb" else window.grab()
     image = shot.toImage().convertToFormat(QImage.Format.Format_RGB32)
+    image.setDevicePixelRatio(1.0)  # all its pixels, whatever the scale
     flat = QImage(image.size(), QImage.Format.Format_RGB32)
     painter = QPainter(flat)
     painter.drawImage(0, 0, image)
@@ -266,6 +270,8 @@ def grab(window: MainWindow) -> QImage:
 def _settle(app: QApplication, bench: Bench, seconds: float) -> None:
     until = time.monotonic() + seconds
     _wait(app, lambda: time.monotonic() > until and not bench.quick.busy and not is_polishing(app), PATIENCE_S)
+    for _ in range(TURNS):
+        app.processEvents()
 
 
 def _wait(app: QApplication, done: Callable[[], bool], seconds: float) -> None:

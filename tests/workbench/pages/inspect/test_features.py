@@ -315,6 +315,17 @@ def test_a_high_page_shows_more_features_whatever_is_in_the_list(page, presenter
     assert page.features.list.height() == heights[3]
 
 
+def test_the_buttons_stand_below_the_list_however_high_the_page_is_made(page, presenter, qtbot):
+    presenter.feature.add("plane")
+    page.refresh()
+    page.show()
+    panel = page.features
+    for height in (700, 1000, 720):
+        page.resize(1280, height)
+        qtbot.wait(50)
+        assert panel.list.geometry().bottom() < panel.measure.geometry().top()
+
+
 def test_without_features_the_panel_is_one_button(page):
     panel = page.features
     assert panel.add.isVisibleTo(page)
