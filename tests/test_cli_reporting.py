@@ -29,7 +29,7 @@ def test_the_report_follows_template_language_paper_sections_and_names(simulated
     assert said.code == 0, said.err
     text = text_of(out / "report.pdf")
     for expected in ("Messbericht", "House of Gauges", "Brandt & Söhne", "GB-1", "A. Brandt Datum, Unterschrift",
-                     "bewusst weggelassen: Ein Bild der Aufnahme; Eingaben"):  # fmt: skip
+                     "bewusst weggelassen: Ein Bild des Scans; Eingaben"):  # fmt: skip
         assert expected in text
     assert float(PdfReader(str(out / "report.pdf")).pages[0].mediabox.width) == 612
 

@@ -105,8 +105,16 @@ class Folding(QWidget):
         """As narrow as the widest part."""
         return QSize(max(self._widths()), super().minimumSizeHint().height())
 
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:  # what is in it wants more room, or less
+            self._fold()
+        return super().event(event)
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
+        self._fold()
+
+    def _fold(self) -> None:
         side_by_side = sum(self._widths()) + self._box.spacing() * (len(self._parts) - 1)
         folded = side_by_side > self.width()
         direction = QBoxLayout.Direction.TopToBottom if folded else QBoxLayout.Direction.LeftToRight

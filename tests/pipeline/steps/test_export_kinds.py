@@ -111,7 +111,7 @@ def test_choosing_a_template_takes_what_it_names_and_leaves_the_rest_to_the_user
     text = " ".join(page.extract_text() for page in PdfReader(report).pages)
     assert "House of Gauges" in text
     assert "Messbericht" in text
-    assert "bewusst weggelassen: Ein Bild der Aufnahme; Eingaben" in " ".join(text.split())
+    assert "bewusst weggelassen: Ein Bild des Scans; Eingaben" in " ".join(text.split())
 
 
 def test_a_template_that_is_gone_is_told_and_the_old_report_stays(done, folder):

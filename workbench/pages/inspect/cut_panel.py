@@ -37,14 +37,13 @@ class CutPanel(QWidget):
         self.at.setAccessibleName(tr("Where the cut is"))
         self.at.setToolTip(tr("Where the cut is, in the frame of the view; or drag the ring in the 3D view"))
         self.side = QComboBox()
-        for side in SIDES:
-            self.side.addItem("", side)
+        for side, word in zip(SIDES, _hiding(AXES[0]), strict=True):  # Qt keeps the least width of its first words
+            self.side.addItem(word, side)
         self.side.setAccessibleName(tr("What the cut hides"))
         self.side.setToolTip(tr("Hide the surface to one side of the plane: what is measured stays the same"))
         self.at.setSuffix(" mm")
         self.at.setDecimals(2)
         self.at.setKeyboardTracking(False)
-        self.side.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # its words follow the direction
         where = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, STRETCH, spacing=6)
         row = Folding(where, in_row(STRETCH, self.keep), spacing=6, share=0)
         self._column = in_column(row, on=self, spacing=4)
@@ -66,9 +65,7 @@ class CutPanel(QWidget):
         cut, plane = self._cut, self._cut.plane
         if plane is None:
             return
-        axis = AXES[plane.axis]
-        words = tr("both sides"), tr("hide larger {axis}", axis=axis), tr("hide smaller {axis}", axis=axis)
-        for place, word in enumerate(words):
+        for place, word in enumerate(_hiding(AXES[plane.axis])):
             self.side.setItemText(place, word)
         self.side.setCurrentIndex(SIDES.index(cut.hides))
         low, high = cut.reach
@@ -89,3 +86,8 @@ class CutPanel(QWidget):
         """Whether it can be kept, and why not."""
         why_not = self._cut.cannot_keep
         enable(self.keep, why_not, tr("Measure this cut as a feature of the plan; undoable"))
+
+
+def _hiding(axis: str) -> tuple[str, str, str]:
+    """What can be hidden of a cut square to this axis, in the order of SIDES."""
+    return tr("both sides"), tr("hide larger {axis}", axis=axis), tr("hide smaller {axis}", axis=axis)

@@ -22,6 +22,10 @@ Header = tuple[str, str] | tuple[str, str, str]
 """Title and unit of a column, "" for none, and perhaps a tip that says what a short title means."""
 
 
+LEAST_PX = 70
+"""Width of a column that gives way to the others: its title and a beginning of what is in it are seen."""
+
+
 class _Texts(QAbstractTableModel):
     """Rows of texts with titles and tips; a column of numbers stands right."""
 
@@ -133,6 +137,7 @@ class DataTable(QWidget):
         """Let one column take the room that the others leave, cut where that is too little: its tip tells it whole."""
         header = self.table.horizontalHeader()
         header.setStretchLastSection(False)
+        header.setMinimumSectionSize(LEAST_PX)
         header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
 
     def set_headers(self, headers: Sequence[Header]) -> None:
