@@ -104,7 +104,7 @@ class RunChart(Plot):
         if self._runs is None:
             return
         low, high = self._reach
-        line = self.fontMetrics().height() + 4
+        line = self.fontMetrics().height() + 12  # words have margins, Chinese ones are higher
         margin = max(0.12, line / max(self._box.height() - 2 * line, line)) * (high - low) or 0.01
         self._box.setYRange(low - margin, high + margin, padding=0)
         width = self._box.width()
