@@ -174,10 +174,13 @@ def _sections(
     """
     sections, lengths = [np.empty((4, 0))], list[float]()
     radius = kernel_radius(filter_px)
+    least = min(_LONG * filter_px, _ACROSS * min(picture.shape))
     for traced in link(picture, state, stripe_px, filter_px, limits):
+        if len(traced) + 2 * radius < least:  # too short even if it leaves the picture at both ends, as most of noise
+            continue
         inside = np.minimum(traced[[0, -1], :2], np.array(picture.shape[::-1]) - 1 - traced[[0, -1], :2]).min(axis=1)
         unseen = radius * int(np.count_nonzero(inside <= radius + BORDER_PX))
-        if len(traced) + unseen < min(_LONG * filter_px, _ACROSS * min(picture.shape)):
+        if len(traced) + unseen < least:
             continue
         run = cut_ends(traced, filter_px, picture.shape)
         if len(run) > 1:
