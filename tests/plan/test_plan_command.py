@@ -47,7 +47,7 @@ def test_every_height_gets_its_u_and_a_budget(told):
 def test_the_window_is_given_the_same_rows_in_its_language_and_the_whole_sigma(rig, result, monkeypatch):
     monkeypatch.setattr(rig_plan, "plan", lambda *_, **__: result)
     shown = rig_plan.foretell_rig(rig, "de")
-    assert shown.rows[0][0] == "Block 40 mm" and "," in shown.rows[0][1]
+    assert shown.rows[0][0] == "Block 40\u00a0mm" and "," in shown.rows[0][1]
     assert shown.image_size == result.design.pixels
     own = result.largest.sigma.own
     assert shown.sigma_mm.shape == own.shape and np.nanmin(shown.sigma_mm - own) >= 0

@@ -27,6 +27,7 @@ RETURN_MEANS_THE_LAST = {
     "Leave the project",
     "Live source",
     "Re-adjust camera and laser?",
+    "Remove the artefact",
 }
 """Questions of which any other answer loses something, or changes what is measured."""
 

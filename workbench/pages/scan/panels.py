@@ -43,6 +43,7 @@ class ScanCard(StageCard):
             ],
             parent,
         )
+        self.buttons["whole"].hide()  # never beside Cancel: there is no room for three
 
     def refresh(self) -> None:
         """Show the stage."""
