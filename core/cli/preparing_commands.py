@@ -129,8 +129,12 @@ def import_(
     from core.cli import importing
 
     parts = {
-        **{"camera": camera, "planes": planes, "planes_off": planes_off, "scan": scan},
-        **{"check": check, "check_off": check_off},
+        "camera": camera,
+        "planes": planes,
+        "planes_off": planes_off,
+        "scan": scan,
+        "check": check,
+        "check_off": check_off,
     }
     plan = importing.understood(parts, reference, order.value)
     importing.show(plan, folder, rig, dry_run=dry_run, as_json=json)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -90,7 +90,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
         file = Path(place) / RIG
         write_text(file, text, sync=False)
         foretold = foretell_rig(file, language, progress, sigma_cut_mm=project.options.sigma_cut_mm)
-    return ForetoldRig(foretold.rows, foretold.sigma_mm, foretold.image_size, foretold.result, text)
+    return replace(foretold, rig=text)
 
 
 def write_foretold(foretold: ForetoldRig, folder: Path) -> Mapping[str, Path]:

@@ -7,7 +7,6 @@ from collections.abc import Mapping, Sequence
 from PySide6.QtCore import QEvent, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QLabel, QSizePolicy, QWidget
 
-from core.messages import unparted
 from workbench.theme import shades
 from workbench.views.common import dress
 from workbench.views.forms.editors import (
@@ -19,6 +18,7 @@ from workbench.views.forms.editors import (
     NumberRange,
     TextEditor,
 )
+from workbench.views.layouts import Sentence
 
 _EDITOR_WIDTH = 132
 """Pixels of a field at least."""
@@ -143,8 +143,7 @@ class SettingsForm(QWidget):
         else:
             editor.setSizePolicy(QSizePolicy.Policy.Minimum, QSizePolicy.Policy.Fixed)
             self._grid.addWidget(editor, row, 1)
-        said = QLabel()
-        said.setWordWrap(True)
+        said = Sentence()
         said.setContentsMargins(0, 0, 0, 7)
         said.setAlignment(Qt.AlignmentFlag.AlignTop | Qt.AlignmentFlag.AlignLeft)
         self._grid.addWidget(said, row + 2, 0, 1, 2)
@@ -154,5 +153,5 @@ class SettingsForm(QWidget):
     def _show_help(self, key: str) -> None:
         label, help = self._helps[key]
         complaint, s = self._complaints.get(key, ""), shades()
-        label.setText(unparted(complaint or help))
+        label.setText(complaint or help)
         dress(label, f"font-size: 11px; color: {s.bad if complaint else s.muted};")

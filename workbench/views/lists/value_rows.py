@@ -8,13 +8,13 @@ from typing import Literal
 from PySide6.QtCore import QEvent, QSize, Qt
 from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
 
-from core.messages import capital, unparted
+from core.messages import capital
 from core.states import DECISIONS
 from workbench.language import tr
 from workbench.theme import shades
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress, dress_edged, grade_words
-from workbench.views.layouts import in_column, in_row, say
+from workbench.views.layouts import Sentence, in_column, in_row, say
 
 LEVEL_ICONS: dict[Level, tuple[str, str]] = {
     "good": ("mdi6.check-circle-outline", "good"),
@@ -113,8 +113,7 @@ class Verdict(QFrame):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._kind: VerdictKind = ""
-        self._sign, self._word, self._detail = IconLabel(28), QLabel(), QLabel()
-        self._detail.setWordWrap(True)
+        self._sign, self._word, self._detail = IconLabel(28), QLabel(), Sentence()
         self._detail.setTextInteractionFlags(Qt.TextInteractionFlag.TextSelectableByMouse)
         words = in_column(self._word, self._detail, spacing=1)
         row = in_row(on=self, margins=(12, 8, 12, 8), spacing=10)
@@ -125,7 +124,7 @@ class Verdict(QFrame):
     def set_verdict(self, kind: VerdictKind, detail: str = "") -> None:
         """Show a verdict; "" is none: no tolerance, or nothing measured yet."""
         self._kind = kind
-        say(self._detail, unparted(detail))
+        say(self._detail, detail)
         self._show()
 
     @property

@@ -32,6 +32,13 @@ def dialog_of(technician: Technician) -> ImportDialog:
     return technician.window.findChildren(ImportDialog)[-1]
 
 
+def dialog_in_project(technician: Technician, folder: Path) -> ImportDialog:
+    """The dialog in a new project in a folder."""
+    create_project(folder, ProjectFile(new_project("Block")))
+    technician.window.projects.open_project(folder)
+    return dialog_of(technician)
+
+
 def cells(dialog: ImportDialog) -> list[tuple[str, ...]]:
     return [row[:3] for row in dialog.table.rows()]
 
@@ -39,9 +46,7 @@ def cells(dialog: ImportDialog) -> list[tuple[str, ...]]:
 def test_what_was_understood_is_shown_before_the_project_measures_it(
     technician: Technician, shots: Path, tmp_path: Path
 ) -> None:
-    create_project(tmp_path / "block", ProjectFile(new_project("Block")))
-    technician.window.projects.open_project(tmp_path / "block")
-    dialog = dialog_of(technician)
+    dialog = dialog_in_project(technician, tmp_path / "block")
     assert not dialog.do_import.isEnabled()
     dialog.planes.setText(f"{shots}/laser_*")
     dialog.planes_off.setText(f"{shots}/board_*")
@@ -63,9 +68,7 @@ def test_what_was_understood_is_shown_before_the_project_measures_it(
 def test_pictures_of_a_check_become_the_projects_and_are_shown_where_it_is_made(
     technician: Technician, shots: Path, tmp_path: Path
 ) -> None:
-    create_project(tmp_path / "block", ProjectFile(new_project("Block")))
-    technician.window.projects.open_project(tmp_path / "block")
-    dialog = dialog_of(technician)
+    dialog = dialog_in_project(technician, tmp_path / "block")
     dialog.check.setText(f"{shots}/laser_*")
     dialog.check_off.setText(f"{shots}/board_*")
     technician.until(dialog.do_import.isEnabled, "the preview")
