@@ -7,7 +7,9 @@ from dataclasses import replace
 import pytest
 
 from core.files.plan.plan_file import read_plan
+from core.files.recording.rig import default_rig, rig_to_toml
 from core.files.results.inspection_file import read_inspection
+from core.inspect.uncertainty.part import Part
 from core.pipeline.steps.inspect_step import inspect, open_scan
 from core.simulate.recording import simulate_set
 from tests.simulated import CUT, SMALL, copy_of, trisect
@@ -80,6 +82,16 @@ def test_machines_files_and_windows_get_the_same_numbers_to_the_last_digit(resul
     assert told == [(row.name, row.value, row.u, row.verdict) for row in again.characteristics]
     assert told == [(row["name"], row["value"], row["u"], row["verdict"]) for row in file["characteristics"]]
     assert [feature["name"] for feature in file["plan"]["feature"]] == ["block", "table", "steps"]
+
+
+def test_what_a_recording_set_states_of_the_part_counts_whatever_stood_in_it_when_the_thickness_was_measured(
+    results, tmp_path
+):
+    rig = tmp_path / "rig.toml"
+    rig.write_text(rig_to_toml(default_rig()))
+    assert open_scan(tmp_path, results).errors.part == default_rig().part
+    rig.write_text(rig_to_toml(replace(default_rig(), part=Part("steel", celsius=22.0, u_celsius=0.5))))
+    assert open_scan(tmp_path, results).errors.part == Part("steel", celsius=22.0, u_celsius=0.5)
 
 
 @pytest.mark.accuracy

@@ -10,7 +10,7 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.plan.translation import plan_tables
 from core.files.recording.recording_set import RIG
-from core.files.recording.rig import part_of
+from core.files.recording.rig import part_of, read_rig
 from core.files.results.inspection_file import NAME, write_inspection
 from core.files.results.nominal_surface import read_nominals
 from core.files.results.ply import read_cloud, read_mesh
@@ -58,6 +58,7 @@ def open_scan(source: Path, results: Path | None = None) -> InspectedScan:
     ----------
     source
         A folder of results, a recording set whose `results` lie elsewhere, or a cloud.ply: alone, or among its results.
+        What a recording set's rig.toml states of the part counts, else what it stated when the thickness was measured.
     results
         Of a recording set.
 
@@ -67,7 +68,10 @@ def open_scan(source: Path, results: Path | None = None) -> InspectedScan:
         If there is no scan, it is damaged, or its files are not of each other.
     """
     if source.is_dir():
-        return _of_results(_results_of(source, results))
+        scan = _of_results(_results_of(source, results))
+        if scan.errors is None or not (source / RIG).is_file():
+            return scan
+        return replace(scan, errors=replace(scan.errors, part=read_rig(source / RIG).part))
     file = read_cloud(source)
     beside = source.parent
     if source.name == FILES["cloud"] and (beside / FILES["scan"]).is_file():

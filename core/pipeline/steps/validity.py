@@ -7,9 +7,10 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
-from core.calibrate.board_shape import SIZE_UNCONFIRMED
+from core.calibrate.board_shape import LARGEST_SCALE_SD, SIZE_UNCONFIRMED
+from core.calibrate.fan.calibration import NOT_CONVERGED
 from core.calibrate.fan.picture_residuals import OFF_ALIKE
-from core.calibrate.results import Readjustment
+from core.calibrate.results import FanCalibration, Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
@@ -31,6 +32,12 @@ POINTS_UNCONFIRMED = Message(
     "nothing measured proves conformity. Calibrate again with a true target and camera, or measure a known artefact.",
 )
 """Why nothing proves conformity where target and camera did not fit each other."""
+UNSETTLED = Message(
+    "validity.planes_not_settled",
+    "The calibration of the laser planes had not settled: nothing measured proves conformity. Record more poses of the "
+    "target, at different distances and tilts, and calibrate again.",
+)
+"""Why nothing proves conformity where the planes' calibration was not solved to its end."""
 
 
 def history_name(rig: Rig, calibration_id: str) -> str:
@@ -47,8 +54,8 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
     """Why nothing measured proves conformity on the day it was recorded; None if calibration and check held.
 
     The check nearest in time counts, before the recording or after it. What is not stated has no limit. A size of the
-    plane target that is assumed proves nothing on any day. Neither does a target whose points lie off alike in all
-    poses, which U need not contain, before an artefact has passed.
+    plane target that is assumed proves nothing on any day, nor does a calibration of the planes that had not settled.
+    Neither does a target whose points lie off alike in all poses, before U contains what an artefact has left possible.
     """
     found = work.found
     when = taken_at(found.frames)
@@ -73,22 +80,25 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
     lapsed = _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
     if lapsed is not None or calibration.fan.scale_assumed:
         return lapsed or SIZE_UNCONFIRMED
-    off_alike = any(note.code in OFF_ALIKE for note in calibration.fan.notes)
-    if off_alike and _passed_artefact(found.rig, checks, when) is None:
-        return POINTS_UNCONFIRMED
+    if any(note.code == NOT_CONVERGED.code for note in calibration.fan.notes):
+        return UNSETTLED
+    if _off_alike(calibration.fan):
+        nearest = _passed_artefact(found.rig, checks, when)
+        if nearest is None or _left_possible(nearest) > calibration.fan.scale_sd:
+            return POINTS_UNCONFIRMED
     return None
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
-    """The calibration with a plane target whose size is not stated, as far as an artefact has confirmed it.
+    """The calibration with a plane target that a known artefact has confirmed, as far as it has.
 
-    The artefact measured nearest in time counts, if it passed and that is no longer ago than `[validity]` lets a check
-    hold. The size is then uncertain by the error found, which nothing corrects, and by how sure that is, both as a
-    share of the artefact: a short one says less of a long part. A re-adjusted fan keeps the uncertainty it was
-    re-adjusted with, and is confirmed only by an artefact that says as much.
+    That is one whose size is not stated, or whose points lie off alike in all poses. The artefact measured nearest in
+    time counts, if it passed and that is no longer ago than `[validity]` lets a check hold. The size is then uncertain
+    by what that leaves possible: a short artefact says less of a long part. A re-adjusted fan keeps the uncertainty it
+    was re-adjusted with, and is confirmed only by an artefact that says as much.
     """
     fan = calibration.fan
-    if not fan.scale_assumed:
+    if not (fan.scale_assumed or _off_alike(fan)):
         return calibration
     when = taken_at(work.found.frames)
     try:
@@ -98,10 +108,23 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     nearest = _passed_artefact(work.found.rig, checks, when)
     if nearest is None:
         return calibration
-    shown = math.hypot(nearest.error_mm, nearest.unseen_mm / 2) / nearest.step_mm
-    if fan.readjusted is not None and shown > fan.scale_sd:
+    left = _left_possible(nearest)
+    if left > (fan.scale_sd if fan.readjusted is not None else LARGEST_SCALE_SD):
         return calibration
-    return replace(calibration, fan=with_known_size(fan, shown))
+    return replace(calibration, fan=with_known_size(fan, left if fan.scale_assumed else max(fan.scale_sd, left)))
+
+
+def _off_alike(fan: FanCalibration) -> bool:
+    """Whether the target's points lay off alike in all poses of the planes' calibration."""
+    return any(note.code in OFF_ALIKE for note in fan.notes)
+
+
+def _left_possible(check: PastCheck) -> float:
+    """Standard uncertainty of all lengths, as a share, after an artefact has passed.
+
+    By the error found, which nothing corrects, and by how sure that is.
+    """
+    return math.hypot(check.error_mm, check.unseen_mm / 2) / check.step_mm
 
 
 def _passed_artefact(rig: Rig, checks: Sequence[PastCheck], when: datetime) -> PastCheck | None:

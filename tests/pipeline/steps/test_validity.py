@@ -9,6 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
+from core.calibrate.fan.calibration import NOT_CONVERGED
 from core.calibrate.results import FanCalibration
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Validity, default_rig
@@ -133,7 +134,7 @@ def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact
     off = replace(true, fan=replace(true.fan, notes=(Message(code, "off"),)))
 
     def doubted():
-        told = doubt_of_the_day(work, off)
+        told = doubt_of_the_day(work, with_size_by_artefact(work, off))
         return told is not None and told.code == "validity.target_points_off"
 
     checked(0.5)
@@ -145,6 +146,27 @@ def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact
     assert not doubted()
     artefact_measured(1, verdict="doubtful")
     assert doubted(), "the nearest one counts"
+
+
+def test_what_an_artefact_leaves_possible_of_points_off_alike_is_in_u(tmp_path):
+    """An artefact that passes within a large U has seen little: so much larger is U of what is measured after it."""
+    work, true = recorded(tmp_path), calibrated(assumed=False)
+    off = replace(true, fan=replace(true.fan, notes=(Message("fan.point_off_target", "off"),)))
+    assert with_size_by_artefact(work, off).fan.scale_sd == 5e-4
+    artefact_measured(2, step_mm=5.0)
+    assert with_size_by_artefact(work, off).fan.scale_sd == pytest.approx(np.hypot(0.02, 0.03) / 5)
+    assert with_size_by_artefact(work, true).fan.scale_sd == 5e-4, "a target that fits is as true as stated"
+    artefact_measured(1, error_mm=0.0, step_mm=1000.0)
+    assert with_size_by_artefact(work, off).fan.scale_sd == 5e-4, "it is never surer than stated"
+    artefact_measured(0.5, step_mm=0.3)
+    told = doubt_of_the_day(work, with_size_by_artefact(work, off))
+    assert told is not None and told.code == "validity.target_points_off", "lengths within 12 % prove nothing"
+
+
+def test_planes_that_had_not_settled_prove_nothing(tmp_path):
+    true = calibrated(assumed=False)
+    told = doubt_of_the_day(recorded(tmp_path), replace(true, fan=replace(true.fan, notes=(NOT_CONVERGED,))))
+    assert told is not None and told.code == "validity.planes_not_settled"
 
 
 def test_what_is_not_stated_has_no_limit(tmp_path):
