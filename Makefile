@@ -58,6 +58,7 @@ proofs: $(READY)          ## what many rendered and simulated measurements must 
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual
 	$(BIN)/python -m tests.accuracy hostile
+	$(BIN)/python -m tests.accuracy ideal
 
 soak: $(READY)            ## ten minutes of an emulated camera at full size through the live scan page; every state of a folder of results; 100 kills each of all that writes
 	$(BIN)/python -m tests.soak --window --seconds 600

@@ -95,7 +95,7 @@ class Design:
     distance_mm
         From the camera to the table along the optical axis.
     baseline_mm
-        Of the fan: distance of its axis, where its planes meet, from the optical axis.
+        Of the fan: how far from the optical axis its axis, the line in which its planes meet, crosses the plane x = 0.
     hand_baseline_mm
         Typical distance of the hand-held laser from the optical axis.
     lines, angle_deg

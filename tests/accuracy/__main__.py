@@ -1,4 +1,7 @@
-"""`make accuracy`: measure the accuracy table anew, or the hostile one. Long: hours; `--short` takes a few minutes."""
+"""`make accuracy`: measure the accuracy table anew, the hostile one, or false alarms on ideal rigs.
+
+Long: hours; `--short` takes a few minutes.
+"""
 
 from __future__ import annotations
 
@@ -13,16 +16,20 @@ from core.files.atomic import write_text
 from tests.accuracy import bounds, coverage, hostile, points
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
-from tests.accuracy.hostile_cases import CHECK_POSES, SEEDS, hostile_cases
+from tests.accuracy.hostile_cases import CHECK_POSES, NOTHING_STATED, SEEDS, hostile_cases
 from tests.accuracy.table import between, table, within_2_sigma
 
 ROOT = Path(__file__).parents[2]
+IDEAL_SEEDS = range(101, 201)
+"""Of rigs to which nothing happens, each with a calibration of its own."""
 BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy table -->"
 
 
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.accuracy", description=__doc__)
-    parser.add_argument("what", nargs="?", choices=("accuracy", "hostile"), default="accuracy", help="which table")
+    parser.add_argument(
+        "what", nargs="?", choices=("accuracy", "hostile", "ideal"), default="accuracy", help="which table"
+    )
     parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
     parser.add_argument("--manual", action="store_true", help="put the table into the manual")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
@@ -31,6 +38,11 @@ def main() -> None:
     commit = _commit()
     if chosen.what == "hostile":
         _hostile(chosen.out, commit, short=chosen.short)
+        return
+    if chosen.what == "ideal":
+        known = hostile_cases(0.25, IDEAL_SEEDS, (CHECK_POSES,))
+        ideal = [case for case in known if case.effect == "nothing" and case.strength != NOTHING_STATED]
+        print("\n".join(hostile.false_alarms(ideal, hostile.run(ideal, chosen.out / f"ideal-{commit}.jsonl"))))
         return
     kept = chosen.out / f"{commit}{'-short' if chosen.short else ''}.jsonl"
     scans = cases(short=chosen.short)

@@ -46,6 +46,17 @@ measured, for another reason than the one given. *silent*: beyond U, and proven 
 its limits would be accepted, or one within them thrown away."""
 
 
+OF_EVERY_RIG = frozenset(
+    {
+        "scan.stability_assumed", "target.flatness_assumed", "target.size_assumed", "scan.scale_weak",
+        "scan.scale_fixed", "scan.frames_without_points", "scan.many_frames_without_points",
+        "camera.corners_err_together",
+    }
+)  # fmt: skip
+"""Codes told of rigs to which nothing happens: what is assumed, what is counted, and that the corners of a view err
+together, as in pictures so small they do."""
+
+
 def run(cases: Sequence[HostileCase], kept: Path) -> dict[str, Figures]:
     """Figures of every case by its name; those found in the file `kept` (JSON lines) are not measured again."""
     done = _read(kept)
@@ -223,4 +234,23 @@ def summary(cases: Sequence[HostileCase], results: Mapping[str, Figures]) -> lis
         f"{len(known)} scans: {held} of {len(measured)} measured ones within U ({held / max(len(measured), 1):.1%}); "
         f"{counts}; largest error of which nothing is said {1e3 * unwarned:.0f} µm (at most {1e3 * UNWARNED_MM:.0f} "
         "are wanted).",
+    ]
+
+
+def false_alarms(cases: Sequence[HostileCase], results: Mapping[str, Figures]) -> list[str]:
+    """How often a fault was told of rigs to which nothing happens."""
+    known = [(case, results[case.name]) for case in cases if case.name in results]
+    seeds: dict[str, list[int]] = {}
+    for case, one in known:
+        for code in sorted({*one["told"], *([one["refused"]] if "refused" in one else [])} - OF_EVERY_RIG):
+            seeds.setdefault(code, []).append(case.scenario.seed)
+    alarmed = {seed for mine in seeds.values() for seed in mine}
+    measured = [one for _, one in known if "error" in one]
+    in_u = [2 * one["error"] / one["U"] for one in measured]
+    held = sum(abs(error) <= 2 for error in in_u)
+    return [
+        f"{len(known)} rigs to which nothing happens: {held} of {len(measured)} within "
+        f"U (RMS of error / u {(sum(e * e for e in in_u) / max(len(in_u), 1)) ** 0.5:.2f}), {len(alarmed)} told of a "
+        "fault that they do not have (2 of 100 are wanted).",
+        *(f"{code}: seeds {', '.join(map(str, mine))}" for code, mine in sorted(seeds.items())),
     ]

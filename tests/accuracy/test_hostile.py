@@ -8,7 +8,7 @@ from core.files.recording.rig import default_rig
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.simulate.scenario import Scenario
-from tests.accuracy.hostile import codes_in, figures_of, named, row_of, state_of, summary, table
+from tests.accuracy.hostile import codes_in, false_alarms, figures_of, named, row_of, state_of, summary, table
 from tests.accuracy.hostile_cases import (
     CAUSES,
     EFFECTS,
@@ -47,6 +47,16 @@ def test_what_is_wrong_beyond_u_is_silent_if_proven_or_not_told_by_its_own_cause
     assert state_of(lifted, {**doubted, "told": ["scan.stability_assumed"]}) == "silent", "said of every scan"
     assert state_of(lifted, {**doubted, "told": [MOVED]}) == "told"
     assert state_of(case(WARM), {**doubted, "told": [MOVED]}) == "silent", "of another effect"
+
+
+def test_an_alarm_is_false_where_nothing_happened_whatever_is_said_of_every_rig():
+    cases = [case(MATT, seed) for seed in (1, 2, 3)]
+    told = [["scan.scale_weak"], ["scan.fan_has_moved", "form.scatter"], []]
+    rows = {one.name: {**HELD, "told": codes} for one, codes in zip(cases, told, strict=True)}
+    rows[cases[2].name] = {"refused": "scan.moved_too_much", "told": []}
+    said = false_alarms(cases, rows)
+    assert "3 rigs" in said[0] and "2 of 2 within U (RMS of error / u 0.80), 2 told" in said[0]
+    assert said[1:] == ["form.scatter: seeds 2", "scan.fan_has_moved: seeds 2", "scan.moved_too_much: seeds 3"]
 
 
 def test_a_refusal_is_told_only_if_it_names_the_cause():
