@@ -192,7 +192,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),
     "JPEG": ("scan.compressed",),
     "Bayer mosaic": ("scan.colour_mosaic", "scan.compressed"),
-    "hot pixels": ("camera.misfound_corners",),
+    "hot pixels": ("camera.hot_pixels", "camera.misfound_corners"),
     "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
     "glossy part": ("inspection.light_is_skewed", "scan.shines"),
     "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy"),

@@ -16,6 +16,9 @@ from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.progress import Progress, silent
 
+HOT_PIXELS = "camera.hot_pixels"
+"""Code of the note on hot pixels, with their number `n`."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenView:
@@ -29,10 +32,14 @@ class SeenView:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenViews:
-    """Views in all pictures of the camera target, in the order of the set; `where` they lie, for messages."""
+    """Views in all pictures of the camera target, in the order of the set; `where` they lie, for messages.
+
+    `hot` is the number of pixels that shine by themselves in the pictures.
+    """
 
     views: tuple[SeenView, ...]
     where: str
+    hot: int = 0
 
     @property
     def size(self) -> tuple[int, int] | None:
@@ -71,6 +78,7 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
             for quality in calibration.views
         ),
         where,
+        next((int(note.values["n"]) for note in calibration.notes if note.code == HOT_PIXELS), 0),
     )
 
 

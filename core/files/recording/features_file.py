@@ -42,7 +42,7 @@ _OF_VIEWS = {
     "view_shares_errors": truth("pictures", optional=True),
     "view_covariance": real(None, optional=True),
 }
-_VIEWS = {**_OF_VIEWS, "key": texts(), "where": texts(), "sizes": whole("pictures", 2)}
+_VIEWS = {**_OF_VIEWS, "key": texts(), "where": texts(), "sizes": whole("pictures", 2), "hot": whole(optional=True)}
 _POSES = {
     **_OF_VIEWS,
     "fan_id": texts(),
@@ -60,6 +60,7 @@ def write_views(path: Path, key: str, seen: SeenViews) -> None:
         "names": pack_texts([one.name for one in seen.views]),
         "reasons": pack_messages([one.reason for one in seen.views]),
         "sizes": np.array([one.size or (0, 0) for one in seen.views], dtype=np.int64).reshape(-1, 2),
+        "hot": np.array(seen.hot, dtype=np.int64),
         **pack_views([one.view for one in seen.views]),
     }
     write_arrays(path, arrays)
@@ -86,7 +87,8 @@ def read_views(path: Path, key: str) -> SeenViews | None:
             SeenView(name, view, reason, (int(size[0]), int(size[1])) if size.any() else None)
             for name, view, reason, size in columns
         )
-        return SeenViews(views, str(arrays["where"]))
+        hot = int(arrays["hot"]) if "hot" in arrays else 0  # files of earlier versions
+        return SeenViews(views, str(arrays["where"]), hot)
 
 
 _PLANES_TODO = Message(

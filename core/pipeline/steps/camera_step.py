@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.calibration import calibrate_camera
@@ -16,9 +17,10 @@ from core.files.pictures import Picture
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, require_camera
 from core.files.results.camera_file import read_camera, write_camera
+from core.image.hot_pixels import hot_pixels, standing_out
 from core.image.targets import detect
 from core.image.targets.target_view import TargetView
-from core.messages import Field, Message
+from core.messages import Field, Message, plural_message
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -27,6 +29,8 @@ from core.threads import ordered_map
 
 FEWEST_VIEWS = 3
 """Views a camera is solved from at least: three determine all five entries of its matrix (Zhang, 2000)."""
+FEWEST_HOT_SHARE = 3e-5
+"""Share of hot pixels that is told: one in thirty of the patches of 31 × 31 px around corners has one."""
 
 
 def camera_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
@@ -62,24 +66,28 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     """
     require_camera(found)
 
-    def look(item: tuple[str, Picture | Message]) -> SeenView:
+    def look(item: tuple[str, Picture | Message]) -> tuple[SeenView, NDArray[np.int64] | None]:
         name, picture = item
         if isinstance(picture, Message):
-            return SeenView(name, reason=picture)
+            return SeenView(name, reason=picture), None
         size = (picture.shape[1], picture.shape[0])
         try:
             with stage(progress, "camera views"):
-                return SeenView(name, detect(found.rig.camera_target, picture, name), size=size)
+                return SeenView(name, detect(found.rig.camera_target, picture, name), size=size), standing_out(picture)
         except InputError as error:
-            return SeenView(name, reason=error.what, size=size)
+            return SeenView(name, reason=error.what, size=size), None
 
     seen: list[SeenView] = []
+    bright: list[NDArray[np.int64]] = []
     total = len(found.camera)
     progress("camera views", 0, total)
-    for one in ordered_map(look, found.stream(found.camera), idle=lambda: progress("camera views", len(seen), total)):
+    looked = ordered_map(look, found.stream(found.camera), idle=lambda: progress("camera views", len(seen), total))
+    for one, places in looked:
         seen.append(one)
+        if places is not None:
+            bright.append(places)
         progress("camera views", len(seen), total)
-    return SeenViews(tuple(seen), str(found.where("camera")))
+    return SeenViews(tuple(seen), str(found.where("camera")), len(hot_pixels(bright)))
 
 
 def solve_camera(
@@ -114,7 +122,8 @@ def solve_camera(
             where="camera",
             todo=Message("advice.take_in_again", "take some of them in again, or record more"),
         )
-    return _with_lost(calibrate_camera(found, size, options.camera, progress, options.excluded, tolerance), seen)
+    calibration = calibrate_camera(found, size, options.camera, progress, options.excluded, tolerance)
+    return _with_hot_pixels(_with_lost(calibration, seen), seen)
 
 
 def _too_few(seen: SeenViews) -> InputError:
@@ -157,6 +166,23 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
         reason=lost[0].reason,
     )
     return replace(calibration, views=views, notes=(*calibration.notes, note))
+
+
+def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibration:
+    """The calibration with a note on hot pixels, where there are so many that some lie at corners and in stripes."""
+    width, height = calibration.camera.image_size
+    if seen.hot < FEWEST_HOT_SHARE * width * height:
+        return calibration
+    note = plural_message(
+        "camera.hot_pixels",
+        "{n} pixel of {all} shines by itself in all pictures (hot pixel): it pulls corners and stripes. Map it out in "
+        "the camera, cool it or expose for a shorter time.",
+        "{n} pixels of {all} shine by themselves in all pictures (hot pixels): they pull corners and stripes. Map them "
+        "out in the camera, cool it or expose for a shorter time.",
+        n=seen.hot,
+        all=width * height,
+    )
+    return replace(calibration, notes=(*calibration.notes, note))
 
 
 def _lost(one: SeenView) -> ViewQuality:
