@@ -18,7 +18,7 @@ if not os.environ.get("DISPLAY"):
 
 import pytest
 import shiboken6
-from PySide6.QtCore import QCoreApplication, QEvent, QObject, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QEventLoop, QObject, QTimer
 from PySide6.QtWidgets import QApplication, QWidget
 
 from tests.shared import SAID_ALOUD
@@ -39,6 +39,8 @@ HANGS_AFTER_S = 180
 """A test that takes so long hangs: where every thread stands is told, and the test process ends."""
 PROOF_HANGS_AFTER_S = 1500
 """The same for one that is marked `accuracy`."""
+STOPS_WITHIN_S = 5.0
+"""A job that is cancelled has stopped by then, unless others begin again and again."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -53,8 +55,13 @@ class SharedBench(Bench):
     """A bench whose processes outlive its window: they serve the next test, too."""
 
     def close(self) -> None:
-        """End what still runs."""
-        for lane in (self.measuring, self.quick, self.live):
+        """End what still runs, with its process only where it does not stop: starting another one takes seconds."""
+        lanes, end = (self.measuring, self.quick, self.live), time.monotonic() + STOPS_WITHIN_S
+        for lane in lanes:
+            lane.cancel_all()
+        while any(lane.busy for lane in lanes) and time.monotonic() < end:
+            QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)  # a lane has a timer, too
+        for lane in lanes:
             if lane.busy:
                 lane.close()
 
