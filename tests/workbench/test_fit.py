@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from PySide6.QtCore import QPoint, QRect, QSize
-from PySide6.QtWidgets import QApplication, QLabel, QMenu, QToolButton, QWidget
+from PySide6.QtWidgets import QApplication, QLabel, QMenu, QScrollArea, QToolButton, QWidget
 
 from core.files.project.data import new_project
 from core.translations import PSEUDO, language
@@ -68,6 +68,13 @@ def fill_inspect_page(window: MainWindow, bench: Bench, qtbot: Any) -> None:
     inspect.cut.hide(1)
 
 
+def sideways(window: MainWindow) -> dict[str, str]:
+    """What has to be scrolled to the right, as nobody looks for words there; a table may be."""
+    areas = (area for area in window.findChildren(QScrollArea) if area.isVisible())
+    bars = {area.accessibleName() or type(area).__name__: area.horizontalScrollBar() for area in areas}
+    return {name: f"goes on for {bar.maximum()} px at the right" for name, bar in bars.items() if bar.maximum() > 0}
+
+
 def laid_out(widget: QWidget) -> None:
     """What a widget wants is known once its layout is done."""
     layout = widget.layout()
@@ -101,7 +108,7 @@ def test_no_word_is_cut_and_next_is_in_sight_on_any_page_before_and_after_measur
             window.resize(size)
             for _ in range(3):  # a panel that gets wider makes its page divide its room anew
                 qapp.processEvents()
-            if cut := clipped(window):
+            if cut := clipped(window) | sideways(window):
                 found[f"{what} at {size.toTuple()}"] = cut
 
     with window_in(name, bench, qapp, qtbot) as window:
@@ -123,6 +130,24 @@ def test_no_word_is_cut_and_next_is_in_sight_on_any_page_before_and_after_measur
                     inside = window.rect().contains(window.next.geometry())
                     assert window.next.isVisible() and inside, step.name
     assert found == {}
+
+
+@pytest.mark.parametrize(("size", "scrolled"), [(SMALLEST, True), (QSize(1280, 800), False)])
+def test_what_the_lines_of_a_chart_mean_has_room_and_only_a_low_window_is_scrolled_to_the_statistics(
+    bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, size: QSize, scrolled: bool
+) -> None:
+    with window_in("de", bench, qapp, qtbot) as window:
+        window.resize(size)
+        bench.model.open(measured_project)
+        fill_inspect_page(window, bench, qtbot)
+        page: Any = window.pages["inspect"]
+        page.tabs.setCurrentWidget(page.series)
+        field = page.series.chart.canvas
+        words = [one for one, _ in page.series.chart._words_shown]
+        qtbot.waitUntil(lambda: (page.series.below.verticalScrollBar().maximum() > 0) == scrolled)
+        qtbot.waitUntil(
+            lambda: all(field.rect().contains(one.mapRectToScene(one.boundingRect()).toRect()) for one in words)
+        )
 
 
 @pytest.mark.parametrize("name", LANGUAGES)

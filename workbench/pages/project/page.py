@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QLabel, QPushButton, QScrollArea, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QVBoxLayout, QWidget
 
 from workbench.language import tr
 from workbench.pages.project.presenter import ProjectPresenter
@@ -14,12 +14,12 @@ from workbench.theme import icon
 from workbench.views.common import breakable
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import STRETCH, enable, heading, holding, in_column, muted
+from workbench.views.layouts import STRETCH, Folding, UpAndDown, enable, heading, holding, in_column, in_row, muted
 from workbench.views.lists.value_rows import ValueRows
 
 
 class ProjectPage(StepPage):
-    """Two columns of fields, and at the side how far the whole work is."""
+    """Two columns of fields, one below the other in a narrow window, and at the side how far the whole work is."""
 
     presenter: ProjectPresenter
 
@@ -68,19 +68,12 @@ class ProjectPage(StepPage):
         self.place.setText(breakable(self.presenter.place()))
 
     def _columns(self) -> QWidget:
-        inside = QWidget()
-        column = QVBoxLayout(inside)
-        column.setContentsMargins(0, 0, 0, 0)
-        row = QHBoxLayout()
-        row.setSpacing(12)
-        for title, form in ((tr("Part"), self.what), (tr("People and remarks"), self.who)):
-            row.addWidget(_card(heading(title), form), 1)
-        column.addLayout(row)
-        column.addStretch(1)
-        scroll = QScrollArea()
-        scroll.setWidget(inside)
-        scroll.setWidgetResizable(True)
-        scroll.setFrameShape(QFrame.Shape.NoFrame)
+        cards = (
+            in_row(_card(heading(tr("Part")), self.what)),
+            in_row(_card(heading(tr("People and remarks")), self.who)),
+        )
+        inside = holding(in_column(Folding(*cards, spacing=12), STRETCH))
+        scroll = UpAndDown(inside)
         scroll.setAccessibleName(tr("Fields of the project"))
         return scroll
 

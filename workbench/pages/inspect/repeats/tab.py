@@ -4,20 +4,24 @@ from __future__ import annotations
 
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
-from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSplitter, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QSplitter, QWidget
 
 from core.files.project.data import Repeat
 from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
 from workbench.theme import icon
-from workbench.views.layouts import Tabs, UpAndDown, enable, holding, in_column, in_row, muted, say
+from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, in_column, in_row, muted, say
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
 
 ROWS_PX = 230
 """Least width of the statistics."""
+CHART_PX = 260, 200
+"""Least width and height of a chart: what its lines mean can be read in it."""
+CALIBRATION = 3
+"""Column of the calibration that a scan was measured with."""
 
 
 class RepeatsTab(QWidget):
@@ -53,20 +57,16 @@ class RepeatsTab(QWidget):
         buttons.addStretch(1)
         above = QWidget()
         in_column(self.words, (self.table, 1), buttons, on=above)
-        below = QWidget()
-        row = in_row(on=below, margins=(0, 6, 0, 0), spacing=14)
         self.charts = Tabs()
         self.charts.add(self.chart, tr("In their order"))
         self.charts.add(self.histogram, tr("Histogram"))
-        row.addWidget(self.charts, 3)
-        numbers = QVBoxLayout()
-        for widget in (self.rows, self.type1, self.type1_words):
-            numbers.addWidget(widget)
-        numbers.addStretch(1)
-        row.addWidget(UpAndDown(holding(numbers)), 2)
+        self.charts.setMinimumSize(*CHART_PX)
+        self.charts.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # as high as there is room
+        numbers = in_column(self.rows, self.type1, self.type1_words, STRETCH, margins=(0, 6, 0, 0))
+        self.below = UpAndDown(Folding(in_row(self.charts, margins=(0, 6, 0, 0)), numbers, spacing=14))
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
-        split.addWidget(below)
+        split.addWidget(self.below)
         split.setSizes([300, 320])
         split.setChildrenCollapsible(False)
         in_column(split, on=self, margins=(6, 6, 6, 4))
@@ -82,6 +82,7 @@ class RepeatsTab(QWidget):
             return
         self._shown = wanted
         self.table.set_rows([words.repeat_row(repeat) for repeat in repeats.all], [self._tip(r) for r in repeats.all])
+        self.table.table.setColumnHidden(CALIBRATION, repeats.calibrations() < 2)  # the tip of a row tells it, too
         statistics = repeats.statistics()
         if statistics is None:
             self.rows.set_rows([])

@@ -48,6 +48,7 @@ class StudiesTab(QWidget):
         self.charts = (ControlPlot(), ControlPlot())
         self.title, self.words, self.notes = QLabel(), muted(), muted()
         self.title.setObjectName("heading")
+        self.title.setWordWrap(True)
         self.editor = StudyEditor(studies)
         self.buttons: dict[str, QPushButton] = {}
         self.stack = QStackedWidget()
@@ -139,6 +140,7 @@ class StudiesTab(QWidget):
                 item.setData(0, Qt.ItemDataRole.UserRole, one.id)
                 item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
                 item.setToolTip(0, tr("Ticked studies are printed in the report"))
+                item.setToolTip(1, text_of(one.title))
                 if one.id == studies.chosen:
                     self.list.setCurrentItem(item)
             # Qt's own width of a column forgets the room that the style leaves beside a box to tick.
