@@ -1,15 +1,16 @@
-"""Below the 3D view: where the plane is that is laid through the surface, and the profile in it."""
+"""At the 3D view: where the plane is that is laid through the surface, and the profile in it."""
 
 from __future__ import annotations
 
 from functools import cached_property
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QComboBox, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QBoxLayout, QComboBox, QLabel, QPushButton, QWidget
 
 from core.inspect.shown.cut_plane import AXES
 from workbench.language import tr
 from workbench.pages.inspect.cut import InspectCut
+from workbench.pages.step_page import ANY_HEIGHT
 from workbench.theme import icon
 from workbench.views.colours import PROPOSED
 from workbench.views.common import SpinBox
@@ -19,15 +20,23 @@ from workbench.views.plots.lines import LineChart
 SIDES = (0, 1, -1)
 """What is hidden, in the order in which it is offered."""
 CHART_PX = 150
-"""Height of the profile: the surface above it keeps most of the room."""
+"""Height of the profile below the surface, which keeps most of the room."""
+SHARES = 3, 2
+"""Of the width: the surface's and the profile's, side by side."""
 
 
 class CutPanel(QWidget):
-    """Direction and place of the plane in numbers, and its profile."""
+    """Direction and place of the plane in numbers; its profile stands at the view of the surface, in `views`.
 
-    def __init__(self, cut: InspectCut, parent: QWidget | None = None) -> None:
+    It stands below the surface, or beside it where both would be too low (`put_beside`).
+    """
+
+    def __init__(self, cut: InspectCut, surface: QWidget, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._cut = cut
+        self.views = QBoxLayout(QBoxLayout.Direction.TopToBottom)
+        self.views.setSpacing(4)
+        self.views.addWidget(surface, SHARES[0])
         self._names = ("", "")
         self.axis, self.at = QComboBox(), SpinBox()
         self.keep = QPushButton(icon("mdi6.plus"), tr("Add as a section"))
@@ -46,7 +55,7 @@ class CutPanel(QWidget):
         self.at.setKeyboardTracking(False)
         where = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, STRETCH, spacing=6)
         row = Folding(where, in_row(STRETCH, self.keep), spacing=6, share=0)
-        self._column = in_column(row, on=self, spacing=4)
+        in_column(row, on=self)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)
         self.side.activated.connect(lambda place: cut.hide(SIDES[place]))
@@ -56,9 +65,29 @@ class CutPanel(QWidget):
     def chart(self) -> LineChart:
         """The profile; made when there first is one, so that the window's start does not wait for it."""
         chart = LineChart()
-        chart.setFixedHeight(CHART_PX)
-        self._column.addWidget(chart)
+        self.views.addWidget(chart, SHARES[1])
+        self._limit(chart)
         return chart
+
+    def show_all(self, shown: bool) -> None:
+        """Show or hide it with its profile."""
+        self.setVisible(shown)
+        if "chart" in self.__dict__:
+            self.chart.setVisible(shown)
+
+    def put_beside(self, beside: bool) -> None:
+        """The profile beside the surface, or below it."""
+        direction = QBoxLayout.Direction.LeftToRight if beside else QBoxLayout.Direction.TopToBottom
+        if direction != self.views.direction():
+            self.views.setDirection(direction)
+            if "chart" in self.__dict__:
+                self._limit(self.chart)
+
+    def _limit(self, chart: LineChart) -> None:
+        """Beside the surface it is as high as that."""
+        below = self.views.direction() == QBoxLayout.Direction.TopToBottom
+        chart.setMinimumHeight(CHART_PX if below else 0)
+        chart.setMaximumHeight(CHART_PX if below else ANY_HEIGHT)
 
     def refresh(self, count: int) -> None:
         """Show the plane and what it cuts of the first `count` points."""

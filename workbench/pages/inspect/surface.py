@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QHideEvent, QShowEvent
+from PySide6.QtGui import QAction, QHideEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
@@ -64,6 +64,9 @@ CUT_OPACITY = 0.15
 PROPOSALS = ("proposed 1", "proposed 2")
 """Names of the highlights of faces that were clicked."""
 
+LOW_PX = 480
+"""Pixels of height below which surface and profile have no room one below the other."""
+
 DRAW_WITHIN_MS = 60
 """How long in ms a change may wait to be drawn together with those that follow it, as of a slider that is moved."""
 
@@ -103,9 +106,9 @@ class SurfaceTab(QWidget):
         self.line.setWordWrap(True)  # else the legend of a deviation would widen the page and narrow what is beside it
         foot.addWidget(self.line, 1)
         foot.addWidget(self.hint)
-        self.cut = CutPanel(presenter.cut)
+        self.cut = CutPanel(presenter.cut, self.scene)
         self.cut.hide()
-        in_column(self.choices, (self.scene, 1), self.cut, foot, on=self, margins=(6, 6, 6, 4), spacing=4)
+        in_column(self.choices, (self.cut.views, 1), self.cut, foot, on=self, margins=(6, 6, 6, 4), spacing=4)
         self.scene.point_picked.connect(lambda point, _: presenter.click(point))
         self.scene.taken.connect(presenter.clicked.take)
         self.scene.region_selected.connect(self._selected)
@@ -186,6 +189,10 @@ class SurfaceTab(QWidget):
         super().showEvent(event)
         self._refreshing.soon()  # not now: Qt is in the middle of showing what would change
 
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.cut.put_beside(self.height() < LOW_PX)
+
     def hideEvent(self, event: QHideEvent) -> None:
         self._later.stop()
         super().hideEvent(event)
@@ -203,7 +210,7 @@ class SurfaceTab(QWidget):
         self._later.stop()
         self._drawn = self._cloud = self._mesh = self._cut = ()
         self._presenter.cut.show(False)
-        self.cut.hide()
+        self.cut.show_all(False)
         self.scene.set_handle(None)
         self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], [], []
@@ -373,7 +380,7 @@ class SurfaceTab(QWidget):
         """The plane that is laid through the surface, and its profile."""
         plane, count = self._presenter.cut.plane, self._presenter.points_shown()
         self.cutting.setChecked(plane is not None)
-        self.cut.setVisible(plane is not None)
+        self.cut.show_all(plane is not None)
         self.cut.show_keep()
         if (plane, count, self._presenter.cut.hides) == self._cut:
             return

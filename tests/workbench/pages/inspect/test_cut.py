@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QPoint, QRect, Qt
 
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
@@ -62,6 +62,18 @@ def test_the_button_lays_a_plane_through_the_part_and_takes_it_away(page, qtbot)
     press(page, qtbot, button(page))
     assert page.surface.cut.isHidden() and (Patches, CUT) not in page.surface.scene._scene.items
     assert page.presenter.model.undo_stack.count() == 0, "looking is no edit"
+
+
+@pytest.mark.parametrize(("height", "beside"), [(430, True), (800, False)])
+def test_surface_and_profile_are_seen_whole_side_by_side_where_the_window_is_low(cut, qtbot, height, beside):
+    cut.resize(880, height)
+    surface = cut.surface
+    views = [surface.scene._canvas, surface.cut.chart]
+    qtbot.waitUntil(lambda: (views[1].geometry().left() > surface.scene.geometry().right()) == beside)
+    assert surface.rect().contains(surface.cut.geometry())
+    for view in views:
+        assert surface.rect().contains(QRect(view.mapTo(surface, QPoint(0, 0)), view.size()))
+        assert view.height() >= 140 and view.width() >= 150
 
 
 def test_the_profile_holds_the_points_near_the_plane_as_it_is_moved(cut, qtbot):
