@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from PySide6.QtCore import QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QRectF, Qt, Signal
 from PySide6.QtGui import (
     QFocusEvent,
     QHideEvent,
@@ -21,14 +21,16 @@ from PySide6.QtGui import (
 )
 from PySide6.QtWidgets import QWidget
 
-from workbench.views.scene.overlay import OverlayColours, paint_sentence, text_plate
+from workbench.views.common import inner_edge
+from workbench.views.scene.overlay import OverlayColours, paint_hint, paint_sentence
 from workbench.views.scene.tools import Navigate
 
 
 class Canvas(QWidget):
     """Shows the picture drawn last, stretched to its size until a new one comes, and gives mouse and keys to the tool.
 
-    `paint` paints labels, colour bar and axes over the picture.
+    `paint` paints labels, colour bar and axes over the picture; `taken` tells how many pixels at the right the bar
+    takes.
     """
 
     shown = Signal()
@@ -37,9 +39,11 @@ class Canvas(QWidget):
     cancelled = Signal()
     """Esc was pressed while a tool other than turning the view was in hand."""
 
-    def __init__(self, tool: Navigate, paint: Callable[[QPainter], None], parent: QWidget) -> None:
+    def __init__(
+        self, tool: Navigate, paint: Callable[[QPainter], None], taken: Callable[[], int], parent: QWidget
+    ) -> None:
         super().__init__(parent)
-        self.tool, self._paint = tool, paint
+        self.tool, self._paint, self._taken = tool, paint, taken
         self._message: str | None = None
         self._picture: QImage | None = None
         self.embedded = False
@@ -89,11 +93,11 @@ class Canvas(QWidget):
             self._paint(painter)
             self.tool.paint(painter, colours)
             if self.tool.hint:
-                text_plate(painter, QPointF(self.width() / 2, 18), self.tool.hint, colours)
+                paint_hint(painter, self.tool.hint, self.width() - self._taken(), colours)
         if self.hasFocus():
             painter.setBrush(Qt.BrushStyle.NoBrush)
             painter.setPen(colours.accent)
-            painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+            painter.drawRect(inner_edge(self))
         painter.end()
 
     def mousePressEvent(self, event: QMouseEvent) -> None:

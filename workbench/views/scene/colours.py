@@ -120,11 +120,17 @@ def as_colours(colours: ArrayLike, count: int) -> NDArray[np.uint8]:
 
 
 def ticks(low: float, high: float, at_most: int) -> tuple[list[float], list[str]]:
-    """Round numbers from `low` to `high` and how they are written, with as many decimals as tell them apart."""
-    step = nice_step((high - low) / max(at_most - 1, 1))
-    first, last = int(np.ceil(low / step - 1e-6)), int(np.floor(high / step + 1e-6))
+    """Round numbers from `low` to `high` and how they are written, with as many decimals as tell them apart.
+
+    They are two at least, even if that is more than `at_most`: one alone tells no scale.
+    """
+    values: list[float] = []
+    while len(values) < 2:
+        step = nice_step((high - low) / max(at_most - 1, 1))
+        first, last = int(np.ceil(low / step - 1e-6)), int(np.floor(high / step + 1e-6))
+        values = [k * step for k in range(first, last + 1)]
+        at_most += 1
     decimals = max(0, -int(np.floor(np.log10(step) + 1e-9)))
-    values = [k * step for k in range(first, last + 1)]
     return values, [number(value, f".{decimals}f") for value in values]
 
 

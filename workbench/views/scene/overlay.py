@@ -25,6 +25,12 @@ HANDLE_PX = 9.0
 MARGIN, BAR_WIDTH = 14.0, 14.0
 """Round the overlay, and of the colour bar; in logical pixels."""
 
+LEAST_BAR, BELOW_BAR = 60.0, 14.0
+"""Height of the colour bar, which is not shown where it would be less, and what stays free below it."""
+
+NAME_TOP, HINT_TOP = 4.0, 38.0
+"""Pixels above the name of the frame, which may be two lines, and above what the tool in hand does."""
+
 AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
     ("x", (200, 45, 45), (255, 110, 105)),
     ("y", (30, 130, 60), (95, 205, 115)),
@@ -114,6 +120,18 @@ def text_plate(
     return plate
 
 
+def paint_hint(painter: QPainter, text: str, room: float, colours: OverlayColours) -> None:
+    """What the tool in hand does, below the name of the frame, in the middle of as much room as the bar leaves."""
+    painter.setFont(_small(painter.font()))
+    flags = int(Qt.AlignmentFlag.AlignHCenter) | int(Qt.TextFlag.TextWordWrap)
+    box = painter.boundingRect(QRectF(MARGIN, HINT_TOP, room - 2 * MARGIN, 1000), flags, text)
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(colours.plate)
+    painter.drawRoundedRect(box.adjusted(-5, -2, 5, 2), 4, 4)
+    painter.setPen(colours.text)
+    painter.drawText(box, flags, text)
+
+
 def _small(font: QFont) -> QFont:
     small = QFont(font)
     small.setPixelSize(12)
@@ -156,17 +174,17 @@ def _paint_measure(
 def _paint_triad(
     painter: QPainter, frame: ViewFrame, camera: SceneCamera, room: tuple[float, float], colours: OverlayColours
 ) -> None:
-    """Directions of the frame's axes, those that point away first, and above them which frame it is.
+    """Directions of the frame's axes, those that point away first, and which frame it is.
 
-    They stand at the lower left of as much room, in pixels, as the colour bar leaves.
+    The axes stand at the lower left, its name at the upper left, where a fitted scene is seldom, of as much room in
+    pixels as the colour bar leaves.
     """
     centre, length = QPointF(MARGIN + 30, room[1] - MARGIN - 30), 24.0
     painter.setFont(_small(painter.font()))
     metrics = QFontMetricsF(painter.font())
     lines = _wrapped(tr(FRAME_NAMES[frame.kind]), metrics, room[0])
     middle = MARGIN + max(map(metrics.horizontalAdvance, lines)) / 2
-    top = centre.y() - length - 24 - (len(lines) - 1) * metrics.height() / 2
-    text_plate(painter, QPointF(middle, top), "\n".join(lines), colours)
+    text_plate(painter, QPointF(middle, NAME_TOP + len(lines) * metrics.height() / 2), "\n".join(lines), colours)
     right, up, back = camera.axes @ frame.axes.T
     for k in np.argsort(back):
         name, on_light, on_dark = AXES[k]
@@ -231,10 +249,13 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], c
     metrics = QFontMetricsF(font)
     lines = _wrapped(colouring.title, metrics)
     width = bar_width(colouring, font)
-    height = float(np.clip(size[1] * 0.5, 60, 300))
-    if size[1] < height + 60 or size[0] < 2.5 * width:
+    above = 20 + len(lines) * metrics.height()
+    height = float(np.clip(size[1] * 0.5, LEAST_BAR, 300))
+    top = max((size[1] - height) / 2, above)
+    height = min(height, size[1] - top - BELOW_BAR)
+    if height < LEAST_BAR or size[0] < 2.5 * width:
         return
-    left, top = size[0] - width + MARGIN, (size[1] - height) / 2
+    left = size[0] - width + MARGIN
     low, high = colouring.limits
     painter.setFont(font)
     painter.setPen(colours.text)

@@ -133,7 +133,7 @@ class SceneView(QWidget):
         self._grid_mm = 0.0
         self._marked: Array | None = None
         self._handle: tuple[Array, Array] | None = None
-        self._canvas = Canvas(Navigate(self), self._paint_overlay, self)
+        self._canvas = Canvas(Navigate(self), self._paint_overlay, lambda: self._margin()[0], self)
         self._canvas.setAccessibleName(tr("3D view"))
         self.setFocusProxy(self._canvas)
         self._navigator = Navigator(self._scene, lambda: self._canvas.logical_size, self._margin, self)

@@ -194,10 +194,11 @@ def test_the_first_cloud_is_fitted_and_the_next_keeps_the_view(view, qtbot):
 def test_values_have_a_colour_bar_with_name_and_unit_and_colours_of_ones_own_have_none(view, qtbot):
     view.set_cloud(FLAT, colours=RED)
     complete(view, qtbot)
-    plain = view.picture()[:, -110:]
+    beside = round(110 * view.devicePixelRatioF())
+    plain = view.picture()[:, -beside:]
     view.set_cloud(FLAT, values=FLAT[:, 0], colouring=Colouring("height", "mm"))
     complete(view, qtbot)
-    bar = view.picture()[:, -110:]
+    bar = view.picture()[:, -beside:]
     inked = [(np.abs(part.astype(int) - ground(view)).max(axis=2) > 60).sum() for part in (plain, bar)]
     assert inked[1] > inked[0] + 1500
 
@@ -331,7 +332,8 @@ def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(vie
 
     def middle() -> np.ndarray:
         view.view("top")
-        x, y = view.screen_positions(tilted.mean(axis=0, keepdims=True))[0].astype(int)
+        place = view.screen_positions(tilted.mean(axis=0, keepdims=True))[0]
+        x, y = (place * view.devicePixelRatioF()).astype(int)
         return view.picture()[y - 4 : y + 5, x - 4 : x + 5].reshape(-1, 3).mean(axis=0)
 
     view.set_mesh(tilted, triangles, values=np.full(4, 0.95), colouring=colouring)

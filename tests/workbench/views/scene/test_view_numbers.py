@@ -231,6 +231,13 @@ def test_ticks_are_round_numbers_told_apart(low, high, texts):
     assert ticks(low, high, 5)[1] == texts
 
 
+@pytest.mark.parametrize(("low", "high"), [(-0.036, 0.036), (-1.9, 1.9), (0.3, 0.6)])
+def test_a_bar_however_low_has_two_ticks_which_tell_its_scale(low, high):
+    values, texts = ticks(low, high, 2)
+    assert len(values) >= 2 and len(set(texts)) == len(texts)
+    assert low - 1e-9 <= min(values) and max(values) <= high + 1e-9
+
+
 # ---- choosing
 
 
