@@ -326,6 +326,15 @@ def test_the_buttons_stand_below_the_list_however_high_the_page_is_made(page, pr
         assert panel.list.geometry().bottom() < panel.measure.geometry().top()
 
 
+def test_with_no_feature_chosen_none_looks_chosen(page, features, presenter):
+    presenter.feature.add("plane")
+    page.refreshing.at_once()
+    assert [item.text(0) for item in page.features.list.selectedItems()] == ["plane 1"]
+    features.choose("")
+    page.refreshing.at_once()
+    assert page.features.list.selectedItems() == [] and page.features.list.currentItem() is None
+
+
 def test_without_features_the_panel_is_one_button(page):
     panel = page.features
     assert panel.add.isVisibleTo(page)

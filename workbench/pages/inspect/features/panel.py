@@ -144,9 +144,9 @@ class FeaturesPanel(QWidget):
         names = features.plan.names
         wanted = self.list.topLevelItem(names.index(features.chosen)) if features.chosen in names else None
         current = self.list.currentItem()
-        if wanted is not None and (current is None or wanted not in (current, current.parent())):
+        if wanted != (current and (current.parent() or current)):
             self.list.blockSignals(True)
-            self.list.setCurrentItem(wanted)
+            self.list.setCurrentItem(wanted)  # type: ignore[arg-type]  # none: nothing looks chosen
             self.list.blockSignals(False)
 
     def _fit_list(self) -> None:
