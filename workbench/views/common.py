@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QLocale, QRect, QSize, Qt
+from PySide6.QtCore import QLocale, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QPen, QValidator
 from PySide6.QtWidgets import QDoubleSpinBox, QFileDialog, QLabel, QWidget
 
@@ -65,12 +65,17 @@ class IconLabel(QLabel):
             painter.end()
 
 
+def inner_edge(widget: QWidget) -> QRectF:
+    """Where a line of one pixel frames a widget: its middle is half a pixel inside, however fine the screen."""
+    return QRectF(widget.rect()).adjusted(0.5, 0.5, -0.5, -0.5)
+
+
 def draw_focus(widget: QWidget) -> None:
     """Frame a widget that has the focus; to be called while it is painted. It leaves a margin of a pixel for it."""
     if widget.hasFocus():
         painter = QPainter(widget)
         painter.setPen(QPen(QColor(shades().muted), 1.0, Qt.PenStyle.DashLine))  # the accent is for what is chosen
-        painter.drawRect(widget.rect().adjusted(0, 0, -1, -1))
+        painter.drawRect(inner_edge(widget))
         painter.end()
 
 

@@ -115,6 +115,7 @@ class FacesPanel(QWidget):
         self.exchange = QToolButton()
         self.own.setIcon(icon("mdi6.vector-square-edit"))
         self.automatic.setIcon(icon("mdi6.auto-fix"))
+        self.exchange.setAutoRaise(True)
         self.exchange.setIcon(icon("mdi6.swap-vertical"))
         self.exchange.setAccessibleName(tr("Exchange the upper and the lower region"))
         self.own.clicked.connect(lambda: presenter.faces.take_found())

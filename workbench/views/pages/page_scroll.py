@@ -23,7 +23,7 @@ from PySide6.QtWidgets import QLabel, QScrollArea, QStackedLayout, QToolButton, 
 
 from workbench.language import tr
 from workbench.theme import icon, shades
-from workbench.views.common import dress
+from workbench.views.common import dress, inner_edge
 from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import STRETCH, in_column, in_row, say
 
@@ -79,7 +79,7 @@ class PageSheet(QWidget):
             painter.drawImage(self.rect(), self._image)
         painter.setOpacity(1.0)
         painter.setPen(QColor(shades().line))
-        painter.drawRect(self.rect().adjusted(0, 0, -1, -1))
+        painter.drawRect(inner_edge(self))
         painter.end()
 
     def _wanted(self) -> QSize:

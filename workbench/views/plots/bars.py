@@ -159,6 +159,8 @@ class BarsWithThreshold(Plot):
             label="",
             labelOpts={"position": 0.98, "anchors": [(1, 1), (1, 1)], "color": s.bad, "fill": tinted(s.panel, 215)},
         )
+        behind = self._line.label.GraphicsItemFlag.ItemStacksBehindParent
+        self._line.label.setFlag(behind)  # its ground would hide half the width of the line
         self._line.setCursor(Qt.CursorShape.SplitVCursor)
         self._item.addItem(self._line)
         self._say_threshold()

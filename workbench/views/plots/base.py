@@ -168,7 +168,8 @@ class Plot(QWidget):
     def _hide_ticks(self) -> None:
         """Leave the axis below without numbers."""
         axis = self._item.getAxis("bottom")
-        axis.setStyle(tickLength=0, showValues=False)
+        axis.setTicks([])
+        axis.setStyle(showValues=False)
         axis.setHeight(8)
 
     def _pen(self, colour: str | QColor, width: float, style: Qt.PenStyle = Qt.PenStyle.SolidLine) -> QPen:
@@ -209,7 +210,7 @@ class Plot(QWidget):
         for side in ("left", "bottom"):
             axis = self._item.getAxis(side)
             axis.autoSIPrefix, axis.autoSIPrefixScale = False, 1.0  # enableAutoSIPrefix(False) scales once more
-            axis.setPen(pg.mkPen(s.line, width=1))
+            axis.setPen(self._pen(s.line, 1))
             axis.setTextPen(pg.mkPen(s.muted))
             axis.setTickFont(small_font())
             axis.setStyle(tickLength=-4, tickTextOffset=4)

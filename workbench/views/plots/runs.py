@@ -92,6 +92,7 @@ class RunChart(Plot):
             below = text == tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
             below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
             words = self._words(f"{text} {written(y, (high - low) / 200)} mm", colour, (1, 0 if below else 1))
+            words.setZValue(-1)  # their ground would hide half the width of the line
             self._words_shown.append((words, y))
             self._item.addItem(words, ignoreBounds=True)
         self._place_words()

@@ -12,6 +12,7 @@ from PySide6.QtGui import QWheelEvent
 from PySide6.QtWidgets import QApplication
 
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
+from workbench.theme import shades
 from workbench.views.pages.page_scroll import MOST_ZOOM, NARROWEST_PX, WIDEST_PX, PageScroll
 
 
@@ -137,3 +138,11 @@ def test_a_window_that_was_wide_can_be_made_narrow_again_in_one_go(qtbot: Any) -
     view.set_message("Drawing the pages …")
     QApplication.processEvents()
     assert view.minimumSizeHint().width() <= narrow + 60
+
+
+def test_a_page_is_framed_at_its_very_edge(scroll: PageScroll, qtbot: Any) -> None:
+    scroll.set_pages([page()])
+    all_sharp(qtbot, scroll)
+    drawn = scroll.sheets[0].grab().toImage()
+    for x in (0, drawn.width() - 1):
+        assert drawn.pixelColor(x, drawn.height() // 3).name() == shades().line.lower()

@@ -37,7 +37,7 @@ class StudyEditor(QWidget):
         self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form(), "series": self._series_form()}
         self.open = QPushButton(icon("mdi6.table-arrow-left"), tr("Open a table …"))
         self.add = QPushButton(icon("mdi6.folder-plus-outline"), tr("Add a project …"))
-        self.make = QPushButton(icon("mdi6.check"), tr("Make the study"))
+        self.make = QPushButton(icon("mdi6.check", colour="on_accent"), tr("Make the study"))
         self.cancel = QPushButton(tr("Cancel"))
         self.make.setProperty("primary", True)
         self.cancel.setToolTip(tr("Make no study; the table is given up"))
