@@ -24,7 +24,7 @@ from core.errors import InputError
 from core.translations import PSEUDO, language, languages, preferred
 from workbench.language import choose, text_of, tr
 from workbench.settings import THEMES, AppSettings
-from workbench.theme import apply_colours, apply_sheet
+from workbench.theme import apply_colours, apply_sheet, take_sheet_off
 from workbench.views.splash import Splash
 
 if TYPE_CHECKING:
@@ -80,7 +80,7 @@ def speak(app: QApplication, window: MainWindow, name: str, put: Callable[[], Ma
 
     def go_on() -> None:
         choose(language(name), app)
-        app.setStyleSheet("")  # see `build_window`
+        take_sheet_off(app)  # see `build_window`
         new = put()
         new.model.opened.emit()
         if step:

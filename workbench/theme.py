@@ -7,6 +7,9 @@ widget has used: `polish_again` has the widgets look them up anew.
 
 from __future__ import annotations
 
+import gc
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import lru_cache
 from importlib.resources import files
@@ -72,13 +75,15 @@ def apply_theme(app: QApplication, name: str) -> None:
 def apply_colours(app: QApplication, name: str) -> None:
     """Style and palette of a theme, which icons are drawn in."""
     if app.property("dressed") != "fusion":  # under a style sheet the style no longer tells its name
-        app.setStyle("Fusion")
+        with _nothing_collected():
+            app.setStyle("Fusion")
         app.setProperty("dressed", "fusion")
     if name == "system":
         name = "dark" if app.styleHints().colorScheme() == Qt.ColorScheme.Dark else "light"
     chosen = DARK if name == "dark" else LIGHT
     qtawesome.reset_cache()
-    app.setPalette(_palette(chosen))
+    with _nothing_collected():
+        app.setPalette(_palette(chosen))
 
 
 def apply_sheet(app: QApplication) -> None:
@@ -87,9 +92,32 @@ def apply_sheet(app: QApplication) -> None:
         folder = files("resources")
         check = Path(str(folder / "icons" / "check.svg")).as_posix()
         sheet = (folder / "style.qss").read_text(encoding="utf-8")
-        app.setStyleSheet(sheet.replace("CHECKED", CHECKED).replace("CHECK_ICON", check))
+        with _nothing_collected():
+            app.setStyleSheet(sheet.replace("CHECKED", CHECKED).replace("CHECK_ICON", check))
     else:
         polish_again(app)
+
+
+def take_sheet_off(app: QApplication) -> None:
+    """No style sheet, until `apply_sheet`."""
+    with _nothing_collected():
+        app.setStyleSheet("")
+
+
+@contextmanager
+def _nothing_collected() -> Iterator[None]:
+    """Qt goes through a list of all widgets, and Python code runs meanwhile: be it only to wrap each of them.
+
+    A widget that is nobody's child is deleted by Python. Were that now, because garbage happens to be collected, the
+    next widget of Qt's list would be none, and the program would crash.
+    """
+    collects = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if collects:
+            gc.enable()
 
 
 @lru_cache(maxsize=512)
@@ -161,7 +189,11 @@ def _palette(s: Shades) -> QPalette:
 def polish_again(app: QApplication) -> None:
     """Have all widgets take their colours from the palette of now: those seen at once, the others little by little."""
     hidden = []
-    for widget in app.allWidgets():
+    with _nothing_collected():
+        widgets = app.allWidgets()
+    for widget in widgets:
+        if not shiboken6.isValid(widget):
+            continue  # it went with what another one did when it was told of its new colours
         if widget.isVisible():
             _polish(widget)
         else:

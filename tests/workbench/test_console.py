@@ -12,8 +12,9 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QTimer
 from PySide6.QtGui import QCloseEvent
+from PySide6.QtWidgets import QApplication
 
 from core.files.project.data import new_project
 from core.files.results.rig_history import DATA
@@ -85,6 +86,13 @@ def test_what_is_written_meanwhile_is_told_and_read_when_it_is_opened_anew(
     technician.until(lambda: not console.interrupt.isEnabled(), "the project to be opened")
     answer(technician, console, "project.settings.info.name", "'other'")
     assert not console.anew.isEnabled()
+
+
+def test_all_of_its_windows_go_with_it_and_not_when_garbage_is_collected(console: ConsoleWindow) -> None:
+    console.close()
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+    left = [one for one in QApplication.topLevelWidgets() if type(one).__module__.startswith("qtconsole")]
+    assert not left, left
 
 
 @pytest.mark.parametrize("code", ["for i in range(10**12): print(i)", "import time; time.sleep(1000)"])

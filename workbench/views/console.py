@@ -142,6 +142,10 @@ class ConsoleWindow(QWidget):
         console.executed.connect(self._done)
         console.custom_interrupt_requested.connect(self._interrupt)
         console.custom_restart_requested.connect(self._restart)
+        for own in (console._completion_widget, console._call_tip_widget):
+            own.setParent(
+                console, own.windowFlags()
+            )  # else it would go when garbage is collected, be it while Qt paints
         self._column.replaceWidget(self._place, console)
         self._place.deleteLater()
         self._take_colours()

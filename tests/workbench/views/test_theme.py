@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -97,6 +99,34 @@ def test_a_widget_that_is_gone_before_its_turn_is_passed_over(qtbot: Any, theme:
     shiboken6.delete(window)
     qtbot.wait(50)
     assert not any(shiboken6.isValid(child) for child in children)
+
+
+COLLECTED_ANY_TIME = """
+import gc
+from PySide6.QtWidgets import QApplication, QComboBox, QWidget
+from workbench.theme import apply_theme, polish_again
+app = QApplication([])
+apply_theme(app, "light")
+gc.set_threshold(5)
+for name in 5 * ("dark", "light"):
+    gc.disable()
+    boxes = [QComboBox() for _ in range(50)]
+    for box in boxes:
+        box.view()
+    for _ in range(100):
+        widget = QWidget()
+        widget.me = widget
+    del widget
+    gc.enable()
+    polish_again(app)
+"""
+"""Widgets of their own, each referred to by itself alone, beside some that Qt has made for itself: Python learns of
+these when the theme goes through all, and collects garbage after a few things are made."""
+
+
+def test_widgets_that_are_garbage_may_be_there_while_the_theme_changes() -> None:
+    ran = subprocess.run([sys.executable, "-c", COLLECTED_ANY_TIME], capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
 
 
 def test_an_icon_has_the_colour_of_the_theme_and_is_drawn_once_a_size(qtbot: Any, theme: Callable[[str], None]) -> None:
