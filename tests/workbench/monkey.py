@@ -59,6 +59,11 @@ KEYS = (
     Qt.Key.Key_Right, Qt.Key.Key_Up, Qt.Key.Key_Down, Qt.Key.Key_F, Qt.Key.Key_R, Qt.Key.Key_1, Qt.Key.Key_7,
 )  # fmt: skip
 
+DIALOGS = (
+    "new", "import", "next part", "copy", "audit", "sign in", "keys", "double click", "plan rig", "many sets", "manual",
+)  # fmt: skip
+"""Entries of the menus that open a window of their own."""
+
 HARMLESS = ("This plugin does not support", "propagateSizeHints", "raise()", "OpenGL", "libGL", "MESA", "QXcbClipboard")
 """What platforms without a screen or a graphics card say, whatever is shown."""
 
@@ -146,6 +151,7 @@ class Monkey(QObject):
         deeds = {
             self._click: 40, self._key: 12, self._go: 8, self._drag: 5, self._tab: 5, self._undo: 5, self._wheel: 4,
             self._resize: 2, self._theme: 1, self._cancel: 4, self._menu: 3, self._close_and_open: 1, self._type: 3,
+            self._console: 1, self._dialog: 2, self._pull_down: 1, self._delete_and_theme: 2,
         }  # fmt: skip
         self._look_at_the_cards()
         deed = self.random.choices(list(deeds), list(deeds.values()))[0]
@@ -291,6 +297,43 @@ class Monkey(QObject):
         name = self.random.choice(names)
         self._did(f"menu {name}")
         self.window.menus.actions[name].trigger()
+
+    def _pull_down(self) -> None:
+        """Pull a menu down; what comes of it is chosen or closed in the next turn."""
+        if menus := [one for one in self.window.menuBar().findChildren(QMenu) if not one.isEmpty()]:
+            menu = self.random.choice(menus)
+            self._did(f"pull down {menu.title()!r}")
+            menu.popup(self.window.mapToGlobal(QPoint(60, 60)))
+
+    def _dialog(self) -> None:
+        """Open one of the windows over this one; it is answered, mostly rejected, in the next turn, or closed later."""
+        action = self.window.menus.actions[self.random.choice(DIALOGS)]
+        if action.isEnabled():
+            self._did(f"dialog {action.text()!r}")
+            action.trigger()
+
+    def _console(self) -> None:
+        """Open the console, or close it: before it has begun, while it starts, or while it is used."""
+        console = self.window.console
+        if console.window is not None:
+            self._did("close the console")
+            console.window.close()
+        elif self.window.menus.actions["console"].isEnabled():
+            self._did("open the console")
+            console.open()
+
+    def _delete_and_theme(self) -> None:
+        """Close other windows, delete at once or later what is to be deleted, and change the theme in that state."""
+        self._did("delete, then theme")
+        for other in QApplication.topLevelWidgets():
+            if other is not self.window and other.isVisible() and other.isWindow():
+                other.close()
+        if self.random.random() < 0.5:
+            QCoreApplication.sendPostedEvents(None, QEvent.Type.DeferredDelete)
+        if self.random.random() < 0.5:
+            gc.collect()
+        settings = self.window.bench.settings
+        settings.theme = "light" if settings.theme == "dark" else "dark"
 
     def _close_and_open(self) -> None:
         self._did("close and open")
