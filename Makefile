@@ -21,6 +21,9 @@ BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 3 $(AS_MODULES)
 
+# Files with proofs: to import all the others takes each process as long as a proof.
+PROOFS = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
+
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
 unexport PYTHONDONTWRITEBYTECODE
@@ -53,7 +56,7 @@ quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
 
 proofs: $(READY)          ## what many rendered and simulated measurements must keep: the short form of `make accuracy`
-	$(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy
+	$(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS)
 
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual

@@ -48,7 +48,7 @@ def run(*words, env):
     return ran
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 @pytest.mark.skipif(PROCESSOR != "x86-64-v3", reason="nothing is pinned for other processors")
 def test_a_measurement_gives_the_same_bytes_whatever_the_environment_says_of_threads_and_processor(tiny_set, tmp_path):
     """Each of these gave other bytes by itself when libraries were left to choose."""
