@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from core.simulate.scenario import Scenario
-from tests.accuracy.twin import Measured, measure
+from tests.accuracy.twin import Measured, calibrated_once, measure
 
 THICKNESS_MM = 0.045
 MEDIAN_DEPTH_MM = 0.06
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.accuracy
 
 
 class BlocksOfOneSeed:
-    """Rendered and calibrated once, with the first block; one class a seed, so that they run side by side."""
+    """One class a seed, so that they run side by side; calibrations are those of other proofs of the seed."""
 
     seed: int
     first: float
@@ -26,13 +26,11 @@ class BlocksOfOneSeed:
     def block(cls, tmp_path_factory):
         """Measured blocks by height, each rendered when it is first asked for."""
         folder = tmp_path_factory.mktemp(f"seed{cls.seed}")
+        calibrated = calibrated_once(tmp_path_factory, Scenario(seed=cls.seed, scale=0.5))
         done = {}
 
         def of_height(height: float) -> Measured:
             if height not in done:
-                calibrated = None if height == cls.first else folder / f"{cls.first:g}"
-                if calibrated:
-                    of_height(cls.first)
                 scenario = Scenario(object="block", height_mm=height, seed=cls.seed, scale=0.5, frames=60)
                 done[height] = measure(scenario, folder / f"{height:g}", calibrated)
             return done[height]

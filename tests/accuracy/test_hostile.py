@@ -131,21 +131,26 @@ def test_cases_share_calibrations_only_where_these_are_the_same():
         assert shares or own or case.scenario.seed != 1
 
 
+@pytest.fixture(scope="module")
+def calibrations(tmp_path_factory):
+    return tmp_path_factory.mktemp("calibrations")
+
+
 @pytest.mark.accuracy
 @pytest.mark.parametrize(("effect", "strength"), SHORT)
-def test_no_effect_makes_a_thickness_wrong_without_a_word(effect, strength, tmp_path):
+def test_no_effect_makes_a_thickness_wrong_without_a_word(effect, strength, calibrations):
     (case,) = [one for one in hostile_cases(0.25, (1,), (3,)) if (one.effect, one.strength) == (effect, strength)]
-    figures = figures_of(case, tmp_path)
+    figures = figures_of(case, calibrations)
     print(row_of([case], {case.name: figures}))
     assert "error" in figures
     assert state_of(case, figures) in ("held", "told")
 
 
 @pytest.mark.accuracy
-def test_an_unchecked_rig_that_changed_beyond_u_proves_nothing_where_the_scan_shows_it(tmp_path):
+def test_an_unchecked_rig_that_changed_beyond_u_proves_nothing_where_the_scan_shows_it(calibrations):
     """Warmed by a whole pixel and 500 ppm, five times what is assumed: −0.18 mm at U = 0.16 mm, p = 0.004."""
     (case,) = [one for one in hostile_cases(0.25, (2,), (0,)) if (one.effect, one.strength) == (WARM, "1 px")]
-    figures = figures_of(case, tmp_path)
+    figures = figures_of(case, calibrations)
     print(row_of([case], {case.name: figures}))
     assert "inspection.rig_may_have_changed" in figures["told"]
     assert figures["verdict"] == "not proven" and not figures["complete"]

@@ -13,7 +13,7 @@ from core.inspect.uncertainty.part import Part
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.workspace import Workspace
 from core.simulate.scenario import Scenario
-from tests.accuracy.twin import measure
+from tests.accuracy.twin import calibrated_once, measure
 
 SET = {"scale": 0.5, "frames": 48}
 TOLD = "inspection.light_is_skewed"
@@ -26,10 +26,7 @@ MATTER = {
 
 @pytest.fixture(scope="module")
 def calibrated(tmp_path_factory):
-    """A folder with a calibration, by a scan of a matt block."""
-    folder = tmp_path_factory.mktemp("matt")
-    measure(Scenario(**SET), folder)
-    return folder
+    return calibrated_once(tmp_path_factory, Scenario(**SET))
 
 
 def said_of(scenario, folder, calibrated):
@@ -70,10 +67,7 @@ UNSTATED, METAL = (Part(material, celsius=20.0, u_celsius=0.0) for material in (
 
 @pytest.fixture(scope="module")
 def small(tmp_path_factory):
-    """A folder with a calibration, by a scan of a matt block."""
-    folder = tmp_path_factory.mktemp("small")
-    measure(Scenario(**SMALL), folder)
-    return folder
+    return calibrated_once(tmp_path_factory, Scenario(**SMALL))
 
 
 def gauge_by(part, folder):

@@ -10,7 +10,7 @@ from core.errors import InputError
 from core.files.results.run_file import read_run
 from core.inspect.conformity import Verdict
 from core.simulate.scenario import Scenario
-from tests.accuracy.twin import measure
+from tests.accuracy.twin import calibrated_once, measure
 
 SET = {"scale": 0.25, "frames": 36, "camera_views": 10, "plane_poses": 8}
 TOLD = {"scan.fan_shifted", "scan.moved", "scan.frames_moved"}
@@ -25,10 +25,7 @@ SWITCHES = {
 
 @pytest.fixture(scope="module")
 def calibrated(tmp_path_factory):
-    """A folder with a calibration, by a scan at rest."""
-    folder = tmp_path_factory.mktemp("at-rest")
-    measure(Scenario(**SET), folder)
-    return folder
+    return calibrated_once(tmp_path_factory, Scenario(**SET))
 
 
 @pytest.mark.accuracy

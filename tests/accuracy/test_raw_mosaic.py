@@ -8,7 +8,7 @@ import pytest
 
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.scenario import Scenario
-from tests.accuracy.twin import measure
+from tests.accuracy.twin import calibrated_once, measure
 
 RAW, GREY = SensorEffects(colour=True, raw=True), SensorEffects()
 MOST_LOST = 2.5
@@ -20,10 +20,11 @@ LEAST_WITHIN = 0.88
 
 @pytest.mark.accuracy
 @pytest.mark.parametrize("seed", [1, 2, 3])
-def test_a_raw_mosaic_measures_as_true_as_it_says(seed, tmp_path):
+def test_a_raw_mosaic_measures_as_true_as_it_says(seed, tmp_path, tmp_path_factory):
     sigmas = []
     for name, sensor in (("grey", GREY), ("raw", RAW)):
-        found = measure(Scenario(scale=0.5, frames=48, sensor=sensor, seed=seed), tmp_path / name)
+        calibrated = calibrated_once(tmp_path_factory, Scenario(scale=0.5, sensor=sensor, seed=seed))
+        found = measure(Scenario(scale=0.5, frames=48, sensor=sensor, seed=seed), tmp_path / name, calibrated)
         error = found.gauge.thickness_mm - 50.0
         depth, sigma = found.depth_errors(), found.cloud.sigma
         within = np.abs(depth[np.isfinite(depth)]) <= 2 * sigma[np.isfinite(depth)]

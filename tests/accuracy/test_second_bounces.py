@@ -10,12 +10,17 @@ from tests.accuracy.hostile_cases import BOUNCES, HostileCase, base
 OTHER_CAUSES = {"scan.moved", "scan.collapsed", "scan.fan_disagrees", "inspection.moved_during_scan"}
 
 
+@pytest.fixture(scope="module")
+def calibrations(tmp_path_factory):
+    return tmp_path_factory.mktemp("calibrations")
+
+
 @pytest.mark.accuracy
 @pytest.mark.parametrize("seed", [2, 3])
 @pytest.mark.parametrize("share", [0.2, 0.3, 0.6])
-def test_second_bounces_leave_a_thickness_within_its_uncertainty(share, seed, tmp_path):
+def test_second_bounces_leave_a_thickness_within_its_uncertainty(share, seed, calibrations):
     scenario = replace(base(0.25), seed=seed, mirror_share=share)
-    figures = figures_of(HostileCase(BOUNCES, f"{share:.0%}", scenario), tmp_path)
+    figures = figures_of(HostileCase(BOUNCES, f"{share:.0%}", scenario), calibrations)
     print(share, seed, figures)
     assert abs(figures["error"]) <= figures["U"]
     assert not OTHER_CAUSES & set(figures["told"])

@@ -1,10 +1,11 @@
 """Sets rendered with hidden truth, measured the way a user would, and compared."""
 
 import shutil
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
+import pytest
 from scipy.ndimage import map_coordinates
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
@@ -24,6 +25,7 @@ from core.scan.surface.cloud import Cloud
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from core.simulate.truth import Truth, load_truth
+from tests.shared import made_once
 
 
 @dataclass
@@ -67,16 +69,40 @@ def depth_errors(truth: Truth, cloud: Cloud) -> np.ndarray:
     return errors
 
 
+def calibrated_once(tmp_path_factory: pytest.TempPathFactory, scenario: Scenario) -> Path:
+    """A folder with the pictures of a scenario's calibrations and their results, made once for all test processes.
+
+    What is scanned and how does not matter, so `scenario` states nothing of it.
+    """
+    without_scan = replace(scenario, frames=0)
+
+    def make(folder: Path) -> None:
+        simulate_set(without_scan, folder / "set")
+        work = Workspace.open(open_set(folder / "set"), folder / "out")
+        camera_step(work)
+        planes_step(work)
+
+    return made_once(tmp_path_factory, f"calibrated-{without_scan.key}", make)
+
+
+def with_calibration(scenario: Scenario, calibrated: Path, folder: Path) -> None:
+    """Render `scenario` into folder/set with the pictures of an earlier calibration; its results go to folder/out."""
+    simulate_set(scenario, folder / "set", calibration_from=calibrated / "set")
+    (folder / "out").mkdir()
+    for name in ("camera.json", "planes.json", "planes.npz"):
+        shutil.copy(calibrated / "out" / name, folder / "out" / name)
+
+
 def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) -> Measured:
     """Render `scenario` and measure it in `folder`; with `calibrated`, a folder measured earlier, its calibration is
     taken over, pictures and results."""
     recording, out = folder / "set", folder / "out"
-    simulate_set(scenario, recording, calibration_from=calibrated / "set" if calibrated else None)
-    work = Workspace.open(open_set(recording), out)
     if calibrated:
-        for name in ("camera.json", "planes.json", "planes.npz"):
-            shutil.copy(calibrated / "out" / name, out / name)
+        with_calibration(scenario, calibrated, folder)
     else:
+        simulate_set(scenario, recording)
+    work = Workspace.open(open_set(recording), out)
+    if not calibrated:
         camera_step(work)
         planes_step(work)
     scan_step(work)
