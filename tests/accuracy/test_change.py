@@ -18,6 +18,7 @@ from core.calibrate.change import DEFAULT_STABILITY, STABLE, Evidence, changes, 
 from core.calibrate.deviations import Deviation
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.interim_check import check_poses
+from core.inspect.faces import find_faces
 from core.inspect.gauge import fit_gauge
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -93,12 +94,12 @@ def measured(turn, drift_px: float, seed: int) -> dict[str, tuple[float, float, 
         "checked as it comes": (of_scan + of_check(fan_scenes.SQUARE, as_it_comes), DEFAULT_STABILITY),
         "checked with a grid": (of_scan + of_check(fan_scenes.GRID), DEFAULT_STABILITY),
     }
-    found = {}
+    faces, found = find_faces(scan.cloud), {}
     for name, (evidence, stability) in cases.items():
         change = judge(camera, fan, deviations, evidence, stability)
         common = solve_common(features, scan, camera, fan, change.deviations)
         errors = PointErrors.of_scan(features, scan.covariance, common, scan.speckle)
-        fit = fit_gauge(scan.cloud, errors=errors)
+        fit = fit_gauge(scan.cloud, errors=errors, regions=faces)
         found[name] = fit.thickness_mm - HEIGHT, 2 * combined(fit.budget), change.p
     return found
 
