@@ -502,6 +502,15 @@ def test_the_list_stays_in_sight_and_results_do_not_move_the_form_of_the_one_cho
     assert not page.features.measure.visibleRegion().isEmpty()
 
 
+def test_no_row_of_the_list_is_marked_when_no_feature_is_chosen(page, features, presenter, qtbot):
+    presenter.feature.add("plane")
+    page.refreshing.at_once()
+    assert page.features.list.selectedItems()
+    features.choose("")
+    page.refreshing.at_once()
+    assert not page.features.list.selectedItems() and page.features.list.currentItem() is None
+
+
 def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter, page, features, qtbot):
     presenter.feature.add("plane")
     presenter.feature.add("sphere")

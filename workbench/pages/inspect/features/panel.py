@@ -127,7 +127,7 @@ class FeaturesPanel(QWidget):
             shortcut.activated.connect(does)
 
     def _show_list(self) -> None:
-        """All items anew where anything in them has changed; the one chosen stays chosen."""
+        """All items anew where anything in them has changed; the one chosen is marked, and no other."""
         features = self._features
         results = [(features.result(name), features.outdated(name)) for name in features.plan.names]
         shown = (features.plan, results, features.measuring)
@@ -147,6 +147,10 @@ class FeaturesPanel(QWidget):
         if wanted != (current and (current.parent() or current)):
             self.list.blockSignals(True)
             self.list.setCurrentItem(wanted)  # type: ignore[arg-type]  # none: nothing looks chosen
+            self.list.blockSignals(False)
+        elif wanted is None and current is not None:
+            self.list.blockSignals(True)
+            self.list.selectionModel().clear()
             self.list.blockSignals(False)
 
     def _fit_list(self) -> None:
