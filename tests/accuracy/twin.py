@@ -85,24 +85,16 @@ def calibrated_once(tmp_path_factory: pytest.TempPathFactory, scenario: Scenario
     return made_once(tmp_path_factory, f"calibrated-{without_scan.key}", make)
 
 
-def with_calibration(scenario: Scenario, calibrated: Path, folder: Path) -> None:
-    """Render `scenario` into folder/set with the pictures of an earlier calibration; its results go to folder/out."""
-    simulate_set(scenario, folder / "set", calibration_from=calibrated / "set")
-    (folder / "out").mkdir()
-    for name in ("camera.json", "planes.json", "planes.npz"):
-        shutil.copy(calibrated / "out" / name, folder / "out" / name)
-
-
 def measure(scenario: Scenario, folder: Path, calibrated: Path | None = None) -> Measured:
     """Render `scenario` and measure it in `folder`; with `calibrated`, a folder measured earlier, its calibration is
     taken over, pictures and results."""
     recording, out = folder / "set", folder / "out"
-    if calibrated:
-        with_calibration(scenario, calibrated, folder)
-    else:
-        simulate_set(scenario, recording)
+    simulate_set(scenario, recording, calibration_from=calibrated / "set" if calibrated else None)
     work = Workspace.open(open_set(recording), out)
-    if not calibrated:
+    if calibrated:
+        for name in ("camera.json", "planes.json", "planes.npz"):
+            shutil.copy(calibrated / "out" / name, out / name)
+    else:
         camera_step(work)
         planes_step(work)
     scan_step(work)
