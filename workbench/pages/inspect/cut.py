@@ -72,6 +72,14 @@ class InspectCut(QObject):
         assert self.plane is not None
         return self.plane.profile(self._coordinates[:count])
 
+    def count_shown(self, count: int) -> int:
+        """How many of the first `count` points it does not hide."""
+        plane = self.plane
+        if plane is None or not self.hides:
+            return count
+        beyond = self.hides * (self._coordinates[:count, self._axis] - plane.at_mm)
+        return int(np.count_nonzero(beyond <= 0.0))
+
     def show(self, shown: bool) -> None:
         """Lay it through the part, or take it away."""
         if shown != self._on:

@@ -129,7 +129,7 @@ class SurfaceTab(QWidget):
         self._cutting_tip = self.cutting.toolTip()
         self.cutting.triggered.connect(presenter.cut.show)
         self.scene.handle_pulled.connect(presenter.cut.pull)
-        presenter.cut.changed.connect(Refresh(self._show_cut, self).soon)
+        presenter.cut.changed.connect(Refresh(self._show_moved_cut, self).soon)
         self.frame = FrameTool(self.scene, presenter.bench.settings)
         presenter.measured.connect(self._show_faces)
         presenter.comparison.made.connect(self._show_compared)
@@ -376,6 +376,13 @@ class SurfaceTab(QWidget):
             self.scene.set_highlight(name, places, colour)
             self._highlights.append(name)
 
+    def _show_moved_cut(self) -> None:
+        """The cut alone, and how many points it leaves: nothing else changes as it is moved."""
+        self._show_cut()
+        view = self._presenter.scan.view
+        if view is not None:
+            self._show_words(view)
+
     def _show_cut(self) -> None:
         """The plane that is laid through the surface, and its profile."""
         plane, count = self._presenter.cut.plane, self._presenter.points_shown()
@@ -448,7 +455,8 @@ class SurfaceTab(QWidget):
 
     def _show_words(self, view: InspectionView) -> None:
         p = self._presenter
-        shown = tr("{shown} of {total} points shown", shown=grouped(p.points_shown()), total=grouped(len(view)))
+        points = p.cut.count_shown(p.points_shown())
+        shown = tr("{shown} of {total} points shown", shown=grouped(points), total=grouped(len(view)))
         if self.shape == "mesh":
             triangles = len(view.mesh.triangles) if view.mesh is not None else 0
             shown = tr(

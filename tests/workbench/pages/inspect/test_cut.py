@@ -7,6 +7,7 @@ from PySide6.QtCore import QPoint, QRect, Qt
 
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
+from core.report.wording import grouped
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.surface import CUT
 from workbench.views.scene.contents import Patches
@@ -167,6 +168,8 @@ def test_the_side_that_is_hidden_is_that_of_larger_or_smaller_coordinates_and_mo
         assert beyond.any()
         assert np.array_equal(cut.surface.scene._scene.hidden.hides(points), beyond)
         assert np.array_equal(np.isnan(cut.surface.scene._points_seen()[:, 0]), beyond), "what is hidden is not clicked"
+        shown, total = grouped(int(np.count_nonzero(~beyond))), grouped(len(points))
+        assert cut.surface.line.text().startswith(f"{shown} of {total} points"), "what is hidden is not counted"
 
 
 def test_hiding_a_side_leaves_the_profile_and_taking_the_plane_away_shows_all_again(cut, qtbot):
