@@ -48,16 +48,16 @@ TURNS = 5
 NOMINAL = "block.stl"
 PLAN = InspectionPlan(
     (
-        FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),)),
+        FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.2, 0.2)),)),
         FeatureSpec("table", "plane", (Auto(1),)),
         FeatureSpec("top", "plane", (Auto(2),), limits=(("flatness", Limits(0.0, -math.inf, 0.1)),)),
         FeatureSpec("middle", "point", (Auto(2),)),
         FeatureSpec("height", "distance", of=("middle", "table")),
         FeatureSpec("flank", "plane", (Auto(3),)),
         FeatureSpec(
-            "parallel", "parallelism", of=("top", "table"), limits=(("parallelism", Limits(0.0, -math.inf, 0.1)),)
+            "top to table", "parallelism", of=("top", "table"), limits=(("parallelism", Limits(0.0, -math.inf, 0.1)),)
         ),
-        FeatureSpec("upright", "perpendicularity", of=("flank", "table")),
+        FeatureSpec("flank to table", "perpendicularity", of=("flank", "table")),
         FeatureSpec("profile", "section", section=Section(((300.0, 820.0), (1600.0, 820.0)))),
         FeatureSpec("nominal", "deviation", deviation=Deviation(NOMINAL, tolerance_mm=0.1)),
     )
@@ -145,8 +145,8 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     for name, tab, feature in (
         ("surface", page.surface, ""),
         ("feature", page.surface, "top"),
-        ("parallelism", page.surface, "parallel"),
-        ("perpendicularity", page.surface, "upright"),
+        ("parallelism", page.surface, "top to table"),
+        ("perpendicularity", page.surface, "flank to table"),
         ("deviations", page.surface, "nominal"),
         ("picture", page.picture, "profile"),
         ("plot", page.plot, "profile"),

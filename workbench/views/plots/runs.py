@@ -18,6 +18,8 @@ from workbench.views.plots.base import Plot, tinted, written
 _DASH = Qt.PenStyle.DashLine
 _MOST_BINS = 60
 """Bars of a histogram at most."""
+_LEAST_HEIGHT = 200
+"""Pixels: less cuts the title of the vertical axis."""
 _WORDS = 128
 """Screen pixels at the right of a run chart for what its lines mean."""
 
@@ -40,7 +42,7 @@ class RunChart(Plot):
         self._runs: _Runs | None = None
         self._words_shown: list[tuple[pg.TextItem, float]] = []
         self._reach = (0.0, 1.0)
-        super().__init__(parent)
+        super().__init__(parent, least_height=_LEAST_HEIGHT)
 
     def set_runs(
         self,

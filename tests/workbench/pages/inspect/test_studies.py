@@ -293,6 +293,9 @@ def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_p
         table = page.studies.table
         qtbot.waitUntil(lambda: table.isVisible() and len(table.rows()) == 7)
         assert len(table._model.titles) == 5 and table.table.horizontalScrollBar().maximum() == 0
+        page.studies.rows.set_rows([("Entscheidung", "bedingt geeignet, mit Vorbehalt", "", "warn")])
+        value = page.studies.rows._labels[0][1]
+        qtbot.waitUntil(lambda: value.width() >= value.sizeHint().width())
         tip = table._model.headerData(3, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
         assert tip == tr("s over that of the whole scatter")
     finally:

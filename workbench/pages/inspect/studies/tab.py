@@ -44,7 +44,7 @@ class StudiesTab(QWidget):
         self._studies = studies
         self._shown: tuple[KeptStudy, ...] = ()
         self._shown_study: object = None
-        self.list, self.rows, self.table = QTreeWidget(), ValueRows(), DataTable()
+        self.list, self.rows, self.table = QTreeWidget(), ValueRows(least_width=ROWS_PX), DataTable()
         self.charts = (ControlPlot(), ControlPlot())
         self.title, self.words, self.notes = QLabel(), muted(), muted()
         self.title.setObjectName("heading")
@@ -106,7 +106,6 @@ class StudiesTab(QWidget):
         for chart in self.charts:
             column.addWidget(chart)
         self.table.setMinimumWidth(LEAST_TABLE_PX)
-        self.rows.setMinimumWidth(ROWS_PX)
         column.addWidget(Folding(in_row(self.table), in_column(self.rows, STRETCH), spacing=14, share=2), 1)
         column.addWidget(self.notes)
         return inside
