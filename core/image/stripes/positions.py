@@ -11,7 +11,8 @@ from scipy.special import chdtrc
 
 from core.compiled import compiled
 from core.image.stripes.curve import smooth_curve
-from core.image.stripes.likelihood.refinement import Refined, StripeModel, refine, residuals
+from core.image.stripes.likelihood.refinement import Refined, StripeModel, residuals
+from core.image.stripes.measured_positions import Lit, by_measured_section
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.precision import FLOOR_PX, added_in_squares, noise_sigma, roughness
 from core.image.stripes.profile import Profiles, Sections, smooth_sections
@@ -90,17 +91,25 @@ def estimate_positions(
     sections = [smooth_sections(piece.profiles, g) for piece in pieces]
     lines = [_steger_line(piece, curve, settings, noise) for piece, curve in zip(pieces, curves, strict=True)]
     speckle = _speckle(picture, state, curves, sections, settings)
-    refined = [
-        refine(picture, state, StripeModel(curve, weight, ok, section), noise, speckle, g)
-        for weight, curve, ok, section in zip(weights, curves, clear, sections, strict=True)
-    ]
-    differences = [
-        _difference(line.run, better.run, better.sigma, piece.usable)
-        for piece, line, better in zip(pieces, lines, refined, strict=True)
-    ]
-    if _disagreement_px(differences, correlation_length(g)) > _LARGEST_DISAGREEMENT_PX:
+    stripes = [StripeModel(*four) for four in zip(curves, weights, clear, sections, strict=True)]
+    lit = Lit(picture, state, stripes, noise, speckle, g)
+    refined = lit.refined(stripes)
+    skewed = _apart_px(pieces, lines, refined, g) > _LARGEST_DISAGREEMENT_PX
+    better = by_measured_section(lit, lines if skewed else refined, skewed)
+    if better is not None and _apart_px(pieces, lines, better, g) <= _LARGEST_DISAGREEMENT_PX:
+        refined = better
+    elif skewed:
         return lines
     return [_joined(*three) for three in zip(pieces, lines, refined, strict=True)]
+
+
+def _apart_px(pieces: list[Piece], lines: list[Refined], refined: list[Refined], filter_px: float) -> float:
+    """How far two estimates of all pieces are apart on the whole, in px; 0 where that is chance."""
+    differences = [
+        _difference(line.run, other.run, other.sigma, piece.usable)
+        for piece, line, other in zip(pieces, lines, refined, strict=True)
+    ]
+    return _disagreement_px(differences, correlation_length(filter_px))
 
 
 def _speckle(

@@ -19,6 +19,8 @@ TAIL = 2.5
 """Stripe σ from the middle where the tails begin: 4 % of the height is left there."""
 _OTHER_LIGHT = 0.15  # of the height: a residual in the tails beyond this
 _SIGNIFICANT = 6.0  # and beyond so many standard deviations of the noise is other light
+GAUSSIAN = np.zeros((2, 0), np.float32)
+"""No measured section."""
 
 
 class Light(NamedTuple):
@@ -31,15 +33,20 @@ class Light(NamedTuple):
     kind
         (N,) which of the weights suits each point.
     weights
-        (K, DEGREE + 1) ψ as `core.image.stripes.likelihood.influence` gives it.
+        (K, DEGREE + 1) ψ as `core.image.stripes.likelihood.influence` gives it for a Gaussian section, or (K, PLACES)
+        of a measured one.
     noise
         The variance of a dark pixel, and what each grey level adds to it.
+    measured
+        (2, PLACES) the measured section and its push: `core.image.stripes.likelihood.measured_section`; (2, 0) for a
+        Gaussian.
     """
 
     sections: Array
     kind: NDArray[np.int64]
     weights: Array
     noise: tuple[float, float]
+    measured: NDArray[np.float32] = GAUSSIAN
 
 
 class CutModel(NamedTuple):

@@ -35,6 +35,7 @@ from core.compiled import compiled, inlined
 from core.image.stripes.curve import smooth_curve
 from core.image.stripes.likelihood.cut_model import Light
 from core.image.stripes.likelihood.influence import influences
+from core.image.stripes.likelihood.measured_section import Section
 from core.image.stripes.likelihood.scores import score_cuts
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.profile import Sections
@@ -90,12 +91,16 @@ class StripeModel(NamedTuple):
         (N,) True where no other light reaches into the cuts; the others are not used.
     sections
         The light's cross-sections.
+    measured, turned
+        Their shape where that is no Gaussian, and whether its d is negative towards the curve's normal.
     """
 
     curve: Array
     weight: Array
     clear: NDArray[np.bool_]
     sections: Sections
+    measured: Section | None = None
+    turned: bool = False
 
 
 def refine(
@@ -119,9 +124,16 @@ def refine(
     filter_px
         σ in px of the window along the stripe.
     """
-    curve, weight, clear, sections = stripe
-    kind, weights, shares = _weights(sections, noise, speckle)
-    light = Light(np.column_stack(sections), kind, weights, (noise.read_grey**2, noise.grey_per_electron))
+    curve, weight, clear, sections, measured, turned = stripe
+    figures, scatter = np.column_stack(sections), (noise.read_grey**2, noise.grey_per_electron)
+    if measured is None:
+        kind, weights, shares = _weights(sections, noise, speckle)
+        light = Light(figures, kind, weights, scatter)
+    else:
+        kind, solved = measured.weights_along(sections.height)
+        weights = np.stack([one.table[::-1] * -1 if turned else one.table for one in solved])
+        shares = np.array([one.speckle_share for one in solved])
+        light = Light(figures, kind, weights, scatter, measured.tables(turned))
     curve, variance, support = _likeliest(picture, state, curve, weight, clear, light, filter_px)
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
     grown = math.sqrt(1 + median(shares[kind[::_SECTION_SAMPLE]]) * (speckle.grain_px / (2 * filter_px)) ** 2)

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 from core.compiled import inlined
 from core.image.stripes.likelihood.cut_model import TAIL, Light, cut_model
 from core.image.stripes.likelihood.influence import DEGREE, REACH
+from core.image.stripes.likelihood.measured_section import PLACES_PER_SIGMA
 from core.image.stripes.section_fit import DARK
 from core.image.stripes.tracing.pixel_state import IGNORED, SATURATED
 from core.image.stripes.tracing.seeds import Picture
@@ -49,7 +50,8 @@ class _Block(NamedTuple):
 
     `cut`, `line` and `first` (_CUTS_AT_ONCE,) are their numbers and the rows (columns) and first pixels looked at,
     `grey` and `seen` (P, _CUTS_AT_ONCE) these pixels and whether they can be used, 1 or 0, `figures` (_FIGURES,
-    _CUTS_AT_ONCE) what is expected of them, `weight` (DEGREE + 1,) ψ, and `sums` (_SUMS, _CUTS_AT_ONCE) what they say.
+    _CUTS_AT_ONCE) what is expected of them, `weight` and `measured` what `Light` has of weights and sections, `sums`
+    (_SUMS, _CUTS_AT_ONCE) what they say.
     """
 
     cut: NDArray[np.int64]
@@ -59,6 +61,7 @@ class _Block(NamedTuple):
     seen: Float32
     figures: Float32
     weight: Float32
+    measured: Float32
     sums: Float32
 
 
@@ -80,7 +83,8 @@ def score_cuts(
         new_single_table(longest, _CUTS_AT_ONCE),
         new_single_table(longest, _CUTS_AT_ONCE),
         new_single_table(_FIGURES, _CUTS_AT_ONCE),
-        new_single_table(1, DEGREE + 1)[0],
+        new_single_table(1, light.weights.shape[1])[0],
+        light.measured,
         new_single_table(_SUMS, _CUTS_AT_ONCE),
     )
     _see_all(block.seen, longest)
@@ -166,7 +170,7 @@ def _prepare(run: Array, cuts: Array, light: Light, block: _Block) -> None:
     """Fill in the figures of the cuts of a block, and no sums."""
     upright, figures = cuts[block.cut[0], 4] > 0, block.figures
     kind = light.kind[int(cuts[block.cut[_TOGETHER], 3])]
-    for k in range(DEGREE + 1):
+    for k in range(len(block.weight)):
         block.weight[k] = light.weights[kind, k]
     for lane in range(_CUTS_AT_ONCE):
         model = cut_model(run, light, int(cuts[block.cut[lane], 3]), upright)
@@ -244,7 +248,11 @@ def _look_at_feet(
 def _look(picture: Picture, state: NDArray[np.uint8], pixels: int, upright: bool, foot: float, block: _Block) -> None:
     """Add up what so many pixels of each line say; their cuts' feet are so far along it."""
     marked = _read(picture, state, pixels, upright, block)
-    _work_out(block.grey[:pixels], block.seen[:pixels], block.figures, F(foot), block.weight, block.sums)
+    grey, seen = block.grey[:pixels], block.seen[:pixels]
+    if block.measured.shape[1] == 0:
+        _work_out(grey, seen, block.figures, F(foot), block.weight, block.sums)
+    else:
+        _work_out_measured(grey, seen, block.figures, foot, block.weight, block.measured, block.sums)
     if marked:
         _see_all(block.seen, pixels)
 
@@ -323,6 +331,44 @@ def _work_out(grey: Float32, seen: Float32, figures: Float32, foot: F, weight: F
             light *= light
             eh[k] += light
             et[k] += light * x
+
+
+@inlined(fastmath=True)
+def _work_out_measured(
+    grey: Float32, seen: Float32, figures: Float32, foot: float, weight: Float32, measured: Float32, sums: Float32
+) -> None:
+    """`_work_out` for a measured section: light, its push −f' in place of x·e, and ψ are read from tables."""
+    last = measured.shape[1] - 2
+    for k in range(grey.shape[1]):
+        inverse = math.sqrt(2 * figures[_INVERSE, k])
+        sigma, bend, fade, widening = 1 / inverse, figures[_BEND, k], figures[_FADE, k], 0.5 * figures[_WIDENING, k]
+        for i in range(len(grey)):
+            along = i + figures[_START, k]
+            on = along - foot
+            power = along * (figures[_ACROSS, k] - bend * along)
+            turn = bend * power
+            x = power * (0.5 + turn * (0.125 + turn * (0.0625 + turn * _NEXT_TERM)))
+            if abs(x * inverse) > REACH:
+                continue
+            place = (x * inverse * (1 - widening * on) + REACH) * PLACES_PER_SIGMA
+            at = max(min(int(place), last), 0)
+            behind = min(max(place - at, 0.0), 1.0)
+            here = 1 - behind
+            strength = 1 + fade * on
+            light = strength * (here * measured[0, at] + behind * measured[0, at + 1])
+            push = strength * sigma * (here * measured[1, at] + behind * measured[1, at + 1])
+            left = grey[i, k] - (figures[_BACKGROUND, k] + figures[_SLOPE, k] * x + figures[_HEIGHT, k] * light)
+            strange = left * left > figures[_OTHER, k] + figures[_PER_LIGHT, k] * max(light, 0.0)
+            if seen[i, k] == 0 or (strange and abs(x * inverse) > TAIL):
+                sums[6, k] += F(1)
+                continue
+            psi = sigma * (here * weight[at] + behind * weight[at + 1])
+            sums[0, k] += F(psi * left)
+            sums[1, k] += F(psi * push)
+            sums[2, k] += F(psi * light)
+            sums[3, k] += F(light * left)
+            sums[4, k] += F(light * push)
+            sums[5, k] += F(light * light)
 
 
 @inlined(fastmath=True)
