@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from core.inspect.plan.feature_spec import FeatureSpec
@@ -72,13 +73,17 @@ class InspectCut(QObject):
         assert self.plane is not None
         return self.plane.profile(self._coordinates[:count])
 
-    def count_shown(self, count: int) -> int:
-        """How many of the first `count` points it does not hide."""
-        plane = self.plane
-        if plane is None or not self.hides:
-            return count
-        beyond = self.hides * (self._coordinates[:count, self._axis] - plane.at_mm)
-        return int(np.count_nonzero(beyond <= 0.0))
+    def count_shown(self, points: Array, triangles: NDArray[np.integer] | None = None) -> int:
+        """How many of `points` (N, 3), in mm in the camera frame, it does not hide.
+
+        With `triangles`, indices (M, 3) of points: how many of these it does not hide whole.
+        """
+        clip = self.clip
+        if clip is None:
+            return len(points if triangles is None else triangles)
+        place, away = clip
+        seen = points @ away <= place @ away
+        return int(np.count_nonzero(seen if triangles is None else seen[triangles].any(axis=1)))
 
     def show(self, shown: bool) -> None:
         """Lay it through the part, or take it away."""

@@ -141,7 +141,8 @@ class FacesPanel(QWidget):
             else:
                 state = tr("own region, {count} corners", count=len(region))
             colour = FACE_UPPER if face == "upper" else FACE_LOWER
-            label.setText(f"<span style='color:{colour}'>■</span> {names[face]}: {state}")
+            said = tr("{name}: {value}", name=names[face], value=state)
+            label.setText(f"<span style='color:{colour}'>■</span> {said}")
         can = faces.buttons
         for (face, kind), button in self.tools.items():
             enable(button, can.draw, self._tip(face, kind))

@@ -23,6 +23,7 @@ from workbench.pages.inspect.cut_panel import CutPanel
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
+from workbench.pages.words import wording
 from workbench.refresh import Refresh
 from workbench.views.colours import (
     DATUM,
@@ -34,6 +35,7 @@ from workbench.views.colours import (
     PROPOSED,
     to_rgba,
 )
+from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import enable, in_column
 from workbench.views.scene.view import Colouring, SceneView
 
@@ -73,6 +75,9 @@ DRAW_WITHIN_MS = 60
 TOGETHER = "\u2060"
 """Between characters that no line may be broken between (the word joiner)."""
 
+TOGETHER_SPACED = "&nbsp;"
+"""Between words that no line may be broken between."""
+
 
 class SurfaceTab(QWidget):
     """The 3D view with its choices above it and a line of words below."""
@@ -99,6 +104,9 @@ class SurfaceTab(QWidget):
         self._later.setInterval(DRAW_WITHIN_MS)
         self._later.timeout.connect(self._draw)
         self.choices, self.scene, self.line, self.hint = SurfaceChoices(), SceneView(), QLabel(), QLabel()
+        self.empty = EmptyState()
+        """Stands in place of the view where there is no scan."""
+        self.empty.hide()
         for label in (self.line, self.hint):
             label.setObjectName("muted")
         self.hint.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
@@ -108,7 +116,10 @@ class SurfaceTab(QWidget):
         foot.addWidget(self.hint)
         self.cut = CutPanel(presenter.cut, self.scene)
         self.cut.hide()
-        in_column(self.choices, (self.cut.views, 1), self.cut, foot, on=self, margins=(6, 6, 6, 4), spacing=4)
+        column = in_column(self.choices, (self.cut.views, 1), on=self, margins=(6, 6, 6, 4), spacing=4)
+        column.addWidget(self.empty, 1)
+        column.addWidget(self.cut)
+        column.addLayout(foot)
         self.scene.point_picked.connect(lambda point, _: presenter.click(point))
         self.scene.taken.connect(presenter.clicked.take)
         self.scene.region_selected.connect(self._selected)
@@ -153,6 +164,7 @@ class SurfaceTab(QWidget):
         if view is None:
             self._clear()
             return
+        self._show_empty(False)
         if self._wanted() != self._drawn:
             if self._drawn[:1] != (p.scan.serial,):
                 self._draw()  # the first picture at once
@@ -202,11 +214,9 @@ class SurfaceTab(QWidget):
     def _clear(self) -> None:
         p = self._presenter
         if p.stage is Stage.NO_SCAN:
-            message = tr("There is no scan yet. Scan the part, then look at its surface here.")
-        elif p.scan.problem:
-            message = p.scan.problem
-        else:
-            message = tr("Reading the scan …")
+            said = tr("There is no scan yet. Scan the part, then look at its surface here.")
+            self.empty.say(said, tr("Go to Scan"), lambda: p.go_to.emit("scan"))
+        self._show_empty(p.stage is Stage.NO_SCAN)
         self._later.stop()
         self._drawn = self._cloud = self._mesh = self._cut = ()
         self._presenter.cut.show(False)
@@ -216,9 +226,13 @@ class SurfaceTab(QWidget):
         self._marked, self._feature, self._highlights = [], [], []
         self._proposal = self._other = None
         self.frame.show(None)
-        self.scene.clear(message)
+        self.scene.clear(p.scan.problem or tr("Reading the scan …"))
         self.line.setText("")
         self.hint.setText("")
+
+    def _show_empty(self, empty: bool) -> None:
+        self.empty.setVisible(empty)
+        self.scene.setHidden(empty)
 
     def _draw(self) -> None:
         """Send cloud and mesh to the 3D view as far as they changed; parts of arrays, so nothing large is copied."""
@@ -350,26 +364,29 @@ class SurfaceTab(QWidget):
         for name, face in zip(PROPOSALS, () if proposal is None else proposal.faces, strict=False):
             self.scene.set_highlight(name, face.places, PROPOSED)
 
-    def _legend(self) -> str:
-        """What the colours of the chosen feature mean, each with its sign, behind what is shown."""
+    def _legend(self) -> list[str]:
+        """What the colours of the chosen feature mean, each with its sign; nothing where none is to be seen."""
         features = self._presenter.features
         own, datums = features.rests_on(features.chosen)
         name = escape(features.chosen)
         if not any(one.used for one in own):
-            return ""
+            return []
         result = own[0]
         if result.deviations is None:
             used = [_dot(FEATURE, tr("used for {name}", name=name))]
-            return "; " + ", ".join(used + [_dot(DATUM, tr("datum {letter}", letter=one)) for one in datums])
+            datum = [_dot(DATUM, tr("datum {letter}", letter=one)) for one in datums]
+            return [wording().joined(used + datum)]
         middle = len(DEVIATIONS) // 2
         classes = result.deviations.classes
         signs = [_dot(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0")) for one in classes]
-        return tr(
-            "; {name} in quarters of ±{tolerance:g} mm: {marks}",
-            name=name,
-            tolerance=result.deviations.tolerance_mm,
-            marks=" ".join(signs),
-        )
+        return [
+            tr(
+                "{name} in quarters of ±{tolerance:g} mm: {marks}",
+                name=name,
+                tolerance=result.deviations.tolerance_mm,
+                marks=TOGETHER_SPACED.join(signs),
+            )
+        ]
 
     def _highlight(self, name: str, places: Any, colour: str) -> None:
         if len(places):
@@ -377,7 +394,7 @@ class SurfaceTab(QWidget):
             self._highlights.append(name)
 
     def _show_moved_cut(self) -> None:
-        """The cut alone, and how many points it leaves: nothing else changes as it is moved."""
+        """The cut alone, and how much it leaves to be seen: nothing else changes as it is moved."""
         self._show_cut()
         view = self._presenter.scan.view
         if view is not None:
@@ -455,21 +472,22 @@ class SurfaceTab(QWidget):
 
     def _show_words(self, view: InspectionView) -> None:
         p = self._presenter
-        points = p.cut.count_shown(p.points_shown())
+        points = p.cut.count_shown(view.points[: p.points_shown()])
         shown = tr("{shown} of {total} points shown", shown=grouped(points), total=grouped(len(view)))
         if self.shape == "mesh":
-            triangles = len(view.mesh.triangles) if view.mesh is not None else 0
-            shown = tr(
-                "{shown} of {total} triangles shown", shown=grouped(p.triangles_shown()), total=grouped(triangles)
-            )
+            seen, triangles = 0, 0
+            if view.mesh is not None:
+                seen = p.cut.count_shown(view.mesh.vertices, view.mesh.triangles[: p.triangles_shown()])
+                triangles = len(view.mesh.triangles)
+            shown = tr("{shown} of {total} triangles shown", shown=grouped(seen), total=grouped(triangles))
         if self.colour == "faces" and view.gauge is not None:
-            upper, lower = (len(used) for used in view.used_up_to(p.points_shown()))
+            upper, lower = (p.cut.count_shown(view.points[used]) for used in view.used_up_to(p.points_shown()))
             shown += tr(
                 ": {upper} used on the upper face, {lower} on the lower",
                 upper=_dot(FACE_UPPER, grouped(upper)),
                 lower=_dot(FACE_LOWER, grouped(lower)),
             )
-        self.line.setText(shown + self._legend())
+        self.line.setText(wording().joined([shown, *self._legend()], ";"))
         self.hint.setText(tr("Outlining …") if p.outlining else p.picks.hint())
 
 

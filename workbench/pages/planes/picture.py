@@ -71,13 +71,16 @@ class PoseTab(PictureTab):
         self._draw_stripes(list(zip(detail.stripes, detail.line, strict=True)))
 
     def _draw_stripes(self, stripes: list[tuple[Any, int]]) -> None:
-        """One layer a fan line, with its number at its start; what no line drew is grey."""
+        """One layer a fan line, with its number; what no line drew is grey.
+
+        The numbers stand at alternate ends: neighbours are close to each other where the picture is small.
+        """
         wanted = {f"stripe {line}" for _, line in stripes}
         for name in self.image.layer_names():
             if name.startswith("stripe") and name not in wanted:
                 self.image.remove_layer(name)
         for line in sorted({line for _, line in stripes}):
-            mine = [uv for uv, of in stripes if of == line]
+            mine = [uv[::-1] if line % 2 else uv for uv, of in stripes if of == line]
             name = tr("line {number}", number=line + 1) if line >= 0 else tr("no line of the fan")
             colour = fan_colour(line + 1) if line >= 0 else EXCLUDED
             labels = [str(line + 1)] * len(mine) if line >= 0 else None

@@ -172,6 +172,22 @@ def test_the_side_that_is_hidden_is_that_of_larger_or_smaller_coordinates_and_mo
         assert cut.surface.line.text().startswith(f"{shown} of {total} points"), "what is hidden is not counted"
 
 
+def test_faces_and_mesh_are_counted_without_what_the_cut_hides(cut, qtbot):
+    hide(cut, qtbot, 1)
+    view, surface = cut.presenter.scan.view, cut.surface
+    surface.choices.choose_colour("faces")
+    hidden = surface.scene._scene.hidden
+    upper, lower = (np.count_nonzero(~hidden.hides(view.points[used])) for used in view.used_up_to(len(view)))
+    assert 0 < upper < len(view.gauge.upper.indices)
+    settle(cut, qtbot)
+    assert f"{upper} used on the upper face" in surface.line.text() and f"{lower} on the lower" in surface.line.text()
+    press(cut, qtbot, surface.choices.shapes["mesh"])
+    for at, seen in ((-1.0, 0), (5.0, 2), (20.0, 2)):
+        cut.presenter.cut.move_to(at)
+        settle(cut, qtbot)
+        assert surface.line.text().startswith(f"{seen} of 2 triangles"), "a triangle the plane cuts is seen"
+
+
 def test_hiding_a_side_leaves_the_profile_and_taking_the_plane_away_shows_all_again(cut, qtbot):
     before = cut.surface.cut.chart._curves["points"].x
     hide(cut, qtbot, 1)

@@ -88,14 +88,16 @@ def press(qtbot, button):
 
 def test_an_empty_page_says_what_to_do_next(page, qtbot):
     assert page.card.title.text() == "Nothing to inspect yet"
-    assert page.surface.scene._message.startswith("There is no scan yet. Scan the part")
+    assert page.surface.empty.message.startswith("There is no scan yet. Scan the part")
+    wanted = []
+    page.presenter.go_to.connect(wanted.append)
+    press(qtbot, page.surface.empty.button)
+    assert wanted == ["scan"] and page.surface.scene.isHidden()
     assert page.result_fold.isHidden()
     page.tabs.setCurrentWidget(page.picture)
     assert "Scan the part" in page.picture.image.empty_state.message
-    wanted = []
-    page.presenter.go_to.connect(wanted.append)
     press(qtbot, page.picture.image.empty_state.button)
-    assert wanted == ["scan"]
+    assert wanted == ["scan", "scan"]
     page.tabs.setCurrentWidget(page.series)
     assert "Each scan counts once" in page.series.words.text()
     assert "how well the measurement repeats" in page.series.chart.empty_state.message

@@ -105,11 +105,11 @@ class ConditionsPanel(QWidget):
 
     def _add_frame(self, form: SettingsForm, plan: InspectionPlan) -> None:
         form.add_section(tr("Part coordinates (3-2-1)"))
-        none = {"primary": tr("the camera's"), "secondary": tr("choose"), "tertiary": tr("none")}
+        none = {"primary": tr("the camera's"), "secondary": tr("choose"), "tertiary": tr("amid the second")}
         said = {
             "primary": (tr("z points out of"), tr("A plane: z is 0 on it. The camera's: none are needed.")),
             "secondary": (tr("x points out of"), tr("A second plane, or an axis to point along.")),
-            "tertiary": (tr("Origin at"), tr("A third feature that fixes y; none: amid the second.")),
+            "tertiary": (tr("Origin at"), tr("A third feature that fixes y.")),
         }
         shown = tuple(said) if self._conditions.values()["primary"] else ("primary",)
         for place in shown:
