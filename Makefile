@@ -77,7 +77,7 @@ bench: $(READY)           ## how fast it is, as ratios to OpenCV and scikit-imag
 screenshots: $(READY)     ## pictures of every page, three sizes, both themes, in ./screenshots
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
 
-pictures: $(READY)        ## the four pictures of the README
+pictures: $(READY)        ## the pictures of README and manual
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots resources/pictures --readme
 
 # LANGUAGE counts on the command line alone: in the surroundings it is the reader's own, gettext's list.

@@ -1,6 +1,6 @@
 """Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--language de].
 
-With --readme only the four that the README shows, small (make pictures). QT_SCALE_FACTOR=2 makes them at twice the
+With --readme only those that README and manual show, small (make pictures). QT_SCALE_FACTOR=2 makes them at twice the
 size, on a screen of 3840 x 2160.
 """
 
@@ -69,7 +69,7 @@ def main() -> int:
     """Write welcome and all pages of the finished sample in all sizes and themes."""
     parser = argparse.ArgumentParser(prog="python -m tests.workbench.screenshots", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=Path("screenshots"))
-    parser.add_argument("--readme", action="store_true", help="only the four that the README shows")
+    parser.add_argument("--readme", action="store_true", help="only those that README and manual show")
     parser.add_argument("--language", choices=(*languages(), PSEUDO), default="en")
     given = parser.parse_args()
     folder: Path = given.folder
@@ -214,7 +214,7 @@ def _published_study() -> str:
 
 
 def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
-    """The README's pictures: few colours are enough, and keep them small."""
+    """The pictures of README and manual: few colours are enough, and keep them small."""
     window.resize(README_SIZE)
     _open_sample(app, bench, window)
     for name in README:
