@@ -63,6 +63,20 @@ class Fan:
         """Angles between neighbouring planes, in rad; N − 1 of them."""
         return tuple(angle_between(a, b) for a, b in pairwise(self.planes))
 
+    @property
+    def angle_sds(self) -> tuple[float, ...]:
+        """Standard deviation in rad of each of `angles`, by the covariance."""
+        assert self.covariance is not None
+        pis, sds = self.pis, []
+        for k in range(len(pis) - 1):
+            lengths = np.linalg.norm(pis[k : k + 2], axis=1)
+            a, b = pis[k] / lengths[0], pis[k + 1] / lengths[1]
+            sine = np.linalg.norm(np.cross(a, b))
+            gradient = np.concatenate([-(b - a * (a @ b)) / lengths[0], -(a - b * (a @ b)) / lengths[1]]) / sine
+            block = self.covariance[3 * k : 3 * k + 6, 3 * k : 3 * k + 6]
+            sds.append(float(np.sqrt(gradient @ block @ gradient)))
+        return tuple(sds)
+
 
 def bent_pis(pis: Array, bends: Array, rays: Array) -> Array:
     """π (M, 3) of planes that meet `rays` (M, 3) where light does that is XᵀQX mm off `pis` (M, 3) at X.

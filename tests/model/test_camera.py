@@ -82,6 +82,13 @@ def test_triangulated_points_lie_on_the_light_plane_and_on_their_rays():
     assert np.allclose(points / points[:, 2:], rays)
 
 
+def test_angles_between_planes_scatter_as_the_planes_covariance_says():
+    fan = Fan(tuple(LightPlane(pi) for pi in PLANES), np.diag(np.square(np.tile([2e-6, 1e-6, 3e-6], 3))))
+    moved = np.random.default_rng(1).multivariate_normal(fan.pis.ravel(), fan.covariance, 4000).reshape(-1, 3, 3)
+    angles = [Fan(tuple(LightPlane(pi) for pi in pis)).angles for pis in moved]
+    assert fan.angle_sds == pytest.approx(np.std(angles, axis=0), rel=0.05)
+
+
 def test_the_papers_fan_is_one_pencil_with_angles_near_five_degrees():
     fan = Fan(tuple(LightPlane(pi) for pi in PLANES))
     assert np.rad2deg(fan.angles) == pytest.approx([4.929, 4.919], abs=0.001)

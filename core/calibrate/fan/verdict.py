@@ -125,27 +125,14 @@ def _onto(pi: Array, points: Array) -> Array:
     return points - np.outer(LightPlane(pi).distances(points), pi / np.linalg.norm(pi))
 
 
-def _angle_sds(free: Bundle) -> tuple[float, ...]:
-    """Standard deviation in rad of each angle between neighbouring free planes."""
-    pis = free.planes.pis
-    sds = []
-    for k in range(len(pis) - 1):
-        lengths = np.linalg.norm(pis[k : k + 2], axis=1)
-        a, b = pis[k] / lengths[0], pis[k + 1] / lengths[1]
-        sine = np.linalg.norm(np.cross(a, b))
-        gradient = np.concatenate([-(b - a * (a @ b)) / lengths[0], -(a - b * (a @ b)) / lengths[1]]) / sine
-        block = free.covariance[3 * k : 3 * k + 6, 3 * k : 3 * k + 6]
-        sds.append(float(np.sqrt(gradient @ block @ gradient)))
-    return tuple(sds)
-
-
 def _sentence(
     start: PlaneSet, tied: _Trial, axis_only: _Trial, free: Bundle, angle: float | None, gap: float, asked: bool
 ) -> Message:
     """What the comparison found and which planes are used."""
+    fan = fan_of(free.planes, free.covariance)
     angles = tuple(
         Message("fan.angle_with_sd", "{angle:.3f}° ± {sd:.3f}°", angle=found, sd=sd)
-        for found, sd in zip(np.degrees(fan_of(free.planes).angles), np.degrees(_angle_sds(free)), strict=True)
+        for found, sd in zip(np.degrees(fan.angles), np.degrees(fan.angle_sds), strict=True)
     )
     if angle is None:
         wanted = Message("fan.one_axis", "one common axis")

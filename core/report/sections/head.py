@@ -66,7 +66,10 @@ def _job(look: ReportLook, content: ReportContent) -> dict[str, str]:
 def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
     """What names the report and all it rests on."""
     words = look.words
-    marks = {mark.of: f"{mark.id}, {words('age')} {age_words(look, mark, content)}" for mark in content.calibrations}
+    marks = {
+        mark.of: words("{id}, age {age}", id=mark.id, age=age_words(look, mark, content))
+        for mark in content.calibrations
+    }
     return {
         words("Report"): content.report_id,
         words("Date and time"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),

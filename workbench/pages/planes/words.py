@@ -77,9 +77,10 @@ def angle_rows(calibration: FanCalibration | None) -> list[ValueRow]:
         return []
     suits: Level = "" if calibration.constraint_suits is None else "good" if calibration.constraint_suits else "warn"
     rows: list[ValueRow] = []
-    for line, (held, free) in enumerate(zip(calibration.angles, calibration.free_angles, strict=True), start=1):
+    angles = zip(calibration.angles, calibration.free_angles, calibration.free.angle_sds, strict=True)
+    for line, (held, free, sd) in enumerate(angles, start=1):
         name = tr("Angle {line}–{next}", line=line, next=line + 1)
-        text = tr("{held} held, {free} free", held=degrees(held), free=degrees(free))
+        text = tr("{held} held, {free} ± {sd} free", held=degrees(held), free=degrees(free), sd=degrees(sd))
         tip = tr("Between neighbouring planes: held to one pencil, and each plane calibrated on its own")
         rows.append((name, text, tip, suits))
     if not math.isnan(calibration.pencil_gap_mm):
