@@ -326,6 +326,29 @@ def test_the_buttons_stand_below_the_list_however_high_the_page_is_made(page, pr
         assert panel.list.geometry().bottom() < panel.measure.geometry().top()
 
 
+def test_a_page_too_low_for_the_usual_rows_shows_fewer(page, presenter):
+    presenter.feature.add("plane")
+    page.refresh()
+    heights = []
+    for height in (410, 380, 300, 200):
+        page.features.fit(height)
+        heights.append(page.features.list.height())
+    assert heights[0] > heights[1] > heights[2] == heights[3] > 3 * page.features.list.sizeHintForRow(0)
+
+
+def test_the_chosen_feature_stays_in_sight_as_the_list_becomes_lower(page, features, presenter, qtbot):
+    for _ in range(12):
+        presenter.feature.add("plane")
+    page.refresh()
+    page.show()
+    rows = page.features.list
+    page.features.fit(3000)
+    features.choose(features.plan.names[10])
+    page.refresh()
+    page.features.fit(600)
+    qtbot.waitUntil(lambda: rows.viewport().rect().contains(rows.visualItemRect(rows.currentItem()).center()))
+
+
 def test_with_no_feature_chosen_none_looks_chosen(page, features, presenter):
     presenter.feature.add("plane")
     page.refreshing.at_once()

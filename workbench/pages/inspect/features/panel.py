@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QAction, QKeySequence, QShortcut
+from PySide6.QtGui import QAction, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -39,11 +40,12 @@ from workbench.views.lists.value_rows import VERDICT_ICONS
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
 
-ROWS, MOST_ROWS = 6, 16
+FEWEST_ROWS, ROWS, MOST_ROWS = 3, 6, 16
 """The list shows so many rows, on a high page more, others are scrolled: it is always in sight, and below it the form
 of a feature."""
-LOW_PAGE, SHARE = 700, 0.45
-"""Pixels of a page up to which there are the fewest rows; beyond, the list takes this share."""
+LOWEST_PAGE, LOW_PAGE, SHARE = 410, 700, 0.45
+"""Pixels of a page from which on and up to which there are so many rows as usual: a lower page is short of what is
+missing; of what is beyond, the list takes this share."""
 
 
 class FeaturesPanel(QWidget):
@@ -70,7 +72,7 @@ class FeaturesPanel(QWidget):
         self._page_height = LOW_PAGE
         self._frames: dict[str, Frame] = {}
         self._datums: dict[str, Frame] = {}
-        self.list, self.add, self.measure = QTreeWidget(), QPushButton(), QPushButton()
+        self.list, self.add, self.measure = _List(), QPushButton(), QPushButton()
         self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
         self.state, self.form = muted(), FeatureForm(features, edit, scan)
@@ -159,8 +161,9 @@ class FeaturesPanel(QWidget):
         if row <= 0:
             return
         header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
-        rows = ROWS + round(SHARE * max(self._page_height - LOW_PAGE, 0) / row)
-        self.list.setFixedHeight(header + frame + min(rows, MOST_ROWS) * row)
+        missing, beyond = max(LOWEST_PAGE - self._page_height, 0), max(self._page_height - LOW_PAGE, 0)
+        rows = ROWS - math.ceil(missing / row) + round(SHARE * beyond / row)
+        self.list.setFixedHeight(header + frame + min(max(rows, FEWEST_ROWS), MOST_ROWS) * row)
 
     def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
         outdated = self._features.outdated(name)
@@ -288,6 +291,15 @@ class FeaturesPanel(QWidget):
     def _remove(self) -> None:
         if self._features.chosen:
             self._features.remove(self._features.chosen)
+
+
+class _List(QTreeWidget):
+    """Keeps the chosen row in sight, however high it is made."""
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self.currentItem() is not None:
+            self.scrollToItem(self.currentItem())
 
 
 class TemplatesButton(QPushButton):
