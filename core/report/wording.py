@@ -353,8 +353,8 @@ def target_in_words(target: Target, words: Words = ENGLISH) -> str:
     """'checkerboard, 17 × 12 inner corners, 10 mm'."""
     if isinstance(target, Checkerboard):
         corners = words("inner corners")
-        said = f"{target.columns} × {target.rows} {corners}, {words.general(target.square_mm)} mm"
-        return f"{words('checkerboard')}, {said}"
+        size = f"{words.general(target.square_mm)} mm"
+        return words.joined([words("checkerboard"), f"{target.columns} × {target.rows} {corners}", size])
     if isinstance(target, Charuco):
         return words(
             "ChArUco board, {columns} × {rows} squares of {square} mm, markers {marker} mm",
@@ -365,5 +365,6 @@ def target_in_words(target: Target, words: Words = ENGLISH) -> str:
         )
     if isinstance(target, CircleGrid):
         kind = words("asymmetric circle grid" if target.asymmetric else "circle grid")
-        return f"{kind}, {target.columns} × {target.rows}, {words('pitch')} {words.general(target.pitch_mm)} mm"
-    return f"{words('black square')}, {words('side')} {words.general(target.side_mm)} mm"
+        pitch = f"{words('pitch')} {words.general(target.pitch_mm)} mm"
+        return words.joined([kind, f"{target.columns} × {target.rows}", pitch])
+    return words.joined([words("black square"), f"{words('side')} {words.general(target.side_mm)} mm"])

@@ -116,7 +116,7 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
         said += words(", {first} to {last}", first=used[0], last=used[-1])
     if used and len(used) == len(content.frames):
         said += words("; none left out")
-    parts: list[Flowable] = [look.text(f"{said}.", "small")]
+    parts: list[Flowable] = [look.text(words("{said}.", said=said), "small")]
     left_out = content.frames_left_out + left_out_of_calibration(content)
     if left_out:
         parts += [Spacer(0, 1.5 * mm), *left_out_table(look, left_out, TEXT_WIDTH, limits.reasons, limits.names)]
