@@ -298,8 +298,7 @@ class _List(QTreeWidget):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        if self.currentItem() is not None:
-            self.scrollToItem(self.currentItem())
+        self.scrollTo(self.currentIndex())  # an index of nothing moves nothing
 
 
 class TemplatesButton(QPushButton):
