@@ -1,6 +1,7 @@
 """What the user adds to a report and leaves out of it: names, temperatures, remarks, repeats, sections, paper."""
 
 import io
+import re
 from dataclasses import replace
 
 import numpy as np
@@ -124,6 +125,11 @@ def test_one_repeat_has_no_spread_and_no_chart(quick):
     assert "1 scan of the part" in text
     assert "in the order of measuring" not in text
     assert "standard deviation, mm largest error, mm 49.991 −0.009 0.009 unknown 0.009" in text
+
+
+def test_the_calibrations_of_a_repeat_are_parted_between_camera_and_fan(quick):
+    one = replace(*repeats(1), calibration_id="5a3fa90b859f-5dd1523170c1")
+    assert re.search(r"5a3fa90b859f-\s+5dd1523170c1", words(build_report(replace(quick, repeats=(one,)))))
 
 
 def test_many_repeats_with_long_names_are_cut_in_number_and_not_in_width(quick):

@@ -74,7 +74,7 @@ def camera_table(look: ReportLook, calibration: CameraCalibration, width: float)
         rows.append(
             [look.text(label, "small"), look.text(words.fixed(value, decimals), "number"), look.text(spread, "number")]
         )
-    return ruled_table(rows, [0.36 * width, 0.32 * width, 0.32 * width])
+    return ruled_table(rows, [0.34 * width, 0.28 * width, 0.38 * width])
 
 
 def camera_facts(look: ReportLook, calibration: CameraCalibration) -> dict[str, str]:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import re
+
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 
 from core.messages import label, plural_message
 from core.report.content import RepeatLine, ReportContent
-from core.report.layout.blocks import heads, more_line, ruled_table
+from core.report.layout.blocks import Cell, heads, more_line, ruled_table
 from core.report.layout.style import SANS, ReportLook, words_width
 from core.report.wording import decimals_of
 from core.study.repeats import RepeatStatistics
@@ -66,14 +68,16 @@ def _statistics_table(look: ReportLook, statistics: RepeatStatistics, width: flo
 
 def repeats_table(look: ReportLook, content: ReportContent, most: int) -> list[Flowable]:
     """Every repeat in a row, at most `most` of them."""
-    rows: list[list[Flowable]] = [
+    rows: list[list[Cell]] = [
         heads(
             look, "", "Scan", "measured at", "thickness, mm", "U, mm", "k", "error, mm", "calibration", numbers=NUMERIC
         )
     ]
     for number, repeat in enumerate(content.repeats[:most], start=1):
         cells = (f"{number}", *_cells(look, repeat, content.nominal_mm))
-        rows.append([look.text(cell, "number" if place in NUMERIC else "small") for place, cell in enumerate(cells)])
+        row = [look.text(cell, "number" if place in NUMERIC else "small") for place, cell in enumerate(cells)]
+        camera_and_fan = re.split("(?<=-)", repeat.calibration_id)  # a line each: together too wide
+        rows.append([*row, [look.text(one, "small") for one in camera_and_fan]])
     table = ruled_table(rows, WIDTHS)
     table.setStyle([("LEFTPADDING", (7, 0), (7, -1), 4)])
     return [table, *more_line(look, len(content.repeats) - most, label("the project"))]
@@ -89,5 +93,4 @@ def _cells(look: ReportLook, repeat: RepeatLine, nominal_mm: float | None) -> tu
         fixed(repeat.U_mm, decimals),
         look.words.general(repeat.k),
         error,
-        repeat.calibration_id,
     )
