@@ -95,6 +95,15 @@ def test_all_of_its_windows_go_with_it_and_not_when_garbage_is_collected(console
     assert not left, left
 
 
+def test_a_line_that_begins_before_the_answer_to_the_last_has_come_is_being_calculated(console: ConsoleWindow) -> None:
+    console.console.executing.emit("first")
+    console.console.executing.emit("second")
+    console.console.executed.emit({"content": {}})
+    assert console.interrupt.isEnabled()
+    console.console.executed.emit({"content": {}})
+    assert not console.interrupt.isEnabled()
+
+
 @pytest.mark.parametrize("code", ["for i in range(10**12): print(i)", "import time; time.sleep(1000)"])
 def test_a_calculation_neither_blocks_the_window_nor_cannot_be_stopped(
     technician: Technician, console: ConsoleWindow, code: str

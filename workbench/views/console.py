@@ -72,7 +72,7 @@ class ConsoleWindow(QWidget):
         self.setWindowTitle(tr("Python console: {project}", project=folder.name))
         resize_on_screen(self, *SIZE)
         self._folder, self._save = folder, save
-        self._busy, self._outdated, self._why_ended = False, False, ""
+        self._running, self._outdated, self._why_ended = 0, False, ""
         self._imports = iter(LIBRARIES)
         self._next = QTimer(self, singleShot=True, interval=SOON_MS)
         self._next.timeout.connect(self._import)
@@ -157,7 +157,7 @@ class ConsoleWindow(QWidget):
         self._save()
         self.kernel = Kernel(self._folder, _colours(), self.parent() or self)
         self.kernel.gone.connect(self._gone)
-        self._busy, self._why_ended = False, ""
+        self._running, self._why_ended = 0, ""
         self.console.setEnabled(False)
         self.console.kernel_client = self.kernel.client
         self.kernel.client.shell_channel.message_received.connect(self._answered)
@@ -177,7 +177,7 @@ class ConsoleWindow(QWidget):
 
     def _gone(self, why: str) -> None:
         self.console.kernel_client = None
-        self.kernel, self._why_ended, self._busy = None, why, False
+        self.kernel, self._why_ended, self._running = None, why, 0
         self.console.setEnabled(False)
         self._show_state()
 
@@ -191,11 +191,11 @@ class ConsoleWindow(QWidget):
         self.console.execute(OPEN_ANEW)
 
     def _begun(self, *_: Any) -> None:
-        self._busy = True
+        self._running += 1  # the next may begin before the answer to the one before has come
         self._show_state()
 
     def _done(self, *_: Any) -> None:
-        self._busy = False
+        self._running = max(self._running - 1, 0)
         self._show_state()
 
     def _show_state(self) -> None:
@@ -213,10 +213,10 @@ class ConsoleWindow(QWidget):
             self.state.setText(tr("What is read here is what is on the disk; nothing is written to the project."))
         idle = tr("Nothing is being calculated.")
         ended = tr("The console's process has ended.") if self._why_ended else ""
-        busy = tr("Wait for the calculation, or stop it.") if self._busy else ""
+        busy = tr("Wait for the calculation, or stop it.") if self._running else ""
         same = "" if self._outdated else tr("The project has not changed since it was opened here.")
         enable(self.anew, starts or ended or same or busy, tr("Read the project as it is on the disk now"))
-        enable(self.interrupt, starts or ended or ("" if self._busy else idle), tr("Stop the calculation"))
+        enable(self.interrupt, starts or ended or ("" if self._running else idle), tr("Stop the calculation"))
         enable(self.restart, starts, tr("End the console's process and start another; its variables are lost"))
 
 
