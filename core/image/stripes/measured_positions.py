@@ -18,7 +18,6 @@ from core.image.stripes.likelihood.influence import DEGREE
 from core.image.stripes.likelihood.measured_section import (
     BINS,
     GROUPS,
-    Section,
     Surroundings,
     add_departures,
     departs,
@@ -58,7 +57,7 @@ class Lit:
         ]
 
 
-def by_measured_section(lit: Lit, lines: list[Refined], skewed: bool) -> list[Refined] | None:
+def by_measured_section(lit: Lit, lines: list[Refined]) -> list[Refined] | None:
     """Place stripes by their measured section; None where a Gaussian suits or no other one is known well.
 
     Parameters
@@ -66,18 +65,15 @@ def by_measured_section(lit: Lit, lines: list[Refined], skewed: bool) -> list[Re
     lit
         The picture and its stripes.
     lines
-        Their places so far, to be kept if this finds nothing better: by Steger if `skewed`, by the Gaussian likelihood
-        if not.
-    skewed
-        Whether these two disagree: the section then is measured as it is, otherwise as the mean of its two sides.
+        Their places by the Gaussian likelihood, to be kept if this finds nothing better.
     """
     if not lines or lit.noise.compression.grey > 0:
         return None  # what compression leaves of a section is another in each of its blocks
     curves = [line.run for line in lines]
     count = sum(map(len, curves))
-    if not skewed and not departs(_departures(lit, curves, max(_LEAST_APART, count // _LOOKED_AT))):
+    if not departs(_departures(lit, curves, max(_LEAST_APART, count // _LOOKED_AT))):
         return None
-    around, even = _surroundings(lit), not skewed
+    around = _surroundings(lit)
     height = _median_of([stripe.sections.height for stripe in lit.stripes])
     if height <= 0:
         return None
@@ -88,18 +84,15 @@ def by_measured_section(lit: Lit, lines: list[Refined], skewed: bool) -> list[Re
             for line, stripe in zip(found, lit.stripes, strict=True)
         ]
         groups = _departures(lit, curves, 1)
-        if section is None and not _is_worth_it(groups, around, height, even):
+        if section is None and not _is_worth_it(groups, around, height):
             return None
-        section = section_from(groups.sum(axis=0), around, even)
+        section = section_from(groups.sum(axis=0), around)
         if section is None:
             return None
-        turned = _turned(curves)
-        stripes = [
-            stripe._replace(curve=curve, measured=section, turned=flip)
-            for stripe, curve, flip in zip(lit.stripes, curves, turned, strict=True)
-        ]
-        found = lit.refined(stripes)
-    return found if even or section is None else [_as_sure_as_its_crest(line, section, height) for line in found]
+        found = lit.refined(
+            [stripe._replace(curve=curve, measured=section) for stripe, curve in zip(lit.stripes, curves, strict=True)]
+        )
+    return found
 
 
 def _surroundings(lit: Lit) -> Surroundings:
@@ -117,38 +110,22 @@ def _departures(lit: Lit, curves: list[Array], every: int) -> Array:
     """What stripes along these curves (N, 5) depart from a Gaussian, (GROUPS, 3, BINS), by every so many cuts."""
     sums, first, total = np.zeros((GROUPS, 3, BINS)), 0, sum(map(len, curves))
     scatter = (lit.noise.read_grey**2, lit.noise.grey_per_electron)
-    for stripe, curve, flip in zip(lit.stripes, curves, _turned(curves), strict=True):
+    for stripe, curve in zip(lit.stripes, curves, strict=True):
         figures = np.column_stack(stripe.sections)
         light = Light(figures, np.zeros(len(curve), np.int64), np.zeros((1, DEGREE + 1)), scatter)
         cuts = cuts_of(curve, arc_length(curve))
-        part = (first, total, every, -1 if flip else 1)
+        part = (first, total, every)
         add_departures(lit.picture, lit.state, curve, cuts, stripe.clear, light, part, sums)
         first += len(curve)
     return sums
 
 
-def _turned(curves: list[Array]) -> list[bool]:
-    """Which curves' normals are on the whole against the longest one's: a laser's light is one-sided alike."""
-    if len(curves) == 1:
-        return [False]
-    normals = [curve[::_SAMPLE, 2:4].sum(axis=0) for curve in curves]
-    longest = max(normals, key=lambda normal: float(normal @ normal))
-    return [bool(normal @ longest < 0) for normal in normals]
-
-
-def _is_worth_it(groups: Array, around: Surroundings, height: float, even: bool) -> bool:
+def _is_worth_it(groups: Array, around: Surroundings, height: float) -> bool:
     """Whether the section of each half of the stripes makes the places of the other half scatter less."""
-    halves = [section_from(groups[k::2].sum(axis=0), around, even) for k in range(2)]
-    gain = 1.0
+    halves = [section_from(groups[k::2].sum(axis=0), around) for k in range(2)]
+    usual, gain = gaussian_section(around).weights(height).solved, 1.0
     for mine, other in (halves, halves[::-1]):
         if mine is None or other is None:
             return False
-        usual = gaussian_section(around).weights(height).solved if even else other.filtered_weights
         gain *= other.variance_by(usual, height) / other.variance_by(mine.weights(height).solved, height)
     return gain > _WORTH**2
-
-
-def _as_sure_as_its_crest(line: Refined, section: Section, height: float) -> Refined:
-    """The line, its points sharing their errors over as many px as make its mean no surer than the section's crest."""
-    times = section.variance_by(section.filtered_weights, height) / section.weights(height).variance
-    return line._replace(correlation_px=line.correlation_px * max(times, 1.0))

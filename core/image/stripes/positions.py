@@ -94,12 +94,11 @@ def estimate_positions(
     stripes = [StripeModel(*four) for four in zip(curves, weights, clear, sections, strict=True)]
     lit = Lit(picture, state, stripes, noise, speckle, g)
     refined = lit.refined(stripes)
-    skewed = _apart_px(pieces, lines, refined, g) > _LARGEST_DISAGREEMENT_PX
-    better = by_measured_section(lit, lines if skewed else refined, skewed)
-    if better is not None and _apart_px(pieces, lines, better, g) <= _LARGEST_DISAGREEMENT_PX:
-        refined = better
-    elif skewed:
+    if _apart_px(pieces, lines, refined, g) > _LARGEST_DISAGREEMENT_PX:
         return lines
+    measured = by_measured_section(lit, refined)
+    if measured is not None and _apart_px(pieces, lines, measured, g) <= _LARGEST_DISAGREEMENT_PX:
+        refined = measured
     return [_joined(*three) for three in zip(pieces, lines, refined, strict=True)]
 
 

@@ -91,8 +91,8 @@ class StripeModel(NamedTuple):
         (N,) True where no other light reaches into the cuts; the others are not used.
     sections
         The light's cross-sections.
-    measured, turned
-        Their shape where that is no Gaussian, and whether its d is negative towards the curve's normal.
+    measured
+        Their shape where that is no Gaussian.
     """
 
     curve: Array
@@ -100,7 +100,6 @@ class StripeModel(NamedTuple):
     clear: NDArray[np.bool_]
     sections: Sections
     measured: Section | None = None
-    turned: bool = False
 
 
 def refine(
@@ -124,16 +123,16 @@ def refine(
     filter_px
         σ in px of the window along the stripe.
     """
-    curve, weight, clear, sections, measured, turned = stripe
+    curve, weight, clear, sections, measured = stripe
     figures, scatter = np.column_stack(sections), (noise.read_grey**2, noise.grey_per_electron)
     if measured is None:
         kind, weights, shares = _weights(sections, noise, speckle)
         light = Light(figures, kind, weights, scatter)
     else:
         kind, solved = measured.weights_along(sections.height)
-        weights = np.stack([one.table[::-1] * -1 if turned else one.table for one in solved])
+        weights = np.stack([one.table for one in solved])
         shares = np.array([one.speckle_share for one in solved])
-        light = Light(figures, kind, weights, scatter, measured.tables(turned))
+        light = Light(figures, kind, weights, scatter, measured.tables)
     curve, variance, support = _likeliest(picture, state, curve, weight, clear, light, filter_px)
     # grains reach further along the stripe than the pixel: the window averages over fewer of them than of pixels
     grown = math.sqrt(1 + median(shares[kind[::_SECTION_SAMPLE]]) * (speckle.grain_px / (2 * filter_px)) ** 2)
