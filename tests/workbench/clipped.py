@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from PySide6.QtCore import QPoint, QRect, Qt
+from PySide6.QtCore import QCoreApplication, QEvent, QPoint, QRect, Qt
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractItemView,
@@ -28,6 +28,8 @@ SLACK = 1
 
 def clipped(window: QWidget) -> dict[str, str]:
     """Every text that is seen in part only, and why; a text cut with an ellipsis is seen by its tip."""
+    # A text told in this very turn of the event loop has its place when what Qt has posted to the layouts is done.
+    QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest.value)
     found = {}
     for widget in window.findChildren(QWidget):
         if widget.isVisible():

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from PySide6.QtWidgets import QApplication
+
+from tests.workbench.clipped import clipped
 from workbench.main_window import MainWindow
 from workbench.work import jobs
 from workbench.work.jobs import Job
@@ -36,3 +39,14 @@ def test_stages_that_are_done_without_this_time_stay_remembered(window: MainWind
     settings.keep_stage_seconds("Scan", {"frames": 50.0, "network": 3.0})
     settings.keep_stage_seconds("Scan", {"network": 4.0})
     assert settings.stage_seconds("Scan") == {"frames": 50.0, "network": 4.0}
+
+
+def test_the_time_left_has_its_place_as_soon_as_it_is_told(window: MainWindow, qapp: QApplication) -> None:
+    window.show()
+    task = Task(window.bench.measuring, window, 1, jobs.MEASURE_SCAN, "Scan")
+    window.bench.measuring.task_started.emit(task)
+    qapp.processEvents()  # its place is that of no words yet
+    task.progressed.emit("reference", 0, 1)
+    cut = clipped(window.task_bar)
+    window.bench.measuring.task_ended.emit(task)
+    assert cut == {}
