@@ -29,7 +29,7 @@ class Outline:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Ball:
+class SphereShape:
     """A sphere: its centre (3,) and radius."""
 
     name: str
@@ -38,7 +38,7 @@ class Ball:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Tube:
+class CylinderShape:
     """A cylinder as far as it was measured: both ends (2, 3) of its axis, and its radius."""
 
     name: str
@@ -54,14 +54,14 @@ class Curve:
     places: Array
 
 
-Drawn: TypeAlias = Outline | Ball | Tube | Curve
+Shape: TypeAlias = Outline | SphereShape | CylinderShape | Curve
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Geometry:
     """All that can be drawn, in part coordinates if `of_part`, else in the camera's."""
 
-    drawn: tuple[Drawn, ...]
+    drawn: tuple[Shape, ...]
     of_part: bool
 
 
@@ -81,10 +81,10 @@ def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Ou
     return made
 
 
-def tube(name: str, centre: Array, direction: Array, radius: float, points: Array) -> Tube:
+def cylinder(name: str, centre: Array, direction: Array, radius: float, points: Array) -> CylinderShape:
     """A cylinder from the first to the last of its points (n, 3), n ≥ 1, along the axis."""
     along = (points - centre) @ direction
-    return Tube(name, centre + np.outer([along.min(), along.max()], direction), radius)
+    return CylinderShape(name, centre + np.outer([along.min(), along.max()], direction), radius)
 
 
 def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float) -> list[Curve]:
@@ -95,17 +95,17 @@ def curves(name: str, origin: Array, axes: Array, profile: Array, step_mm: float
     return [Curve(name, piece) for piece in np.split(places, ends) if len(piece) > 1]
 
 
-def moved(drawn: Sequence[Drawn], pose: Pose) -> list[Drawn]:
+def moved(drawn: Sequence[Shape], pose: Pose) -> list[Shape]:
     """The same after a motion."""
-    made: list[Drawn] = []
+    made: list[Shape] = []
     for one in drawn:
         match one:
             case Outline():
                 made.append(Outline(one.name, pose.apply(one.corners)))
-            case Ball():
-                made.append(Ball(one.name, pose.apply(one.centre[None])[0], one.radius))
-            case Tube():
-                made.append(Tube(one.name, pose.apply(one.ends), one.radius))
+            case SphereShape():
+                made.append(SphereShape(one.name, pose.apply(one.centre[None])[0], one.radius))
+            case CylinderShape():
+                made.append(CylinderShape(one.name, pose.apply(one.ends), one.radius))
             case Curve():
                 made.append(Curve(one.name, pose.apply(one.places)))
     return made

@@ -37,12 +37,12 @@ _LONGEST_REASON = 200
 """Characters of another library's words."""
 
 
-Told = tuple[int, SetProgress | SetResult | None]
+SetUpdate = tuple[int, SetProgress | SetResult | None]
 """The place of a set, and how far it is or what became of it; None when it begins."""
-Watch = Callable[[Told], None]
+Watch = Callable[[SetUpdate], None]
 
 
-def unwatched(told: Told) -> None:
+def unwatched(told: SetUpdate) -> None:
     """Take it without a word: the default."""
 
 

@@ -43,7 +43,7 @@ ENDED = "ProcessEnded"
 """The kind of failure of a job whose process is gone."""
 
 
-class WindowGone(Exception):
+class WindowClosed(Exception):
     """The window has ended; raised in the job, so that it ends, too, and keeps what it has recorded."""
 
 
@@ -107,7 +107,7 @@ class Channel:
 
     def _check(self) -> None:
         if self.gone:
-            raise WindowGone
+            raise WindowClosed
 
 
 class Worker:
@@ -165,7 +165,7 @@ class Worker:
             while left:
                 left = left[os.write(self._writing, left) :]
         except OSError as error:
-            raise WindowGone from error
+            raise WindowClosed from error
 
     def _run(self, channel: Channel, body: bytes) -> None:
         offered = {
@@ -184,13 +184,13 @@ class Worker:
             kind, answer = Kind.CANCELLED, None
         except InputError as error:
             kind, answer = Kind.FAILED, error
-        except WindowGone:
+        except WindowClosed:
             raise
         except Exception as error:  # noqa: BLE001  whatever went wrong is told in the window, and the lane goes on
             kind, answer = Kind.FAILED, Failure.of(error)
         try:
             self._send(kind, channel.number, answer)
-        except WindowGone:
+        except WindowClosed:
             raise
         except Exception as error:  # noqa: BLE001  a result that cannot be sent is a failure like any other
             self._send(Kind.FAILED, channel.number, Failure.of(error))
@@ -216,7 +216,7 @@ def main(arguments: Sequence[str]) -> None:
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # the window decides
     sys.setswitchinterval(SWITCH_S)
     try:
-        with suppress(WindowGone, EOFError):
+        with suppress(WindowClosed, EOFError):
             Worker(*_pipes(), folder).serve()
     finally:
         shutil.rmtree(folder, ignore_errors=True)  # a window that was killed could not

@@ -18,12 +18,12 @@ from ezdxf.filemanagement import new
 from ezdxf.math import OCS
 
 from core.files.atomic import write_bytes
-from core.inspect.geometry import Ball, Curve, Drawn, Geometry, Outline, Tube
+from core.inspect.geometry import Curve, CylinderShape, Geometry, Outline, Shape, SphereShape
 from core.model.arrays import Array
 
 VERSION = "R2010"
 _FORBIDDEN = re.compile(r'[<>/\\":;?*|=`,]')
-_COLOURS = {Outline: 5, Ball: 3, Tube: 3, Curve: 1}
+_COLOURS = {Outline: 5, SphereShape: 3, CylinderShape: 3, Curve: 1}
 """Of the layers, by what is drawn first in them: AutoCAD's blue, green and red."""
 
 
@@ -52,15 +52,15 @@ def layer_name(name: str) -> str:
     return _FORBIDDEN.sub("_", name).strip() or "_"
 
 
-def _draw(space: Any, one: Drawn, looks: dict[str, str]) -> None:
+def _draw(space: Any, one: Shape, looks: dict[str, str]) -> None:
     match one:
         case Outline():
             space.add_polyline3d(one.corners.tolist(), close=True, dxfattribs=looks)
-        case Ball():
+        case SphereShape():
             space.add_point(one.centre.tolist(), dxfattribs=looks)
             for axis in np.eye(3):
                 _circle(space, one.centre, axis, one.radius, looks)
-        case Tube():
+        case CylinderShape():
             space.add_line(*one.ends.tolist(), dxfattribs=looks)
             axis = one.ends[1] - one.ends[0]
             length = float(np.linalg.norm(axis))

@@ -12,7 +12,7 @@ from core.files.complaints import checked
 from core.files.reading import read_json
 from core.files.results.inspection_file import AGAIN, read_inspection
 from core.files.tables import Finite, ResultFile, Row3
-from core.inspect.geometry import Ball, Drawn, Geometry, curves, moved, outlines, tube
+from core.inspect.geometry import Geometry, Shape, SphereShape, curves, cylinder, moved, outlines
 from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
@@ -76,7 +76,7 @@ def read_geometry(inspection: Path, points: Array) -> Geometry:
         raise InputError(
             Message("file.other_cloud", "is of another scan than the cloud beside it"), where=inspection, todo=AGAIN
         )
-    drawn: list[Drawn] = []
+    drawn: list[Shape] = []
     for one in tables.features:
         used = points[file.points.get(one.name, np.zeros(0, dtype=np.int64))]
         if one.shape is not None and len(used):
@@ -115,11 +115,11 @@ def read_part_frame(inspection: Path) -> Pose | None:
     return None if found is None else found.pose()
 
 
-def _shape(name: str, shape: _Shape, used: Array) -> list[Drawn]:
+def _shape(name: str, shape: _Shape, used: Array) -> list[Shape]:
     if shape.normal is not None and shape.centres:
         return [*outlines(name, np.array(shape.normal), np.array(shape.centres), used)]
     if shape.centre is None or shape.radius_mm is None:
         return []
     if shape.direction is None:
-        return [Ball(name, np.array(shape.centre), shape.radius_mm)]
-    return [tube(name, np.array(shape.centre), np.array(shape.direction), shape.radius_mm, used)]
+        return [SphereShape(name, np.array(shape.centre), shape.radius_mm)]
+    return [cylinder(name, np.array(shape.centre), np.array(shape.direction), shape.radius_mm, used)]

@@ -143,7 +143,7 @@ def _list_simulated() -> tuple[SourceInfo, ...]:
     things = {
         "": Message("source.gauge_block", "Gauge block of 50 mm"),
         'object = "steps"': Message("source.steps", "Block with steps of 40 to 70 mm"),
-        'object = "sphere"': Message("source.ball", "Ball of 50 mm"),
+        'object = "sphere"': Message("source.sphere", "Sphere of 50 mm"),
         'object = "mask"': Message("source.mask", "Mask of a face"),
     }
     return tuple(SourceInfo(SourceChoice("simulated", text), thing, size) for text, thing in things.items())

@@ -11,7 +11,7 @@ from core.files.exchange.dxf import layer_name, write_dxf
 from core.files.results.geometry_file import read_geometry
 from core.files.results.inspection_file import write_inspection
 from core.inspect.evaluate import evaluate
-from core.inspect.geometry import Ball, Curve, Geometry, Outline, Tube, curves, outlines, tube
+from core.inspect.geometry import Curve, CylinderShape, Geometry, Outline, SphereShape, curves, cylinder, outlines
 from core.inspect.plan.feature_spec import FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.model import Pose
@@ -22,8 +22,8 @@ AXIS = np.array([1.0, 2.0, 2.0]) / 3
 EVERY = Geometry(
     (
         Outline("top: ü", SQUARE),
-        Ball("ball", np.array([1.0, 2, 3]), 12.5),
-        Tube("bore", np.array([[4.0, 5, 6], [4, 5, 6] + 30 * AXIS]), 8.0),
+        SphereShape("ball", np.array([1.0, 2, 3]), 12.5),
+        CylinderShape("bore", np.array([[4.0, 5, 6], [4, 5, 6] + 30 * AXIS]), 8.0),
         Curve("cut A", np.array([[0.0, 0, 0], [1, 0, 0.5], [2, 0, 0.25]])),
     ),
     of_part=True,
@@ -77,7 +77,7 @@ def test_outlines_tubes_and_curves_are_where_their_points_are():
     assert np.allclose(low.corners[:, 2], 0) and np.allclose(high.corners[:, 2], 8)
     assert np.ptp(low.corners, axis=0)[:2] == pytest.approx([10, 20], abs=0.5)
     assert outlines("line", np.array([0.0, 0, 1]), np.zeros((1, 3)), np.outer(np.arange(5.0), [1, 0, 0])) == []
-    found = tube("bore", np.zeros(3), np.array([0.0, 0, 1]), 5.0, np.array([[5.0, 0, -2], [0, 5, 7]]))
+    found = cylinder("bore", np.zeros(3), np.array([0.0, 0, 1]), 5.0, np.array([[5.0, 0, -2], [0, 5, 7]]))
     assert np.allclose(found.ends, [[0, 0, -2], [0, 0, 7]])
     position = np.concatenate([np.arange(0, 10, 0.1), np.arange(30, 40, 0.1)])
     profile = np.column_stack([position, np.full(len(position), 2.0)])

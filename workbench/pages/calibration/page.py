@@ -22,7 +22,7 @@ from workbench.pages.calibration.work import CalibrationWork
 from workbench.pages.step_page import StepPage
 from workbench.pages.words import length
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
-from workbench.views.forms.source_chooser import SourceChooser, WayOn
+from workbench.views.forms.source_chooser import NextAction, SourceChooser
 from workbench.views.layouts import Tabs
 from workbench.views.lists.view_list import ListRow, ViewList
 from workbench.views.plots.bars import Bar, BarsWithThreshold
@@ -123,8 +123,8 @@ class CalibrationPage(StepPage):
         self.bars.bar_clicked.connect(p.choose)
         p.model.opened.connect(self._opened)
 
-    def _way_on(self) -> WayOn:
-        return self.source.way_on(self.presenter.live)
+    def _next_action(self) -> NextAction:
+        return self.source.next_action(self.presenter.live)
 
     def _opened(self) -> None:
         self._folded = ""

@@ -13,7 +13,7 @@ from core.model.arrays import Array
 from core.pipeline.live.events import CameraDetail, LiveView, PlanesDetail
 from workbench.language import text_of, tr
 from workbench.views.colours import CORNER, WANTED
-from workbench.views.forms.source_chooser import WayOn
+from workbench.views.forms.source_chooser import NextAction
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column
 from workbench.views.plots.meters import HintBar
@@ -28,9 +28,9 @@ class PictureTab(QWidget):
     """What a live picture comes with once it has been looked at."""
     CORNER_SIZE: ClassVar[int]
 
-    def __init__(self, presenter: Any, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
+    def __init__(self, presenter: Any, next_action: Callable[[], NextAction], parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._presenter, self._way_on = presenter, way_on
+        self._presenter, self._next_action = presenter, next_action
         self._name = ""
         """Of the picture that is shown."""
         self.image, self.line, self.hints = ImageView(), QLabel(), HintBar()
@@ -90,7 +90,7 @@ class PictureTab(QWidget):
     def _empty(self) -> None:
         self._name = ""
         self.line.setText("")
-        self.image.clear(self._invitation(), *self._way_on())
+        self.image.clear(self._invitation(), *self._next_action())
 
     def _show_picture(self, name: str, picture: Any) -> None:
         if self._presenter.live.running:

@@ -27,7 +27,7 @@ class CameraPage(CalibrationPage):
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.picture, self.coverage = ViewTab(presenter, self._way_on), CoverageTab(presenter)
+        self.picture, self.coverage = ViewTab(presenter, self._next_action), CoverageTab(presenter)
         self.residuals, self.expected = ResidualTab(presenter), ExpectedTab(presenter)
         self.history = CameraHistoryTab(presenter)
         self.card, self.result = CameraCard(presenter), CameraResult(presenter)

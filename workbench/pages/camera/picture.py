@@ -14,7 +14,7 @@ from workbench.pages.calibration.picture import PictureTab
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views.colours import CORNER_LEFT_OUT
-from workbench.views.forms.source_chooser import WayOn
+from workbench.views.forms.source_chooser import NextAction
 
 FACTORS = (1, 30, 100, 300, 1000)
 """How many times longer than true the residuals can be drawn: they are tenths and hundredths of a pixel."""
@@ -25,9 +25,11 @@ class ViewTab(PictureTab):
 
     DETAIL, CORNER_SIZE = CameraDetail, 9
 
-    def __init__(self, presenter: CameraPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
+    def __init__(
+        self, presenter: CameraPresenter, next_action: Callable[[], NextAction], parent: QWidget | None = None
+    ) -> None:
         self._drawn: Any = None
-        super().__init__(presenter, way_on, parent)
+        super().__init__(presenter, next_action, parent)
         self.factor = QComboBox()
         for factor in FACTORS:
             self.factor.addItem(tr("residuals × {factor}", factor=factor), factor)

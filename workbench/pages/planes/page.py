@@ -27,7 +27,7 @@ class PlanesPage(CalibrationPage):
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.picture = PoseTab(presenter, self._way_on)
+        self.picture = PoseTab(presenter, self._next_action)
         self.rig, self.history = RigTab(presenter), PlanesHistoryTab(presenter)
         self.card, self.result = PlanesCard(presenter), PlanesResult(presenter)
         self.live: PlanesLive = PlanesLive(presenter)

@@ -14,7 +14,7 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.views.colours import EXCLUDED, fan_colour
-from workbench.views.forms.source_chooser import WayOn
+from workbench.views.forms.source_chooser import NextAction
 
 
 class PoseTab(PictureTab):
@@ -22,8 +22,10 @@ class PoseTab(PictureTab):
 
     DETAIL, CORNER_SIZE = PlanesDetail, 10
 
-    def __init__(self, presenter: PlanesPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
-        super().__init__(presenter, way_on, parent)
+    def __init__(
+        self, presenter: PlanesPresenter, next_action: Callable[[], NextAction], parent: QWidget | None = None
+    ) -> None:
+        super().__init__(presenter, next_action, parent)
         self._stages: Any = None
         """PoseStages of the pose that was looked at last."""
         presenter.look.measured.connect(self._show_pose)

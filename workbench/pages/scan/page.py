@@ -54,7 +54,7 @@ class ScanPage(StepPage):
         super().__init__(presenter, parent)
         self.strip, self.views = LiveStrip(presenter.live), SideBySide()
         self.check_strip = LiveStrip(presenter.check_live)
-        self.picture = ScanPicture(presenter, lambda: self.source.way_on(presenter.live))
+        self.picture = ScanPicture(presenter, lambda: self.source.next_action(presenter.live))
         self.cloud = ScanCloud(presenter)
         self.views.add_view(tr("Picture"), self.picture)
         self.views.add_view(tr("Points"), self.cloud)

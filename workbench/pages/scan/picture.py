@@ -14,7 +14,7 @@ from core.pipeline.live.events import LiveView, PlanesDetail, ScanDetail
 from workbench.language import tr
 from workbench.pages.scan import overlays
 from workbench.pages.scan.presenter import ScanPresenter
-from workbench.views.forms.source_chooser import WayOn
+from workbench.views.forms.source_chooser import NextAction
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column
 
@@ -33,12 +33,14 @@ class View(StrEnum):
 class ScanPicture(QWidget):
     """Draws whatever is to be seen now: live, of a recording that is measured, or of one frame."""
 
-    def __init__(self, presenter: ScanPresenter, way_on: Callable[[], WayOn], parent: QWidget | None = None) -> None:
+    def __init__(
+        self, presenter: ScanPresenter, next_action: Callable[[], NextAction], parent: QWidget | None = None
+    ) -> None:
         super().__init__(parent)
-        self._presenter, self._way_on = presenter, way_on
+        self._presenter, self._next_action = presenter, next_action
         self._shown: Any = None
         self._fan: tuple[Any, bool] | None = None
-        self._said: tuple[str, WayOn | None] = "", None
+        self._said: tuple[str, NextAction | None] = "", None
         self.image, self.wanted = ImageView(), View.CROSSINGS
         self.image.setAccessibleName(tr("Picture of the scan"))
         in_column(self.image, on=self)
@@ -137,15 +139,15 @@ class ScanPicture(QWidget):
     def _empty(self) -> None:
         self._clear(
             tr("Record a scan with a live source, or choose the folder of a recording (or drop one here)."),
-            self._way_on(),
+            self._next_action(),
         )
 
-    def _clear(self, message: str, way_on: WayOn | None = None) -> None:
+    def _clear(self, message: str, next_action: NextAction | None = None) -> None:
         self._shown = self._fan = None
-        said = message, way_on
+        said = message, next_action
         if self.image.has_picture or self._said != said:
             self._said = said
-            self.image.clear(message, *(way_on or ()))
+            self.image.clear(message, *(next_action or ()))
 
 
 def _same(before: Sequence[Sequence[Any]], now: Sequence[Sequence[Any]]) -> bool:

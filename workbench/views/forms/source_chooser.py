@@ -22,7 +22,7 @@ from workbench.views.common import breakable
 from workbench.views.layouts import in_column, in_row
 
 
-class WayOn(NamedTuple):
+class NextAction(NamedTuple):
     """The button that leads on where there are no pictures yet, as `EmptyState.say` takes it."""
 
     text: str
@@ -94,11 +94,11 @@ class SourceChooser(QWidget):
         if folder is not None:
             self.folder_chosen.emit(folder)
 
-    def way_on(self, live: Any) -> WayOn:
+    def next_action(self, live: Any) -> NextAction:
         """Start the live source, whose LivePresenter is `live`, where that is what is shown; else choose a folder."""
         if self.mode == "live":
-            return WayOn(tr("Start live"), live.start, live.buttons.start)
-        return WayOn(tr("Choose folder …"), self.choose, "")
+            return NextAction(tr("Start live"), live.start, live.buttons.start)
+        return NextAction(tr("Choose folder …"), self.choose, "")
 
     def accept_drops_on(self, widget: QWidget) -> None:
         """Take folders that are dropped on `widget`."""
