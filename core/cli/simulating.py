@@ -107,7 +107,8 @@ def simulate(
         Path | None,
         typer.Option(
             metavar="FILE",
-            help=r"A TOML file with tables \[lens], \[sensor], \[room], \[plates], \[warming]: what else real rigs do.",
+            help=r"A TOML file with tables \[laser], \[lens], \[sensor], \[room], \[plates], \[warming]: "
+            "what else real rigs do.",
         ),
     ] = None,
     mirror: Annotated[

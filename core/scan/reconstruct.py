@@ -149,6 +149,7 @@ def reconstruct(
         moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
         second_bounces=bounces,
         drifted=watched.drifts,
+        unsure_share=_unsure_share(found, cloud),
     )
 
 
@@ -313,18 +314,24 @@ def _require_rest(features: ScanFeatures, watched: FanRest) -> None:
 
 def _unsure(found: Cloud, cloud: Cloud, solved: _Solved, options: ReconstructOptions) -> tuple[Message, ...]:
     """A note if many points of a moving hand are too unsure to be used."""
-    swept, left = np.count_nonzero(found.sweep >= 0), np.count_nonzero(cloud.sweep >= 0)
-    if not solved.read_out.shifts_mm or left >= (1 - MANY_LOST) * swept:
+    share = _unsure_share(found, cloud)
+    if not solved.read_out.shifts_mm or share <= MANY_LOST:
         return ()
     return (
         Message(
             "scan.points_unsure_by_motion",
             "{percent:.0f} % of the points are left out: the hand's motion while rows were read out leaves them less "
             "sure than {cut_mm:g} mm. Move slower, rest the hand, or take more sweeps.",
-            percent=100 * (1 - left / swept),
+            percent=100 * share,
             cut_mm=options.sigma_cut_mm,
         ),
     )
+
+
+def _unsure_share(found: Cloud, cloud: Cloud) -> float:
+    """Share of the sweeps' points in `found` that are not in what is left of it, `cloud`."""
+    swept, left = (int(np.count_nonzero(one.sweep >= 0)) for one in (found, cloud))
+    return 1 - left / max(swept, 1)
 
 
 def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:

@@ -59,6 +59,8 @@ class ScanResult:
         Whether camera or fan moved evenly from its first frame to its last.
     read_out
         How planes change while the camera reads its rows out.
+    unsure_share
+        Share of the sweeps' points that are less sure than the σ cut, and left out.
     """
 
     cloud: Cloud
@@ -77,6 +79,7 @@ class ScanResult:
     read_out: ReadOut = AT_ONCE
     moved: bool = False
     drifted: bool = False
+    unsure_share: float = 0.0
     second_bounces: SecondBounces = NO_BOUNCES
 
     @property

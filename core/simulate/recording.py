@@ -139,7 +139,13 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
 def scenario_rig(scenario: Scenario) -> Rig:
     """The rig of a scenario."""
     optics = replace(Optics(), speckle_contrast=scenario.speckle)
-    rig = paper_rig(scenario.scale, published_planes=scenario.published_planes, optics=optics, fan_bow=scenario.fan_bow)
+    rig = paper_rig(
+        scenario.scale,
+        published_planes=scenario.published_planes,
+        optics=optics,
+        fan_bow=scenario.fan_bow,
+        laser=scenario.laser,
+    )
     rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
     return rig if scenario.fan_lines == rig.fan.lines else replace(rig, fan=Fan((rig.fan.planes[1],)))
 

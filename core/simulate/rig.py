@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
+from core.simulate.effects.laser import GAUSSIAN_LASER, LaserEffects
 
 # Sun et al. 2023.
 FULL_SIZE = (3840, 2748)
@@ -92,6 +93,8 @@ class Beam:
     bow
         Of a line lens that makes no plane: the light φ rad beside the camera's viewing direction, seen from the
         emitter, leaves the plane by ½ · bow · φ² rad (its "smile"); 0 for a plane.
+    section
+        What is added to the Gaussian across, or takes its place.
     """
 
     sigma_mm: float = 0.22
@@ -100,6 +103,7 @@ class Beam:
     half_angle: float = np.radians(60.0)
     peak_grey: float = 300.0
     bow: float = 0.0
+    section: LaserEffects = GAUSSIAN_LASER
 
     @property
     def rayleigh_mm(self) -> float:
@@ -167,7 +171,12 @@ def pencil_fan() -> Fan:
 
 
 def paper_rig(
-    scale: float = 1.0, *, published_planes: bool = False, optics: Optics | None = None, fan_bow: float = 0.0
+    scale: float = 1.0,
+    *,
+    published_planes: bool = False,
+    optics: Optics | None = None,
+    fan_bow: float = 0.0,
+    laser: LaserEffects = GAUSSIAN_LASER,
 ) -> Rig:
     """Make the paper's rig with pictures resized by `scale` (0.5 gives 1920 × 1374).
 
@@ -181,11 +190,13 @@ def paper_rig(
         Lens, speckle and noise; the default is a usual industrial camera.
     fan_bow
         Bow of the fan's sheets, see `Beam`.
+    laser
+        The sections of both lasers.
     """
     camera = Camera(FULL_SIZE, np.array(FULL_MATRIX), np.array(DISTORTION)).scaled(scale)
     fan = published_fan() if published_planes else pencil_fan()
     point, direction = fan_axis(fan)
     emitter = point + direction * (FAN_EMITTER_X_MM / direction[0])
-    beam = Beam(focus_mm=FAN_FOCUS_MM)
+    beam = Beam(focus_mm=FAN_FOCUS_MM, section=laser)
     swept = replace(beam, focus_mm=SWEEP_FOCUS_MM)
     return Rig(camera, fan, emitter, scale, optics or Optics(), replace(beam, bow=fan_bow), swept)

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.files.limits import TOML_BYTES
 from core.files.reading import read_text, toml_of
 from core.messages import Message
+from core.simulate.effects.laser import GAUSSIAN_LASER, LaserEffects
 from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.plates import TRUE_PLATES, PlateEffects
 from core.simulate.effects.ranges import require_ranges
@@ -94,7 +95,7 @@ class Scenario:
         (`core.simulate.scene.mirrors`): 0.04 to 0.1 of plastics and enamel, 0.1 to 0.5 of milled and ground metal.
     stated
         rig.toml says that nothing can change and that plates are true; False: it says nothing of either, as most do.
-    lens, sensor, room, plates, warming
+    laser, lens, sensor, room, plates, warming
         What real rigs do beyond that, by subject (`core.simulate.effects`); tables of these names in TOML.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
@@ -148,6 +149,7 @@ class Scenario:
     gloss_deg: float = 6.0
     mirror_share: float = 0.0
     stated: bool = True
+    laser: LaserEffects = GAUSSIAN_LASER
     lens: LensEffects = IDEAL_LENS
     sensor: SensorEffects = IDEAL_SENSOR
     room: RoomEffects = STEADY_ROOM
@@ -216,7 +218,7 @@ class Scenario:
             )
 
     def with_effects_of(self, other: Scenario) -> Scenario:
-        """Make the same scenario with lens, sensor, room, plates and warming of another one."""
+        """Make the same scenario with laser, lens, sensor, room, plates and warming of another one."""
         effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
         return replace(self, **effects)
 

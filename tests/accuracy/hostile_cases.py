@@ -9,6 +9,7 @@ from typing import Any
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.files.recording.rig import Rig
 from core.inspect.uncertainty.part import Part
+from core.simulate.effects.laser import LaserEffects
 from core.simulate.effects.lens import LensEffects
 from core.simulate.effects.plates import PlateEffects
 from core.simulate.effects.room import RoomEffects
@@ -92,6 +93,14 @@ EFFECTS = (
         [(f"{1000 * larger:g} ‰", {"plates": PlateEffects(plane_scale=larger)}) for larger in (0.001, 0.005, 0.02)],
     ),
     Effect("lens with k3", [(f"{k3:g}", {"lens": LensEffects(k3=k3)}) for k3 in (0.3, 1.0, 3.0)]),
+    Effect(
+        "lasers that are no Gaussian across",
+        [
+            ("flat, exponent 6", {"laser": LaserEffects(edge=6.0)}),
+            ("halo of 15 %", {"laser": LaserEffects(halo=0.15)}),
+            ("shoulder of 30 %", {"laser": LaserEffects(shoulder=0.3)}),
+        ],
+    ),
     Effect("coma", [(f"{px:g} px", {"lens": LensEffects(coma_px=px)}) for px in (2.0, 6.0)]),
     Effect("defocus", [(f"{mm:g} mm", {"lens": LensEffects(aperture_mm=mm)}) for mm in (1.0, 3.0, 6.0)]),
     Effect("JPEG", [(f"quality {q}", {"sensor": SensorEffects(jpeg_quality=q)}) for q in (90, 60, 30)]),
@@ -188,6 +197,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "camera's target larger": ("target.sizes_disagree",),
     "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
     "lens with k3": LENS,
+    "lasers that are no Gaussian across": ("gauge.unsure_and_no_faces", "inspection.light_is_skewed"),
     "coma": (*LENS, "inspection.light_is_skewed"),
     "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),
     "JPEG": ("scan.compressed",),
@@ -280,6 +290,7 @@ def calibration_of(scenario: Scenario) -> Scenario:
         seed=scenario.seed,
         fan_bow=scenario.fan_bow,
         speckle=scenario.speckle,
+        laser=scenario.laser,
         lens=scenario.lens,
         plates=scenario.plates,
         sensor=replace(scenario.sensor, brightness=1.0),

@@ -70,6 +70,7 @@ _MEMBERS = {
     "stripes": real(2, 2),
     "change_p": real(optional=True),
     "doubt": texts(None, optional=True),
+    "unsure_share": real(optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "frame_fan_shifts_px": real("frames", None, optional=True),
     "frame_fan_known": truth("frames", optional=True),
@@ -129,6 +130,8 @@ class ScanFile:
         Why nothing measured in the scan proves conformity, if calibration or check did not hold on its day; else None.
     second_bounces
         Frame and number of the sweeps' centrelines that were left out as second bounces.
+    unsure_share
+        Share of the sweeps' points that were left out because they are less sure than the σ cut; 0 if not known.
     """
 
     features: ScanFeatures
@@ -145,6 +148,7 @@ class ScanFile:
     change_p: float = 1.0
     doubt: Message | None = None
     second_bounces: tuple[tuple[int, int], ...] = ()
+    unsure_share: float = 0.0
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -168,6 +172,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         "change_p": np.array(scan.change_p),
         "doubt": pack_messages((scan.doubt,)),
+        "unsure_share": np.array(scan.unsure_share),
         **_pack_shifts(features),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
@@ -239,6 +244,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         second_bounces=tuple(
             (frame, piece) for frame, piece in arrays.get("second_bounces", np.zeros((0, 2))).tolist()
         ),
+        unsure_share=float(arrays.get("unsure_share", 0.0)),
     )
 
 

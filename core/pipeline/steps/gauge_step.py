@@ -30,6 +30,8 @@ from core.scan.standstill import HOLD_STILL
 PART = "part"
 """Under this name the settings of a thickness in run.json say what is stated of the part."""
 
+UNSURE = 0.5
+"""Share of the sweeps' points that the σ cut leaves out, from which on it is told where faces are not found."""
 MATTERS = 1.1
 """A rig is told to be unchecked if U is so many times what it would be without a change since the calibration."""
 
@@ -49,7 +51,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.found.rig.gauge or GaugeSpec(), work.found.rig.part
-        with movement_first(scan), faults_first(scan.features.notes):
+        with movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -117,6 +119,27 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
             )
             raise InputError(what, where=error.where, todo=WARM_UP) from error
         raise
+
+
+@contextmanager
+def unsure_first(scan: ScanFile) -> Iterator[None]:
+    """A complaint about faces begins with how many points the σ cut left out, if those are most: that may be why."""
+    try:
+        yield
+    except InputError as error:
+        if scan.unsure_share < UNSURE:
+            raise
+        what = Message(
+            "gauge.unsure_and_no_faces",
+            "{percent:.0f} % of the sweeps' points are less sure than the σ cut, and left out; of the rest: {reason}",
+            percent=100 * scan.unsure_share,
+            reason=error.what,
+        )
+        todo = Message(
+            "gauge.advice_surer_points",
+            "raise the scan's σ cut, cross more of the fan with each sweep, or take sharper or larger pictures",
+        )
+        raise InputError(what, where=error.where, todo=todo) from error
 
 
 def point_errors(scan: ScanFile) -> PointErrors:

@@ -239,6 +239,7 @@ def _file(features: ScanFeatures, scan: ScanResult, calibration_id: str, key: st
         features_key=key,
         speckle=scan.speckle,
         second_bounces=tuple(sorted(scan.second_bounces.pieces)),
+        unsure_share=scan.unsure_share,
     )
 
 

@@ -5,8 +5,9 @@ Light on a surface point X at distance ρ from the emitter, d off the sheet's mi
     I = peak · ρ₀σ₀/(ρ σ(ρ)) · exp(−d²/2σ(ρ)²) · exp(−2 φ²/φ₀²) · cos θ,    σ(ρ) = σ₀ √(1 + ((ρ − ρ₀)/ρ_R)²)
 
 with θ the angle of incidence; 0 where θ ≥ 90° or something is in the way. Only pixels within 4.5 σ of the sheet are
-looked at. Of an object whose material takes light in, a share is that of the points behind, down to a depth, seen
-through it along the pixel's ray (without refraction); one that is glossy adds a lobe about the mirrored light.
+looked at. A laser may have another section than the Gaussian (`core.simulate.effects.laser`). Of an object whose
+material takes light in, a share is that of the points behind, down to a depth, seen through it along the pixel's ray
+(without refraction); one that is glossy adds a lobe about the mirrored light.
 """
 
 from __future__ import annotations
@@ -95,7 +96,7 @@ def laser_light(
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
     inner = scene.material.inner_mm if scene.material.inner_share else 0.0
-    reach = REACH_SIGMAS * widest + _largest_bow(beam) + _largest_shift(sheet) + inner
+    reach = REACH_SIGMAS * beam.section.reach * widest + _largest_bow(beam) + _largest_shift(sheet) + inner
     v, u = _near(maps, sheet.plane, reach)
     points = maps.points[v, u].astype(np.float64)
     towards = points - sheet.emitter
@@ -109,7 +110,7 @@ def laser_light(
     sigma = beam.sigma_mm * np.hypot(1, (rho - beam.focus_mm) / beam.rayleigh_mm)
     angle = np.arccos(np.clip(towards @ sheet.axis / rho, -1, 1))
     strength = beam.peak_grey * beam.focus_mm * beam.sigma_mm / (rho * sigma)
-    across = np.exp(-0.5 * (sheet.off_light(points, v) / sigma) ** 2)
+    across = beam.section.across(sheet.off_light(points, v) / sigma)
     shine = maps.albedo[v, u] * cosine
     if scene.material != MATT:
         mine = ~maps.table[v, u] if maps.table.size else np.ones(len(v), np.bool_)
@@ -130,10 +131,10 @@ def _through(
     rays = points / np.linalg.norm(points, axis=1)[:, None]
     inwards = np.maximum(-np.einsum("ni,ni->n", rays, normals), _LEAST_COSINE)
     per_mm = rays / inwards[:, None]  # along the ray, for each mm of depth
-    found = (1 - material.inner_share) * np.exp(-0.5 * (sheet.off_light(points, row) / sigma) ** 2)
+    found = (1 - material.inner_share) * sheet.beam.section.across(sheet.off_light(points, row) / sigma)
     for place, share in zip(_DEPTHS, _DEPTH_SHARES, strict=True):
         off = sheet.off_light(points + material.inner_mm * (1 + place) / 2 * per_mm, row)
-        found += material.inner_share * share / 2 * np.exp(-0.5 * (off / sigma) ** 2)
+        found += material.inner_share * share / 2 * sheet.beam.section.across(off / sigma)
     return np.asarray(found)
 
 

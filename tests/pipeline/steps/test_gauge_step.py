@@ -26,3 +26,12 @@ def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(doubt,
     assert refused.value.code == code
     assert "no two are parallel" in str(refused.value)
     assert todo in str(refused.value)
+
+
+@pytest.mark.parametrize(("share", "said"), [(0.8, "80 % of the sweeps' points"), (0.2, "among 1 plane faces")])
+def test_faces_that_are_not_found_are_told_with_the_points_that_are_too_unsure(share, said):
+    with pytest.raises(InputError) as refused, gauge_step.unsure_first(SimpleNamespace(unsure_share=share)):
+        raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
+    assert said in str(refused.value)
+    assert "no two are parallel" in str(refused.value)
+    assert ("raise the scan's σ cut" in str(refused.value)) == (share > 0.5)

@@ -11,6 +11,7 @@ from core.errors import InputError
 from core.files.pictures import compression_of, decode_colours, read_picture
 from core.files.recording.recording_set import open_set
 from core.simulate.calibration import PLATES, CalibrationPictures
+from core.simulate.effects.laser import LaserEffects
 from core.simulate.effects.lens import LensEffects
 from core.simulate.effects.plates import PlateEffects
 from core.simulate.effects.room import RoomEffects
@@ -22,6 +23,7 @@ from core.simulate.rig import Optics
 from core.simulate.scenario import Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Sensor, generator
+from core.simulate.scene.laser import laser_light
 from core.simulate.scene.mirrors import mirrored_light, mirrors_of
 from core.simulate.scene.scene import surface_maps
 from core.simulate.scene.wrong_plates import rays_to_bowed, scaled
@@ -48,6 +50,9 @@ WEIGHTED_BEFORE = 801168006
     "effect",
     [
         {"mirror_share": 0.5},
+        {"laser": LaserEffects(edge=6.0)},
+        {"laser": LaserEffects(halo=0.2)},
+        {"laser": LaserEffects(shoulder=0.3)},
         {"lens": LensEffects(k3=1.0)},
         {"lens": LensEffects(coma_px=10.0)},
         {"lens": LensEffects(aperture_mm=8.0)},
@@ -90,6 +95,31 @@ def test_what_no_table_can_hold_is_refused(text, code):
     with pytest.raises(InputError) as refused:
         Scenario.from_toml(text)
     assert refused.value.code == code
+
+
+def test_a_laser_may_be_flat_or_have_a_halo_or_a_shoulder():
+    d = np.linspace(-16, 16, 3201)
+    seen = {effect: LaserEffects(**{effect: strength}).across(d) for effect, strength in STRENGTHS.items()}
+    fourth = {effect: (light * d**4).sum() * light.sum() / (light * d**2).sum() ** 2 for effect, light in seen.items()}
+    assert fourth["edge"] < 2.2 < 2.99 < 3.01 < fourth["halo"], "3 of a Gaussian"
+    assert (seen["edge"] * d**2).sum() / seen["edge"].sum() == pytest.approx(1.0, abs=1e-6)
+    third = {effect: (light * d**3).sum() / light.sum() for effect, light in seen.items()}
+    assert third["shoulder"] > 0.1
+    assert [third["edge"], third["halo"]] == pytest.approx([0, 0], abs=1e-9)
+    assert np.array_equal(LaserEffects().across(d), np.exp(-0.5 * d**2))
+
+
+def test_all_light_of_a_laser_with_a_halo_is_rendered():
+    """A halo ends where nothing of it is seen, not where a Gaussian's light would."""
+    bright = replace(SMALL, speckle=0.0, noise=0.0, texture=0.0, laser=LaserEffects(halo=1.0))
+    stage, sheets, _ = scan_of(bright)
+    light = laser_light(sheets[0], stage.scene, stage.maps)
+    lit = np.abs(sheets[0].off_light(stage.maps.points.reshape(-1, 3), None)).reshape(light.shape)[light > 0]
+    assert lit.max() > 4 * 0.22 * 4
+    assert np.percentile(light[light > 0], 0.5) < 0.01 * light.max()
+
+
+STRENGTHS = {"edge": 6.0, "halo": 0.2, "shoulder": 0.3}
 
 
 def spot(depth_mm, lens, at=(100, 100), shape=(201, 201)):
