@@ -14,7 +14,7 @@ from core.image.stripes.curve import smooth_curve
 from core.image.stripes.likelihood.refinement import Refined, StripeModel, residuals
 from core.image.stripes.measured_positions import Lit, by_measured_section
 from core.image.stripes.noise import NoiseModel
-from core.image.stripes.precision import FLOOR_PX, added_in_squares, noise_sigma, roughness
+from core.image.stripes.precision import FLOOR_PX, added_in_squares, noise_sigma, roughness, scatter
 from core.image.stripes.profile import Profiles, Sections, smooth_sections
 from core.image.stripes.runs import arc_length, correlation_length
 from core.image.stripes.speckle import Speckle, measure_speckle
@@ -32,6 +32,10 @@ _CHANCE, _MOST_BY_CHANCE_PX = 1e-5, 0.1
 four was taken for skewed without it, by some hundredths of a pixel, and its points were twice as far off as they could
 be; with 1e-3 some still were. On photographs, 0.14 to 0.6 px, one of the two estimates is wrong, however few the points
 that say so."""
+_WORTH = 0.97
+"""Of the scatter that points show, at most so much with the measured section: else the Gaussian's stay. What a section
+promises is not enough: of lines of σ 1.1 px, flat before a lens blurs them and each as wide as its distance makes it,
+points scattered by 0.13 px instead of 0.07, where 0.05 was foretold."""
 _UNUSABLE_WEIGHT = 0.02
 """Of saturated points in the smooth curve, 1 for the others: enough to hold it where all are saturated. Set by rendered
 plates, where a curve without them swung up to 4 px astray; tests/image/test_rendered_lines.py holds it."""
@@ -97,7 +101,11 @@ def estimate_positions(
     if _apart_px(pieces, lines, refined, g) > _LARGEST_DISAGREEMENT_PX:
         return lines
     measured = by_measured_section(lit, refined)
-    if measured is not None and _apart_px(pieces, lines, measured, g) <= _LARGEST_DISAGREEMENT_PX:
+    if (
+        measured is not None
+        and _scatter_px(pieces, measured, g) < _WORTH * _scatter_px(pieces, refined, g)
+        and _apart_px(pieces, lines, measured, g) <= _LARGEST_DISAGREEMENT_PX
+    ):
         refined = measured
     return [_joined(*three) for three in zip(pieces, lines, refined, strict=True)]
 
@@ -109,6 +117,12 @@ def _apart_px(pieces: list[Piece], lines: list[Refined], refined: list[Refined],
         for piece, line, other in zip(pieces, lines, refined, strict=True)
     ]
     return _disagreement_px(differences, correlation_length(filter_px))
+
+
+def _scatter_px(pieces: list[Piece], lines: list[Refined], filter_px: float) -> float:
+    """How much the usable points of all pieces scatter along them, in px."""
+    runs = [piece.judged(line.run, line.sigma)[0] for piece, line in zip(pieces, lines, strict=True)]
+    return scatter(runs, correlation_length(filter_px))
 
 
 def _speckle(

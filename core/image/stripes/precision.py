@@ -94,6 +94,14 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
     return [math.sqrt(max(0.0, (total + prior * overall) / (n + prior))) for total, n in sums]
 
 
+def scatter(lines: list[Array], correlation: float) -> float:
+    """Standard deviation in px of all points of some lines, each (N, ≥ 4), as `roughness` measures it; 0 if too few."""
+    lag = max(1, round(correlation))
+    sums = [_excess(points, np.zeros(len(points)), lag, correlation) for points in lines]
+    number = sum(n for _, n in sums)
+    return math.sqrt(sum(total for total, _ in sums) / number) if number else 0.0
+
+
 @compiled(fastmath={"contract", "reassoc", "arcp", "nsz"})
 def _excess(points: Array, sigma: Array, lag: int, correlation: float) -> tuple[float, float]:
     """Sum of the excess variance over independent third differences, and their number, both weighted."""

@@ -11,7 +11,11 @@ import pytest
 import core.image.stripes.positions as positions
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, extract_centrelines
-from core.image.stripes.noise import Compression, NoiseModel
+from core.image.stripes.noise import Compression, NoiseModel, estimate_noise
+from core.image.stripes.precision import scatter
+from core.simulate.effects.laser import LaserEffects
+from core.simulate.recording import scan_of
+from core.simulate.scenario import Scenario
 from tests.image.synthetic_stripes import Distance, expose, speckle, straight
 
 NOISE = NoiseModel(float(np.sqrt(1 + 1 / 12)), 0.02)
@@ -88,6 +92,20 @@ def test_a_gaussian_stripe_is_placed_to_the_bit_as_by_a_gaussian(contrast, monke
     mine = longest(light)
     monkeypatch.setattr(positions, "by_measured_section", lambda *_: None)
     np.testing.assert_array_equal(mine.uv, longest(light).uv)
+
+
+def test_what_a_section_promises_is_not_believed_where_points_scatter_more(monkeypatch):
+    """Lines of σ 1.1 px, flat before a lens blurs them, each as wide as its distance makes it."""
+    stage, _, _ = scan_of(Scenario(scale=0.25, frames=0, laser=LaserEffects(edge=6.0)))
+    light = stage.reference().astype(np.float32)
+
+    def extracted() -> list[np.ndarray]:
+        lines = extract_centrelines(light, StripeSettings(4.3, 25.0), noise=estimate_noise(light))
+        return [np.column_stack([line.uv, line.normal]) for line in lines]
+
+    mine = scatter(extracted(), 6.0)
+    monkeypatch.setattr(positions, "by_measured_section", lambda *_: None)
+    assert mine < 1.01 * scatter(extracted(), 6.0)
 
 
 def test_in_compressed_pictures_no_section_is_measured(monkeypatch):
