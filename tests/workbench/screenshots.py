@@ -38,7 +38,7 @@ from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.theme import is_polishing
 
-SIZES = (QSize(1000, 700), QSize(1280, 800), QSize(1920, 1080))
+SIZES = (QSize(960, 540), QSize(1000, 700), QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
 README = ("camera", "scan", "inspect", "report")
 README_SIZE, README_WIDTH = QSize(1280, 800), 900

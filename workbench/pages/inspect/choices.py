@@ -50,6 +50,8 @@ class SurfaceChoices(QWidget):
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
         self._tips: dict[Shape, str] = {}
+        self._nominal: bool | None = None
+        self._before = "height"
         self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
         look, limit = in_row(spacing=4), in_row(spacing=4)
         self._make_shapes(look)
@@ -67,7 +69,7 @@ class SurfaceChoices(QWidget):
 
     @property
     def colour(self) -> str:
-        """What colours it: "faces", "sigma", "height", "deviation", "compared", "frame", "plain"."""
+        """What colours it: "faces", "sigma", "height", "deviation", "nominal", "compared", "frame", "plain"."""
         return str(self.colours.currentData())
 
     def choose_colour(self, name: str) -> None:
@@ -77,6 +79,20 @@ class SurfaceChoices(QWidget):
     def show_compared(self, why_not: str) -> None:
         """Whether the deviation from another surface can be chosen, and why not."""
         self._offer("compared", why_not)
+
+    def show_nominal(self, there: bool) -> None:
+        """Colour by the chosen feature's deviations from its nominal surface; as before where it has none."""
+        if there == self._nominal:
+            return
+        self._nominal = there
+        if there:
+            self._before = self.colour
+            self._offer("nominal", "")
+            self.choose_colour("nominal")
+        else:
+            if self.colour == "nominal":
+                self.choose_colour(self._before)
+            self._offer("nominal", tr("Choose a deviation from a nominal surface in the list of features."))
 
     def show_view(self, view: InspectionView | None, can: SurfaceButtons, clip_mm: float | None) -> None:
         """Offer what there is to choose for a scan; nothing without one."""
@@ -118,6 +134,7 @@ class SurfaceChoices(QWidget):
             ("height", tr("height")),
             ("sigma", tr("σ of the points")),
             ("deviation", tr("deviation from face")),
+            ("nominal", tr("deviation from nominal")),
             ("compared", tr("deviation from other surface")),
             ("frame", tr("frame")),
             ("plain", tr("nothing (plain)")),

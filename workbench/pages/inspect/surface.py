@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from html import escape
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -72,12 +73,6 @@ LOW_PX = 480
 DRAW_WITHIN_MS = 60
 """How long in ms a change may wait to be drawn together with those that follow it, as of a slider that is moved."""
 
-TOGETHER = "\u2060"
-"""Between characters that no line may be broken between (the word joiner)."""
-
-TOGETHER_SPACED = "&nbsp;"
-"""Between words that no line may be broken between."""
-
 
 class SurfaceTab(QWidget):
     """The 3D view with its choices above it and a line of words below."""
@@ -111,7 +106,7 @@ class SurfaceTab(QWidget):
             label.setObjectName("muted")
         self.hint.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         foot = QHBoxLayout()
-        self.line.setWordWrap(True)  # else the legend of a deviation would widen the page and narrow what is beside it
+        self.line.setWordWrap(True)  # else a long legend would widen the page and narrow what is beside it
         foot.addWidget(self.line, 1)
         foot.addWidget(self.hint)
         self.cut = CutPanel(presenter.cut, self.scene)
@@ -157,6 +152,7 @@ class SurfaceTab(QWidget):
         p, view = self._presenter, self._presenter.scan.view
         self.choices.show_view(view, p.scan.buttons, p.clip_mm)
         self.choices.show_compared("" if p.comparison.shown is not None else p.comparison.buttons.look)
+        self.choices.show_nominal(self._deviating() is not None)
         for mode, action in self.clicks.items():
             enable(action, p.scan.buttons.use, self._tips[mode])
         enable(self.cutting, p.scan.buttons.use, self._cutting_tip)
@@ -245,11 +241,11 @@ class SurfaceTab(QWidget):
         self.scene.show_cloud(seen)
         self.scene.show_mesh(self.shape != "points")
         colour = self.colour if seen else "plain"
-        cloud = (p.scan.serial, count, colour, self._compared_look(colour))
+        cloud = (p.scan.serial, count, colour, self._other_look(colour))
         if cloud != self._cloud:
             self._cloud = cloud
             self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, colour))
-        mesh = (p.scan.serial, p.triangles_shown(), self.colour, self._compared_look(self.colour))
+        mesh = (p.scan.serial, p.triangles_shown(), self.colour, self._other_look(self.colour))
         if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
             self._mesh = mesh
             self._draw_mesh(view, view.mesh)
@@ -258,10 +254,19 @@ class SurfaceTab(QWidget):
     def _wanted(self) -> tuple[object, ...]:
         """What the picture of cloud and mesh hangs on."""
         p = self._presenter
-        return p.scan.serial, self.shape, self.colour, p.points_shown(), self._compared_look(self.colour)
+        return p.scan.serial, self.shape, self.colour, p.points_shown(), self._other_look(self.colour)
 
-    def _compared_look(self, colour: str) -> tuple[object, ...]:
+    def _other_look(self, colour: str) -> tuple[object, ...]:
+        """What the colours hang on where they are not of the scan alone."""
+        if colour == "nominal":
+            return (self._deviating(),)
         return self._presenter.comparison.look if colour == "compared" else ()
+
+    def _deviating(self) -> ShownFeature | None:
+        """What of the chosen feature was compared with a nominal surface; None if nothing was."""
+        features = self._presenter.features
+        own, _ = features.rests_on(features.chosen)
+        return next((one for one in own if one.deviations is not None), None)
 
     def _draw_mesh(self, view: InspectionView, mesh: ShownMesh) -> None:
         name, comparison = self.colour, self._presenter.comparison
@@ -270,6 +275,8 @@ class SurfaceTab(QWidget):
             values = comparison.shown.coloured_mesh(significant_only=comparison.significant_only)
             if len(values) == len(mesh.vertices):
                 look = {"values": values, "colouring": self._compared_colouring(comparison.shown)}
+        if name == "nominal":
+            look = {"values": np.full(len(mesh.vertices), np.nan, np.float32), "colouring": self._nominal_colouring()}
         if name in ("sigma", "height", "deviation"):
             look = {"values": getattr(mesh, name), "colouring": self._colouring(view, name)}
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
@@ -282,6 +289,8 @@ class SurfaceTab(QWidget):
             only, number = comparison.significant_only, view.number[:count]
             values = comparison.shown.coloured(number, significant_only=only)
             return {"values": values, "colouring": self._compared_colouring(comparison.shown)}
+        if name == "nominal":  # what was compared is marked over it, the rest is grey
+            return {"values": np.full(count, np.nan, np.float32), "colouring": self._nominal_colouring()}
         if name == "faces":
             table = np.array([to_rgba(colour)[:3] for colour in (PLAIN, FACE_UPPER, FACE_LOWER)], dtype=np.uint8)
             return {"colours": table[view.face[:count]]}
@@ -290,6 +299,15 @@ class SurfaceTab(QWidget):
     def _compared_colouring(self, shown: ShownComparison) -> Colouring:
         ends = -shown.range_mm, shown.range_mm
         return Colouring(tr("deviation from {other}", other=shown.other), "mm", ends, "deviation")
+
+    def _nominal_colouring(self) -> Colouring:
+        """Classes are quarters of the tolerance, those at the ends are of all beyond it."""
+        feature = self._deviating()
+        assert feature is not None and feature.deviations is not None
+        deviation = self._presenter.features.plan.feature(feature.name).deviation
+        end = 1.25 * feature.deviations.tolerance_mm
+        title = tr("deviation from {other}", other=Path(deviation.nominal).name)
+        return Colouring(title, "mm", (-end, end), "classes")
 
     def _colouring(self, view: InspectionView, name: str) -> Colouring:
         titles = {
@@ -320,17 +338,19 @@ class SurfaceTab(QWidget):
     def _show_feature(self) -> None:
         """The points that the chosen feature used, or its parts, and those of its datums, over whatever colours all."""
         own, datums = self._presenter.features.rests_on(self._presenter.features.chosen)
-        marked = [*own, *(one for some in datums.values() for one in some)]
-        if [id(one) for one in marked] == [id(one) for one in self._feature]:
+        classes = self.colour == "nominal"
+        marked = [one for one in own if classes or one.deviations is None]
+        drawn = [*marked, *(one for some in datums.values() for one in some)]
+        if [id(one) for one in drawn] == [id(one) for one in self._feature]:
             return
-        self._feature = marked
+        self._feature = drawn
         for name in self._highlights:
             self.scene.remove_highlight(name)
         self._highlights = []
         self.scene.remove(DATUMS)
-        for one in (one for result in own if result.deviations is not None for one in result.deviations.classes):
+        for one in (one for result in marked if result.deviations is not None for one in result.deviations.classes):
             self._highlight(f"deviation {one.number}", one.places, DEVIATIONS[one.number + len(DEVIATIONS) // 2])
-        self._highlight("feature", _places(one for one in own if one.deviations is None), FEATURE)
+        self._highlight("feature", _places(one for one in marked if one.deviations is None), FEATURE)
         labels = []
         for letter, some in datums.items():
             places = _places(some)
@@ -368,25 +388,11 @@ class SurfaceTab(QWidget):
         """What the colours of the chosen feature mean, each with its sign; nothing where none is to be seen."""
         features = self._presenter.features
         own, datums = features.rests_on(features.chosen)
-        name = escape(features.chosen)
-        if not any(one.used for one in own):
+        if self._deviating() is not None or not any(one.used for one in own):
             return []
-        result = own[0]
-        if result.deviations is None:
-            used = [_dot(FEATURE, tr("used for {name}", name=name))]
-            datum = [_dot(DATUM, tr("datum {letter}", letter=one)) for one in datums]
-            return [wording().joined(used + datum)]
-        middle = len(DEVIATIONS) // 2
-        classes = result.deviations.classes
-        signs = [_dot(DEVIATIONS[one.number + middle], TOGETHER.join(one.mark or "0")) for one in classes]
-        return [
-            tr(
-                "{name} in quarters of ±{tolerance:g} mm: {marks}",
-                name=name,
-                tolerance=result.deviations.tolerance_mm,
-                marks=TOGETHER_SPACED.join(signs),
-            )
-        ]
+        used = [_dot(FEATURE, tr("used for {name}", name=escape(features.chosen)))]
+        datum = [_dot(DATUM, tr("datum {letter}", letter=one)) for one in datums]
+        return [wording().joined(used + datum)]
 
     def _highlight(self, name: str, places: Any, colour: str) -> None:
         if len(places):

@@ -11,10 +11,12 @@ from numpy.typing import ArrayLike, NDArray
 
 from core.model.arrays import Array
 from workbench.language import number
+from workbench.views.colours import DEVIATIONS, to_rgba
 
 Rgb = tuple[int, int, int]
-ColourMap = Literal["viridis", "plasma", "deviation"]
-"""viridis and plasma run from low to high, deviation is blue below, red above the middle."""
+ColourMap = Literal["viridis", "plasma", "deviation", "classes"]
+"""viridis and plasma run from low to high, deviation is blue below, red above the middle; classes are `DEVIATIONS`, the
+middle one twice as wide."""
 
 UNKNOWN: Rgb = (140, 140, 140)
 """Colour of NaN."""
@@ -95,9 +97,14 @@ class Colouring:
 @cache
 def table(colour_map: ColourMap) -> NDArray[np.uint8]:
     """The map as 256 colours (256, 3)."""
-    stops = np.array([list(bytes.fromhex(stop)) for stop in _STOPS[colour_map].split()], dtype=np.float64)
-    at = np.linspace(0, len(stops) - 1, 256)
-    colours = np.column_stack([np.interp(at, np.arange(len(stops)), stops[:, i]) for i in range(3)])
+    if colour_map == "classes":
+        middle = len(DEVIATIONS) // 2
+        steps = np.array([to_rgba(one)[:3] for one in (*DEVIATIONS[: middle + 1], *DEVIATIONS[middle:])])
+        colours = steps[np.arange(256) * len(steps) // 256]
+    else:
+        stops = np.array([list(bytes.fromhex(stop)) for stop in _STOPS[colour_map].split()], dtype=np.float64)
+        at = np.linspace(0, len(stops) - 1, 256)
+        colours = np.column_stack([np.interp(at, np.arange(len(stops)), stops[:, i]) for i in range(3)])
     rounded: NDArray[np.uint8] = np.round(colours).astype(np.uint8)
     rounded.flags.writeable = False
     return rounded

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from PySide6.QtCore import QPointF, QRectF, Qt
-from PySide6.QtGui import QColor, QFont, QFontMetricsF, QLinearGradient, QPainter, QPalette, QPen, QPolygonF
+from PySide6.QtGui import QColor, QFont, QFontMetricsF, QImage, QPainter, QPalette, QPen, QPolygonF
 
 from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from core.model.arrays import Array
@@ -262,10 +262,8 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], c
     for k, line in enumerate(reversed(lines)):
         painter.drawText(QPointF(left, top - 16 - k * metrics.height()), line)
     bar = QRectF(left, top, BAR_WIDTH, height)
-    gradient = QLinearGradient(bar.bottomLeft(), bar.topLeft())
     shades = table(colouring.colour_map)
-    for k in range(0, 256, 15):
-        gradient.setColorAt(k / 255, QColor(*(int(c) for c in shades[k])))
+    column = np.ascontiguousarray(shades[::-1])
     painter.setPen(Qt.PenStyle.NoPen)
     for beyond, y, sign, colour in (
         (colouring.clipped[1], bar.top(), -1, shades[-1]),
@@ -275,8 +273,7 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], c
             painter.setBrush(QColor(*(int(c) for c in colour)))
             tip = QPointF(bar.center().x(), y + sign * 9)
             painter.drawPolygon(QPolygonF([QPointF(bar.left(), y), QPointF(bar.right(), y), tip]))
-    painter.setBrush(gradient)
-    painter.drawRect(bar)
+    painter.drawImage(bar, QImage(column.data, 1, len(column), 3, QImage.Format.Format_RGB888))
     values, texts = _ticks(colouring, height)
     for value, text in zip(values, texts, strict=True):
         y = bar.bottom() - (value - low) / (high - low) * height

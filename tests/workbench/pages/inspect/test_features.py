@@ -25,9 +25,10 @@ from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
-from workbench.pages.inspect.surface import TOGETHER
 from workbench.views import ask
+from workbench.views.colours import DEVIATIONS, to_rgba
 from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesIcon
+from workbench.views.scene.colours import table
 from workbench.views.scene.contents import Labels, Marks
 from workbench.work import jobs
 
@@ -634,12 +635,44 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(presenter, page
     page.tabs.setCurrentWidget(page.surface)
     page.refreshing.at_once()
     assert page.surface.minimumSizeHint().width() < 690, "the legend leaves the side panel its width"
-    assert all(
-        f"</span>&nbsp;{TOGETHER.join(sign)}" in page.surface.line.text() for sign in ("−!", "−−−", "0", "++", "+!")
-    )
     features.choose("")
     page.refreshing.at_once()
     assert not {name for kind, name in page.surface.scene._scene.items if kind is Marks}
+
+
+def test_a_chosen_deviation_is_what_the_colour_bar_says(presenter, page, features, measuring, qtbot, tmp_path):
+    found = ShownDeviations(
+        (ShownClass("++", 2, 0.05, 0.075, 1.0, np.ones((1, 3))),), np.linspace(-1, 1, 5), np.arange(4), 0.1
+    )
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
+    page.surface.choices.choose_colour("sigma")
+    presenter.feature.add("deviation", tmp_path / "part.stl")
+    measured(features, qtbot)
+    page.refreshing.at_once()
+    surface = page.surface
+
+    def marks():
+        return {name for kind, name in surface.scene._scene.items if kind is Marks}
+
+    def bar():
+        surface.refresh()
+        surface._draw()
+        return surface.scene._scene.cloud.colouring
+
+    assert surface.colour == "nominal" and bar().title == "deviation from part.stl [mm]"
+    assert bar().limits == pytest.approx((-0.125, 0.125)), "a class beyond the tolerance at either end"
+    assert tuple(table(bar().colour_map)[-1]) == to_rgba(DEVIATIONS[-1])[:3]
+    assert np.isnan(surface.scene._scene.cloud._values).all(), "what was not compared has no colour of the bar"
+    surface.choices.choose_colour("height")
+    assert bar().name.startswith("height") and not marks(), "never two meanings of colours at once"
+    surface.choices.choose_colour("nominal")
+    assert bar().colour_map == "classes" and marks() == {"deviation 2"}
+    features.choose("")
+    page.refreshing.at_once()
+    assert surface.colour == "sigma", "as before it was chosen"
+    place = surface.choices.colours.findData("nominal")
+    assert not surface.choices.colours.model().item(place).isEnabled()
+    assert "in the list" in surface.choices.colours.itemData(place, Qt.ItemDataRole.ToolTipRole)
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
