@@ -101,6 +101,8 @@ def test_a_scanner_types_the_number_and_presses_return(qtbot: Any, tmp_path: Pat
     dialog.show()
     ok = dialog.buttons.button(QDialogButtonBox.StandardButton.Ok)
     assert not ok.isEnabled() and "serial number" in dialog._will.text()
+    qtbot.waitUntil(lambda: dialog.focusWidget() is not None)
+    assert dialog.focusWidget() is dialog.serial, "what the scanner types arrives there, not at a button"
     qtbot.keyClicks(dialog.serial, "17")
     assert ok.isEnabled() and ok.isDefault()
     qtbot.keyClick(dialog.serial, Qt.Key.Key_Return)
