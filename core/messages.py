@@ -229,12 +229,14 @@ class Language:
         return message.many if message.many and n != 1 else message.text
 
 
-_WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
-"""The space between a number and its unit; East Asian words follow without a space."""
+_WITH_UNIT = re.compile(
+    r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))|(?<=\bISO) (?=\d)"
+)
+"""The space between a number and its unit (East Asian words follow without a space), or a standard and its number."""
 
 
 def unparted(text: str) -> str:
-    """`text` with a space between each number and its unit that no line break parts."""
+    """`text` with spaces that no line break parts between each number and its unit, and in the name of a standard."""
     return _WITH_UNIT.sub(NO_BREAK_SPACE, text)
 
 

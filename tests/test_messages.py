@@ -83,6 +83,7 @@ def test_chinese_names_are_joined_by_their_own_signs():
 
 def test_no_line_break_parts_a_number_from_its_unit():
     assert unparted("0.02 mm of 20 °C, 5 % and 3 places") == "0.02\u00a0mm of 20\u00a0°C, 5\u00a0% and 3 places"
+    assert unparted("by ISO 14253-1 at most") == "by ISO\u00a014253-1 at most"
 
 
 def test_fixed_words_in_a_message_are_told_in_the_readers_language_also_after_a_file():

@@ -100,6 +100,8 @@ def test_calibrations_have_id_age_and_hash(data):
     assert "Camera calibration c3f1a09b22d4, age 12 days" in text
     assert "Fan calibration 9b22d4c3f1a0, age not known" in text
     assert "c3f1a09b22d4 2026-03-02 12:09 12 days " + "ab" * 32 in text
+    lines = [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(data)]
+    assert any("2026-03-02 12:09 12 days" in line for line in lines), "the date is not parted from its time"
     assert "Rig 0123456789ab" in text
 
 

@@ -14,7 +14,10 @@ from core.report.layout.blocks import heads, ruled_table
 from core.report.layout.style import ReportLook
 from core.report.wording import decimals_of
 
-SYMBOLS = {"alpha": "α", "beta": "β", "gamma": "γ ({skew})", "u0": "u₀", "v0": "v₀"}
+SYMBOLS = {
+    **{"alpha": "α", "beta": "β", "gamma": "γ ({skew})", "u0": "u₀", "v0": "v₀"},
+    **{"k1": "k₁", "k2": "k₂", "p1": "p₁", "p2": "p₂", "k3": "k₃"},
+}
 UNITS = {"alpha": "px", "beta": "px", "gamma": "px", "u0": "px", "v0": "px"}
 
 KINDS = {"camera": label("Camera"), "fan": label("Fixed laser (fan)")}
@@ -37,7 +40,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
                 look.text(mark.sha256, "mono"),
             ]
         )
-    fixed = [27 * mm, 22 * mm, 24 * mm, 17 * mm]
+    fixed = [25 * mm, 20.5 * mm, 26 * mm, 21 * mm]
     return ruled_table(rows, [*fixed, width - sum(fixed)])
 
 
