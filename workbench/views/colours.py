@@ -51,8 +51,8 @@ FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
 FEATURE = "#E66AD2"
 """Points and regions of the feature that is chosen."""
 
-DATUM = "#3FB6B2"
-"""Points of the datums that it refers to."""
+DATUM = "#A8703F"
+"""Points of the datums that it refers to; no scale of values has this colour."""
 
 PROPOSED = "#FF6D00"
 """Points of a face that was clicked and is not taken yet; no scale of values has this colour."""

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QComboBox, QPushButton, QWidget
 
+from core.report.wording import grouped
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.camera import words
@@ -75,7 +76,7 @@ class ResidualTab(QWidget):
         self.words.setText(
             tr(
                 "Observed − predicted of {count} corners; a pattern in the arrows: the lens is not fully described.",
-                count=len(residuals.uv),
+                count=grouped(len(residuals.uv)),
             )
         )
         if work.judgement is not self._drawn:

@@ -50,7 +50,7 @@ class SurfaceChoices(QWidget):
         super().__init__(parent)
         self.shapes: dict[Shape, QPushButton] = {}
         self._tips: dict[Shape, str] = {}
-        self._nominal: bool | None = None
+        self._nominal = False
         self._before = "height"
         self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
         look, limit = in_row(spacing=4), in_row(spacing=4)
@@ -82,14 +82,12 @@ class SurfaceChoices(QWidget):
 
     def show_nominal(self, there: bool) -> None:
         """Colour by the chosen feature's deviations from its nominal surface; as before where it has none."""
-        if there == self._nominal:
-            return
-        self._nominal = there
-        if there:
+        was, self._nominal = self._nominal, there
+        if there and not was:
             self._before = self.colour
             self._offer("nominal", "")
             self.choose_colour("nominal")
-        else:
+        elif not there:
             if self.colour == "nominal":
                 self.choose_colour(self._before)
             self._offer("nominal", tr("Choose a deviation from a nominal surface in the list of features."))

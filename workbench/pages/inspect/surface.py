@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
-from PySide6.QtGui import QAction, QHideEvent, QResizeEvent, QShowEvent
+from PySide6.QtGui import QAction, QColor, QHideEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
@@ -38,6 +38,7 @@ from workbench.views.colours import (
 )
 from workbench.views.empty_state import EmptyState
 from workbench.views.layouts import enable, in_column
+from workbench.views.scene.colours import UNKNOWN
 from workbench.views.scene.view import Colouring, SceneView
 
 if TYPE_CHECKING:
@@ -51,6 +52,9 @@ PLAIN = "#8A96A3"
 
 MOST_MARKED = 100_000
 """So many of the points used are marked on a mesh; more would be no clearer."""
+
+GREY = QColor(*UNKNOWN).name()
+"""The surface where a colour bar has no value for it."""
 
 CUT = "cut"
 """Name of the plane that is laid through the surface."""
@@ -305,6 +309,7 @@ class SurfaceTab(QWidget):
         feature = self._deviating()
         assert feature is not None and feature.deviations is not None
         deviation = self._presenter.features.plan.feature(feature.name).deviation
+        assert deviation is not None  # else nothing was compared
         end = 1.25 * feature.deviations.tolerance_mm
         title = tr("deviation from {other}", other=Path(deviation.nominal).name)
         return Colouring(title, "mm", (-end, end), "classes")
@@ -383,6 +388,14 @@ class SurfaceTab(QWidget):
             self.scene.remove_highlight(name)
         for name, face in zip(PROPOSALS, () if proposal is None else proposal.faces, strict=False):
             self.scene.set_highlight(name, face.places, PROPOSED)
+
+    def _grey(self) -> list[str]:
+        """What is grey beside the colours of the bar."""
+        if self.colour == "nominal":
+            return [_dot(GREY, tr("not compared"))]
+        if self.colour == "compared" and self._presenter.comparison.significant_only:
+            return [_dot(GREY, tr("not significant"))]
+        return []
 
     def _legend(self) -> list[str]:
         """What the colours of the chosen feature mean, each with its sign; nothing where none is to be seen."""
@@ -493,7 +506,7 @@ class SurfaceTab(QWidget):
                 upper=_dot(FACE_UPPER, grouped(upper)),
                 lower=_dot(FACE_LOWER, grouped(lower)),
             )
-        self.line.setText(wording().joined([shown, *self._legend()], ";"))
+        self.line.setText(wording().joined([shown, *self._grey(), *self._legend()], ";"))
         self.hint.setText(tr("Outlining …") if p.outlining else p.picks.hint())
 
 

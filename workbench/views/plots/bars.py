@@ -168,7 +168,8 @@ class BarsWithThreshold(Plot):
         self._line.sigPositionChangeFinished.connect(self._let_go)
 
     def _say_threshold(self) -> None:
-        self._line.label.setText(f"{written(self._line.value(), self._height / 200)} {self._unit}")
+        limit = f"{written(self._line.value(), self._height / 200)} {self._unit}"
+        self._line.label.setText(tr("left out above {limit}", limit=limit))
 
     def _moving(self) -> None:
         self._threshold = float(self._line.value())

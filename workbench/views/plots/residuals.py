@@ -31,7 +31,7 @@ class ResidualPlot(Plot):
         self._counted: NDArray[np.bool_] = np.zeros(0, dtype=bool)
         self._size = (1, 1)
         self._rms: float | None = None
-        super().__init__(parent, least_height=220)
+        super().__init__(parent, least_height=170)
         self.kind = QComboBox()
         self.kind.addItems([tr("On the picture"), tr("Scatter")])
         self.kind.setToolTip(tr("Where the residuals are, or how they scatter"))

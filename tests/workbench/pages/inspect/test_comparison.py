@@ -89,6 +89,7 @@ def test_a_file_that_is_chosen_colours_the_scan_by_its_deviation(page, qtbot):
     shown = compared()
     expected = np.where(shown.significant, shown.deviation, np.nan)[order]
     assert np.array_equal(values(page), expected, equal_nan=True), "what may be chance is grey"
+    assert "not significant" in page.surface.line.text()
     assert page.comparison.rows.text_of("Compared with") == "before.ply"
     assert "25.0 %" in page.comparison.rows.text_of("Less material")
     assert page.comparison.rows.text_of("More material") == "nowhere significant"
@@ -97,6 +98,7 @@ def test_a_file_that_is_chosen_colours_the_scan_by_its_deviation(page, qtbot):
 def test_the_mask_can_be_taken_off(page, qtbot):
     press(page, qtbot, page.comparison.file)
     press(page, qtbot, page.comparison.significant)
+    assert "not significant" not in page.surface.line.text()
     assert np.array_equal(values(page), compared().deviation[page.presenter.scan.view.number], equal_nan=True)
 
 

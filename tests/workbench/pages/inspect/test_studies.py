@@ -202,6 +202,16 @@ def test_the_type1_study_of_the_repeats_is_kept_ticked_unticked_removed_and_expo
     assert [one.id for one in studies.all] == [kept.id]
 
 
+@pytest.mark.parametrize("kind", ["grr", "acceptance", "series"])
+def test_the_names_of_the_columns_stay_in_one_line(tab, studies, kind, qtbot):
+    studies.begin(kind)
+    tab.window().refreshing.at_once()
+    editor = tab.editor.text
+    head = editor.document().firstBlock()
+    assert editor.blockBoundingGeometry(head).height() < 1.5 * editor.fontMetrics().lineSpacing()
+    assert editor.horizontalScrollBar().maximum() == 0, "all of it is seen"
+
+
 def test_every_button_says_what_it_does_or_why_it_cannot(tab, studies, presenter, qtbot):
     presenter.model.edit("no repeats", replace(presenter.project, repeats=()))
     tab.window().refreshing.at_once()

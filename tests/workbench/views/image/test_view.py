@@ -216,6 +216,17 @@ def test_layers_are_replaced_hidden_and_listed(view):
     assert view.layer_names() == ()
 
 
+def test_a_legend_never_covers_much_of_a_small_picture(view, qtbot):
+    for number in range(7):
+        view.set_points(f"{number}", [(10, 10)], colour="red", title=f"crossing number {number}")
+    view.resize(900, 700)
+    qtbot.waitUntil(lambda: len(view.legend_titles) == 7)
+    view.resize(240, 270)
+    qtbot.waitUntil(lambda: view.legend_titles == [])
+    view._layers_menu.fill()
+    assert "crossing number 3" in [action.text() for action in view._layers_menu.actions()], "its signs are there"
+
+
 def test_the_menu_hides_and_shows_layers_with_a_title(view):
     view.set_points("corners", [(10, 10)], colour="red", title="Corners")
     view.set_points("nameless", [(10, 10)], colour="red")

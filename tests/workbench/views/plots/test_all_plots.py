@@ -126,6 +126,11 @@ def test_the_threshold_is_dragged_and_told_when_let_go(qtbot):
     assert plot.threshold == changed[0]
 
 
+def test_the_threshold_says_what_it_does(qtbot):
+    plot = shown(qtbot, filled(BarsWithThreshold))
+    assert plot._line.label.toPlainText() == "left out above 0.300 px"
+
+
 def test_the_threshold_moves_by_keys_as_well(qtbot):
     plot = shown(qtbot, filled(BarsWithThreshold))
     with qtbot.waitSignal(plot.threshold_changed) as said:

@@ -257,7 +257,9 @@ class FeaturesPanel(QWidget):
             enable(action, fields.why_not(name, self._features.plan), tr(kind_named(name).help))
         self.add.setToolTip(tr("Measure something beside the thickness"))
         can = self._features.buttons
-        enable(self.measure, can.measure, tr("Measure all features on this scan"))
+        again = tr("All features are up to date. Measure them again, as where a file of a nominal surface has changed")
+        tip = again if self._features.up_to_date else tr("Measure all features on this scan")
+        enable(self.measure, can.measure, tip)
         for button, why_not, tip in (
             (self.remove, can.remove, tr("Take the chosen feature out (Delete)")),
             (self.up, can.up, tr("Move the chosen feature up (Alt+Up)")),

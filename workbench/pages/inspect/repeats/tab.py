@@ -67,7 +67,7 @@ class RepeatsTab(QWidget):
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
         split.addWidget(self.below)
-        split.setSizes([300, 320])
+        split.setSizes([200, 400])  # where both are low, the chart has room for its axis
         split.setChildrenCollapsible(False)
         in_column(split, on=self, margins=(6, 6, 6, 4))
 

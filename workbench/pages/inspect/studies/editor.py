@@ -7,7 +7,7 @@ from PySide6.QtWidgets import QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, 
 
 from workbench.language import tr
 from workbench.pages.inspect.studies import words
-from workbench.pages.inspect.studies.studies import LIMITS, Draft, InspectStudies
+from workbench.pages.inspect.studies.studies import HEADS, LIMITS, Draft, InspectStudies
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import dress
@@ -17,6 +17,8 @@ from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column
 
 FORM_WIDTH = 300
 """Pixels of the fields; the table beside them takes the rest."""
+BESIDE_PX = 44
+"""Left and right of the table's text, its scroll bar included."""
 LONGEST = 5000.0
 """The largest value in mm that can be entered."""
 
@@ -33,6 +35,7 @@ class StudyEditor(QWidget):
         self.text.setFont(QFontDatabase.systemFont(QFontDatabase.SystemFont.FixedFont))
         self.text.setAccessibleName(tr("Table of the study"))
         self.text.setTabChangesFocus(True)
+        self.text.setLineWrapMode(QPlainTextEdit.LineWrapMode.NoWrap)  # a line is a row
         self.text.textChanged.connect(self._written)
         self.forms = {"grr": self._grr_form(), "acceptance": self._acceptance_form(), "series": self._series_form()}
         self.open = QPushButton(icon("mdi6.table-arrow-left"), tr("Open a table …"))
@@ -64,6 +67,7 @@ class StudyEditor(QWidget):
             return
         self.title.setText(words.kind_title(draft.kind))
         self.help.setText(self._help(draft))
+        self.text.setMinimumWidth(self.text.fontMetrics().horizontalAdvance(HEADS[draft.kind].strip()) + BESIDE_PX)
         if self.text.toPlainText() != draft.text:
             self.text.setPlainText(draft.text)
         for kind, form in self.forms.items():

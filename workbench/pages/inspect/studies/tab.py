@@ -28,8 +28,8 @@ from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.control import ControlPlot
 
-LIST_HEIGHT = 150
-"""Pixels of the list of studies; what does not fit is scrolled to."""
+MOST_ROWS = 5
+"""Of the list of studies; what does not fit is scrolled to."""
 LEAST_TABLE_PX, ROWS_PX = 300, 250
 """Widths; where there is less than both the numbers stand below the table."""
 BESIDE_PX = 24
@@ -91,7 +91,6 @@ class StudiesTab(QWidget):
         self.list.setAccessibleName(tr("Studies"))
         self.list.setObjectName("roomy")
         self.list.setRootIsDecorated(False)
-        self.list.setFixedHeight(LIST_HEIGHT)
         self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
         self.list.currentItemChanged.connect(lambda item: self._studies.choose(_id(item)))
         self.list.itemChanged.connect(
@@ -145,6 +144,7 @@ class StudiesTab(QWidget):
             # Qt's own width of a column forgets the room that the style leaves beside a box to tick.
             self.list.setColumnWidth(0, self.list.sizeHintForColumn(0) + BESIDE_PX)
             self.list.blockSignals(False)
+        self._fit_list()
         self.list.setVisible(bool(studies.all))
         self.words.setText(
             tr("Ticked studies go into the report.")
@@ -156,6 +156,12 @@ class StudiesTab(QWidget):
                 "making of the parts is steady, and whether they fit their limits."
             )
         )
+
+    def _fit_list(self) -> None:
+        """As high as its rows, one and the room of a second at least."""
+        rows = min(max(len(self._studies.all), 2), MOST_ROWS)
+        around = self.list.header().sizeHint().height() + 2 * self.list.frameWidth()
+        self.list.setFixedHeight(around + rows * max(self.list.sizeHintForRow(0), 0))
 
     def _show_buttons(self) -> None:
         can = self._studies.buttons
