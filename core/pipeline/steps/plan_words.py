@@ -23,7 +23,7 @@ def plan_rows(result: PlanResult, words: Words) -> list[tuple[str, str]]:
     rows.append((words("sweeps"), words("{used} of {all} give {points} points", **counts)))
     for effect in result.effects:
         value = (
-            words("U {U:.3f} mm ({share:+.0%})", U=effect.U_mm, share=effect.share - 1)
+            words("U {U:.3f} mm ({percent:+.0f} %)", U=effect.U_mm, percent=100 * (effect.share - 1))
             if effect.U_mm is not None
             else words(effect.reason or "")
         )

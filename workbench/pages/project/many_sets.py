@@ -119,6 +119,9 @@ class ManySetsWindow(QWidget):
             bar.setAccessibleName(name)
             bar.setTextVisible(False)
             bar.setRange(0, PARTS)
+            policy = bar.sizePolicy()
+            policy.setRetainSizeWhenHidden(True)
+            bar.setSizePolicy(policy)
             words.setObjectName("muted")
         self.measure = QPushButton(icon("mdi6.play"), tr("Measure"))
         self.stop = QPushButton(icon("mdi6.stop"), tr("Stop"))
@@ -296,6 +299,8 @@ class ManySetsWindow(QWidget):
         self.within.setValue(round(PARTS * now.share) if now is not None else 0)
         self.stage.setText(f"{under_way[0].folder.name}: {tr(now.stage)}" if now is not None and now.stage else "")
         self.bar.setValue(round(PARTS * self._done_share))
+        for bar in (self.within, self.bar):
+            bar.setVisible(bool(self._measured))
         done, total = sum(one.result is not None for one in self._measured), len(self._measured)
         said = [tr("{done} of {total} sets", done=done, total=total)] if total else []
         if self._task is not None and not self._task.cancelling and (left := self._remaining.left) is not None:
@@ -333,7 +338,7 @@ class ManySetsWindow(QWidget):
     def _show_chosen(self) -> None:
         self._show_progress()
         chosen = self._chosen()
-        self.reason.setText(chosen.reason if chosen is not None else "")
+        self.reason.setText(chosen.reason if chosen is not None else "" if self._task else self._not_measurable())
         none = "" if chosen is not None else tr("Choose a set in the table first.")
         running = tr("The sets are being measured.") if self._task is not None else ""
         enable(self.remove, running or none, tr("Take the chosen set out of the table; its files stay"))

@@ -50,7 +50,12 @@ class ReportPresenter(StepPresenter):
 
     def empty_section(self, name: str) -> str:
         """Why a section has nothing to print yet, or ""."""
+        kinds = {feature.kind for feature in self.project.inspection.features}
         nothing = {
+            "sections": "" if "section" in kinds else tr("There is no cross-section among the features yet."),
+            "deviation": ""
+            if "deviation" in kinds
+            else tr("There is no deviation from a nominal surface among the features yet."),
             "repeats": "" if self.project.repeats else tr("No scan has been added to the repeats yet."),
             "studies": ""
             if any(study.included for study in self.project.studies)

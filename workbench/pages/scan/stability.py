@@ -18,7 +18,7 @@ STABILITY: tuple[tuple[str, str, str, int, float], ...] = tuple(
         ("turn", label("Laser turned"), "µrad", 0),
         ("shift_mm", label("Laser shifted"), "µm", 1),
         ("centre_px", label("Picture drifted"), "px", 2),
-        ("focal_share", label("Focal length"), "10⁻⁶", 0),
+        ("focal_share", label("Focal length"), "× 10⁻⁶", 0),
     )
 )
 """Key, name, unit, decimals and what is assumed where nothing is stated."""

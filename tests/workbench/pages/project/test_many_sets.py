@@ -81,6 +81,7 @@ def test_sets_of_a_folder_are_measured_and_one_that_fails_costs_the_others_nothi
     folder, out = sets(tmp_path / "sets", "an empty one"), tmp_path / "out"
     shutil.copytree(tiny_set, folder / "block")
     told: list[tuple[int, SetProgress | SetResult | None]] = []
+    assert shown.reason.text() == "Add recording sets first." and not shown.bar.isVisible()
     choose(folder, out, 2)
     assert states(shown) == ["to do", "to do"]
     for field, value in (("method", Method.THREE_CROSSINGS.value), ("sigma_cut_mm", 0.5)):
@@ -88,6 +89,7 @@ def test_sets_of_a_folder_are_measured_and_one_that_fails_costs_the_others_nothi
     qtbot.waitUntil(lambda: shown.form.values()["sigma_cut_mm"] == 0.5)
     shown.measure.click()
     assert shown._task is not None
+    assert shown.bar.isVisible() and shown.within.isVisible()
     shown._task.reported.connect(told.append)
     qtbot.waitUntil(lambda: states(shown) == ["not measured", "done"], timeout=60_000)
     empty, block = shown.table.rows()

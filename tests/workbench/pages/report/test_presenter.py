@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.files.project.data import KeptStudy, Project, Repeat, new_project
 from core.files.project.keys import finished
 from core.files.results.export_list import EXPORTS
-from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import plain
 from core.translations import PSEUDO, language
@@ -181,7 +181,7 @@ def test_each_choice_is_one_edit_that_can_be_undone(report: ReportPresenter) -> 
 
 def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None:
     empty = {name for name, _, _ in report.sections() if report.empty_section(name)}
-    assert empty == {"repeats", "studies", "remarks", "budget"}
+    assert empty == {"repeats", "studies", "remarks", "budget", "sections", "deviation"}
     at = finished("scan", report.project, {}).at
     repeats, study = (
         (Repeat("a", 50.0, 0.02, 2.0, "c", at),),
@@ -192,6 +192,10 @@ def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None
     report.model.edit("tick", replace(report.project, studies=(replace(study, included=True),)))
     with_info(report, notes="A remark")
     measured(report, "scan", "inspect")
+    nominal = FeatureSpec("nominal", "deviation", deviation=Deviation("part.stl", tolerance_mm=0.1))
+    profile = FeatureSpec("profile", "section", section=Section(((0.0, 0.0), (9.0, 0.0))))
+    plan = InspectionPlan((nominal, profile))
+    report.model.edit("features", replace(report.project, inspection=plan))
     assert not any(report.empty_section(name) for name, _, _ in report.sections())
 
 

@@ -142,7 +142,7 @@ class ConditionsPanel(QWidget):
 
     def _per_kelvin(self, form: SettingsForm, key: str, label: str, help: str) -> None:
         least = 0.0 if key.startswith("u_") else -100.0
-        form.add_number(key, label, NumberRange(least, 1000.0, decimals=2, step=0.5, unit="10⁻⁶/K"), help)
+        form.add_number(key, label, NumberRange(least, 1000.0, decimals=2, step=0.5, unit="× 10⁻⁶/K"), help)
 
     def _add_master(self, form: SettingsForm, plan: InspectionPlan) -> None:
         form.add_section(tr("Master"))
