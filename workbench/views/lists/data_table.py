@@ -58,6 +58,11 @@ class _Texts(QAbstractTableModel):
             self.dataChanged.emit(self.index(0, 0), self.index(now - 1, len(self.titles) - 1))
         self.headerDataChanged.emit(Qt.Orientation.Horizontal, 0, len(self.titles) - 1)
 
+    @property
+    def ends_with_numbers(self) -> bool:
+        """Whether the last column stands right."""
+        return bool(self._right) and self._right[-1]
+
     def rowCount(self, parent: _Index = _NONE) -> int:
         return 0 if parent.isValid() else len(self.rows)
 
@@ -111,7 +116,7 @@ class DataTable(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._model, self.table = _Texts(self), CopyingTable()
+        self._model, self.table, self._shrinking = _Texts(self), CopyingTable(), False
         self.table.setModel(self._model)
         self.table.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.table.setSelectionBehavior(QAbstractItemView.SelectionBehavior.SelectRows)
@@ -135,7 +140,7 @@ class DataTable(QWidget):
 
     def let_shrink(self, column: int) -> None:
         """Let one column take the room that the others leave, cut where that is too little: its tip tells it whole."""
-        header = self.table.horizontalHeader()
+        self._shrinking, header = True, self.table.horizontalHeader()
         header.setStretchLastSection(False)
         header.setMinimumSectionSize(LEAST_PX)
         header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
@@ -157,6 +162,8 @@ class DataTable(QWidget):
         if wrong := next((row for row in rows if len(row) != columns), None):
             raise ValueError(f"{columns} columns, but a row of {len(wrong)}")
         self._model.set_rows(rows, tips)
+        if not self._shrinking:  # numbers at the far end of a wide table would stand alone
+            self.table.horizontalHeader().setStretchLastSection(not self._model.ends_with_numbers)
 
     def rows(self) -> tuple[tuple[str, ...], ...]:
         """The texts as they stand."""

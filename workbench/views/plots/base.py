@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import pyqtgraph as pg
@@ -34,11 +35,33 @@ _TICK_PIXELS = 11
 """Size in pixels of the letters at the axes."""
 
 
+_NUMBER = re.compile(r"[−-]?\d+((?P<point>[.,])(?P<decimals>\d+))?")
+
+
 class Axis(pg.AxisItem):  # type: ignore[misc]
     """An axis whose numbers are those of the window's language."""
 
     def tickStrings(self, values: Any, scale: float, spacing: float) -> list[str]:
         return [numeral(text) for text in super().tickStrings(values, scale, spacing)]
+
+    def generateDrawSpecs(self, painter: QPainter) -> Any:
+        """With as many decimals at each of its numbers; pyqtgraph gives those between the coarse ones more."""
+        specs = super().generateDrawSpecs(painter)
+        if specs is None:
+            return None
+        axis, lines, texts = specs
+        numbers = [_NUMBER.fullmatch(text) for _, _, text in texts]
+        if not all(numbers):
+            return specs
+        most = max((len(found["decimals"] or "") for found in numbers if found), default=0)
+        point = next((found["point"] for found in numbers if found and found["point"]), "")
+        return axis, lines, [(*at, _padded(text, point, most)) for *at, text in texts]
+
+
+def _padded(text: str, point: str, decimals: int) -> str:
+    """A number with so many decimals."""
+    whole, _, part = text.partition(point) if point else (text, "", "")
+    return f"{whole}{point}{part.ljust(decimals, '0')}"
 
 
 class Canvas(pg.PlotWidget):  # type: ignore[misc]

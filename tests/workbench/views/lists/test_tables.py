@@ -183,3 +183,16 @@ def test_the_row_gone_to_is_told_and_kept(qtbot, table):
 def test_a_row_of_another_length_is_refused(table):
     with pytest.raises(ValueError, match="columns"):
         table.set_rows([["only", "two"]])
+
+
+@pytest.mark.parametrize(("last", "reaches"), [("22.7", False), ("in use", True)])
+def test_numbers_do_not_stand_alone_at_the_far_end_of_a_wide_table(qtbot, last, reaches):
+    table = DataTable()
+    qtbot.addWidget(table)
+    table.resize(900, 200)
+    table.set_headers([("Source", ""), ("s", "mm"), ("Of T", "%")])
+    table.set_rows([("gauge R&R", "0.302", last)])
+    table.show()
+    qtbot.waitExposed(table)
+    header = table.table.horizontalHeader()
+    assert (header.length() >= table.table.viewport().width()) is reaches

@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 from PySide6.QtCore import QPoint, QPointF, Qt
+from PySide6.QtGui import QImage, QPainter
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QScrollArea, QVBoxLayout, QWidget
 
@@ -91,6 +92,20 @@ def test_counts_begin_at_zero_and_numbers_have_a_true_minus(qtbot):
     low, high = chart._box.viewRange()[1]
     assert low == pytest.approx(0.0, abs=0.02 * 40) and high > 40
     assert chart._item.getAxis("bottom").tickStrings([-0.5, 0.5], 1.0, 0.5) == ["−0.5", "0.5"]
+
+
+def test_numbers_at_an_axis_have_as_many_decimals(qtbot):
+    for limits in ((49.75, 50.25), (-0.15, 0.15), (0.0, 3.0)):
+        chart = shown(qtbot, LineChart())
+        chart.resize(300, 700)
+        chart.set_axes("scan", "", "thickness", "mm")
+        chart.set_curve("runs", [1, 2], limits)
+        chart.canvas.grab()
+        axis, image = chart._item.getAxis("left"), QImage(10, 10, QImage.Format.Format_RGB32)
+        painter = QPainter(image)
+        texts = [text for *_, text in axis.generateDrawSpecs(painter)[2]]
+        painter.end()
+        assert len(texts) > 2 and len({len(text.partition(".")[2]) for text in texts}) == 1, texts
 
 
 def test_the_wheel_is_left_to_the_panel_around_a_plot(qtbot):
