@@ -145,6 +145,12 @@ class DataTable(QWidget):
         header.setMinimumSectionSize(LEAST_PX)
         header.setSectionResizeMode(column, QHeaderView.ResizeMode.Stretch)
 
+    def show_rows(self, most: int) -> None:
+        """Be high enough for all the rows there are now, or for so many."""
+        table = self.table
+        rows = min(self._model.rowCount(), most) * table.verticalHeader().defaultSectionSize()
+        table.setMinimumHeight(table.horizontalHeader().sizeHint().height() + rows + 2 * table.frameWidth())
+
     def set_headers(self, headers: Sequence[Header]) -> None:
         """The columns; rows shown before are gone."""
         titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]

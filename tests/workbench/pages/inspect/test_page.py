@@ -571,6 +571,14 @@ def test_the_repeats_are_studied_beside_their_chart(shown, qtbot):
     assert len(shown.series.histogram._values) == 4
 
 
+def test_the_chart_of_the_repeats_shows_its_axis_in_the_lowest_window(shown, qtbot):
+    shown.tabs.setCurrentWidget(shown.series)
+    shown.resize(760, 380)
+    qtbot.wait(50)
+    charts = shown.series.charts
+    assert charts.height() >= charts.minimumSizeHint().height()
+
+
 def test_what_the_part_is_made_of_is_chosen_on_the_page(page, qtbot):
     scan(page, qtbot)
     page.part_fold.expand(animate=False)

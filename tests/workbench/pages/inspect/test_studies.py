@@ -73,6 +73,8 @@ def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presente
     tab.editor.make.click()
     made(studies, qtbot)
     tab.window().refreshing.at_once()
+    assert tab.table.table.verticalScrollBar().maximum() == 0, "no scrolling within what scrolls"
+    assert tab.list.height() < 120, "one study takes no room of many"
     assert tab.stack.currentIndex() == 0 and tab.list.topLevelItem(0).text(1) == "10 parts × 3 operators × 3 repeats"
     words = tab.list.fontMetrics().horizontalAdvance(tab.list.topLevelItem(0).text(0))
     assert tab.list.columnWidth(0) > words + tab.list.style().pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth) + 8

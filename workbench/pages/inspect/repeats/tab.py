@@ -18,7 +18,7 @@ from workbench.views.plots.runs import Histogram, RunChart
 
 ROWS_PX = 230
 """Least width of the statistics."""
-CHART_PX = 260, 200
+CHART_PX = 260, 236
 """Least width and height of a chart: what its lines mean can be read in it."""
 CALIBRATION = 3
 """Column of the calibration that a scan was measured with."""

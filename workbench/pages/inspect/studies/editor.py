@@ -15,9 +15,9 @@ from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column, in_row, muted, say
 
-FORM_WIDTH = 300
+FORM_WIDTH = 250
 """Pixels of the fields; the table beside them takes the rest."""
-BESIDE_PX = 44
+BESIDE_PX = 40
 """Left and right of the table's text, its scroll bar included."""
 LONGEST = 5000.0
 """The largest value in mm that can be entered."""

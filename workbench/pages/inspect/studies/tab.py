@@ -30,6 +30,8 @@ from workbench.views.plots.control import ControlPlot
 
 MOST_ROWS = 5
 """Of the list of studies; what does not fit is scrolled to."""
+MOST_IN_SIGHT = 8
+"""Rows of a study's table that are seen without scrolling within it."""
 LEAST_TABLE_PX, ROWS_PX = 300, 250
 """Widths; where there is less than both the numbers stand below the table."""
 BESIDE_PX = 24
@@ -196,6 +198,7 @@ class StudiesTab(QWidget):
         self.rows.set_rows(words.rows(kept.kind, study))
         self.table.set_headers(headers)
         self.table.set_rows(body)
+        self.table.show_rows(MOST_IN_SIGHT)
         self.notes.setText("\n".join(map(text_of, study.notes)))
 
     def _export(self) -> None:
