@@ -108,15 +108,21 @@ def text_plate(
     painter: QPainter, at: QPointF, text: str, colours: OverlayColours, colour: QColor | None = None
 ) -> QRectF:
     """A text on a plate, its middle at `at`; the plate's rectangle."""
-    painter.setFont(_small(painter.font()))
-    box = painter.fontMetrics().boundingRect(0, 0, 1000, 1000, int(Qt.AlignmentFlag.AlignLeft), text)
-    plate = QRectF(0, 0, box.width() + 10, box.height() + 4)
-    plate.moveCenter(at)
+    plate = _plate(painter, at, text)
     painter.setPen(Qt.PenStyle.NoPen)
     painter.setBrush(colours.plate)
     painter.drawRoundedRect(plate, 4, 4)
     painter.setPen(colour or colours.text)
     painter.drawText(plate, int(Qt.AlignmentFlag.AlignCenter), text)
+    return plate
+
+
+def _plate(painter: QPainter, at: QPointF, text: str) -> QRectF:
+    """Of a text in small letters, which the painter has then, its middle at `at`."""
+    painter.setFont(_small(painter.font()))
+    box = painter.fontMetrics().boundingRect(0, 0, 1000, 1000, int(Qt.AlignmentFlag.AlignLeft), text)
+    plate = QRectF(0, 0, box.width() + 10, box.height() + 4)
+    plate.moveCenter(at)
     return plate
 
 
@@ -141,15 +147,19 @@ def _small(font: QFont) -> QFont:
 def _paint_labels(
     painter: QPainter, labels: Labels, camera: SceneCamera, size: tuple[int, int], colours: OverlayColours
 ) -> None:
+    """A dot at each place, and its text where that would cover no nearer one's."""
     screen, depth = camera.project(labels.places, size)
     colour = QColor(*labels.colour) if labels.colour is not None else None
-    for k in np.argsort(-depth):
-        if depth[k] > 0 and np.isfinite(screen[k]).all():
-            at = QPointF(float(screen[k, 0]), float(screen[k, 1]))
-            text_plate(painter, at - QPointF(0, 14), labels.texts[k], colours, colour)
-            painter.setPen(Qt.PenStyle.NoPen)
-            painter.setBrush(colour or colours.text)
-            painter.drawEllipse(at, 2.2, 2.2)
+    shown = [int(k) for k in np.argsort(depth) if depth[k] > 0 and np.isfinite(screen[k]).all()]
+    painter.setPen(Qt.PenStyle.NoPen)
+    painter.setBrush(colour or colours.text)
+    for k in shown:
+        painter.drawEllipse(QPointF(*screen[k]), 2.2, 2.2)
+    taken: list[QRectF] = []
+    for k in shown:
+        above = QPointF(*screen[k]) - QPointF(0, 14)
+        if not any(_plate(painter, above, labels.texts[k]).intersects(other) for other in taken):
+            taken.append(text_plate(painter, above, labels.texts[k], colours, colour))
 
 
 def _paint_measure(

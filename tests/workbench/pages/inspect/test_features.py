@@ -203,6 +203,18 @@ def test_the_plan_is_measured_and_stays_so_after_opening_again(presenter, featur
     assert measuring.ran[-1] == jobs.LOOK_AT_FEATURES
 
 
+def test_features_that_are_only_read_again_are_not_said_to_be_measured(presenter, page, features, measuring, qtbot):
+    presenter.feature.add("plane")
+    measured(features, qtbot)
+    model = presenter.model
+    model.save()
+    measuring.held = {jobs.LOOK_AT_FEATURES}
+    model.open(model.folder)
+    qtbot.waitUntil(lambda: features.measuring)
+    page.refreshing.at_once()
+    assert page.features.list.topLevelItem(0).text(1) == "reading …"
+
+
 def test_a_plan_measured_once_is_measured_anew_when_it_changes(presenter, features, measuring, qtbot):
     presenter.feature.add("plane")
     assert jobs.MEASURE_FEATURES not in measuring.ran

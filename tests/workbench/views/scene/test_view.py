@@ -356,6 +356,25 @@ def test_labels_and_measures_are_written_over_the_scene(view, qtbot):
     assert_array_equal(view.picture(), before)
 
 
+def test_no_label_is_written_over_another_one(view, qtbot, monkeypatch):
+    painted, said = overlay.text_plate, []
+
+    def noting(painter: QPainter, at: QPointF, text: str, *args: Any) -> Any:
+        said.append(text)
+        return painted(painter, at, text, *args)
+
+    monkeypatch.setattr(overlay, "text_plate", noting)
+    view.set_cloud(SPARSE, colours="#808080")
+    view.view("top")
+    towards = np.array([0.0, 0.0, 5.0])
+    view.set_labels("poses", [(SPARSE[0] + towards, "01"), (SPARSE[0] - towards, "02"), (SPARSE[19], "03")])
+    complete(view, qtbot)
+    said.clear()
+    view.picture()
+    poses = [text for text in said if text.startswith("0")]
+    assert len(poses) == 2 and "03" in poses, "of two at one place the nearer"
+
+
 def test_the_ground_follows_the_theme_at_once(view, qtbot, theme):
     view.set_cloud(SPARSE, colours=RED)
     for name, dark in (("dark", True), ("light", False)):

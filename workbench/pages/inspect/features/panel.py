@@ -182,7 +182,7 @@ class FeaturesPanel(QWidget):
         below = [self._row(words.short_name(row, name), row, name) for row in rows] if len(rows) > 1 else []
         tips = [tr(kind.title)]
         if result is None:
-            item.setText(1, tr("measuring …") if self._features.measuring else tr("not measured"))
+            item.setText(1, self._state())
         elif result.problem:
             item.setText(1, tr("cannot be measured"))
             item.setIcon(1, icon("mdi6.alert-outline", colour="warn"))
@@ -251,6 +251,12 @@ class FeaturesPanel(QWidget):
         self.remove.clicked.connect(self._remove)
         self.up.clicked.connect(lambda: self._features.move(self._features.chosen, -1))
         self.down.clicked.connect(lambda: self._features.move(self._features.chosen, 1))
+
+    def _state(self) -> str:
+        """Of a feature without a value."""
+        if not self._features.measuring:
+            return tr("not measured")
+        return tr("reading …") if self._features.up_to_date else tr("measuring …")
 
     def _show_buttons(self) -> None:
         for name, action in self.kinds.items():
