@@ -319,10 +319,12 @@ def _fixed(value: float, decimals: int, *, signed: bool = False) -> str:
 
 def _sources(budget: UncertaintyBudget, digits: int) -> str:
     largest = sorted(budget.rows, key=lambda row: -row.u_mm)
-    return ", ".join(
-        f"{told(row.source)} {_fixed(row.u_mm, digits)} {budget.unit}"
-        for row in largest
-        if row.u_mm >= 0.1 * budget.u > 0
+    return spoken().joined(
+        [
+            f"{told(row.source)} {_fixed(row.u_mm, digits)} {budget.unit}"
+            for row in largest
+            if row.u_mm >= 0.1 * budget.u > 0
+        ]
     )
 
 
@@ -336,7 +338,7 @@ def _type1(study: Type1Study) -> Rows:
     lines = [
         (tr("repeats"), tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s))),
         (
-            tr("reference"),
+            tr("reference value"),
             tr(
                 "{value:g} {unit}, T = {tolerance:g} {unit}",
                 value=study.reference,

@@ -60,6 +60,10 @@ class Words:
         """Several texts in a row, `how` as in `core.messages`."""
         return self.language.joined(texts, how)
 
+    def in_unit(self, quantity: str, unit: str) -> str:
+        """What a column or an axis shows, with the unit of its numbers."""
+        return self.language.label("{quantity}, {unit}", quantity=quantity, unit=unit)
+
     def time(self, at: datetime, *, seconds: bool = False) -> str:
         """Date and time of day, in the time zone that `at` is in."""
         return self.language.time(at, seconds=seconds)

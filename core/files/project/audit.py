@@ -42,7 +42,7 @@ WHAT_NAMES: Mapping[What, str] = {
     "created": label("created"),
     "saved": label("saved"),
     "taken over": label("taken over"),
-    "measured": label("measured"),
+    "measured": label("results made"),
     "reported": label("report made"),
     "remark": label("remark"),
     "people": label("people changed"),

@@ -73,7 +73,7 @@ def study_lines(study: Study) -> dict[str, float]:
         lines |= {label("upper limit"): study["upper_limit"], label("lower limit"): study["lower_limit"]}
     else:
         tenth = 0.1 * study["tolerance_width"]
-        lines = {label("mean"): study["mean"], label("reference"): study["reference"]}
+        lines = {label("mean"): study["mean"], label("reference value"): study["reference"]}
         lines |= {
             label("reference + 0.1 T"): study["reference"] + tenth,
             label("reference − 0.1 T"): study["reference"] - tenth,
@@ -127,7 +127,7 @@ def _repeats(look: ReportLook, study: Study) -> dict[str, str]:
 def _type1(look: ReportLook, study: Study) -> dict[str, str]:
     decimals, unit, words = max(decimals_of(study["s"] or math.nan), 3), study["unit"], look.words
     lengths = {
-        words("reference"): study["reference"],
+        words("reference value"): study["reference"],
         words("T"): study["tolerance_width"],
         words("mean"): study["mean"],
         words("s (n − 1)"): study["s"],
