@@ -42,8 +42,7 @@ class InputError(Exception):
         """The sentence in a reader's language."""
         where, todo = self.where, language(self.todo)
         parts = [language(where) if isinstance(where, Message) else where, language(self.what), todo]
-        where, what, todo = _shortened([visible(part) for part in parts])
-        return f"{f'{where}: ' if where else ''}{what}{f'; {todo}' if todo else ''}."
+        return language(_sentence(*map(plain, _shortened([visible(part) for part in parts]))))
 
     @property
     def reason(self) -> Message:
@@ -54,16 +53,8 @@ class InputError(Exception):
     @property
     def message(self) -> Message:
         """The whole sentence as a message, for notes and files."""
-        where, what, todo = self.where, self.what, self.todo
-        if not isinstance(where, Message):
-            where = plain(where)
-        if where.text and todo.text:
-            return Message("input.where_what_todo", "{where}: {what}; {todo}.", where=where, what=what, todo=todo)
-        if where.text:
-            return Message("input.where_what", "{where}: {what}.", where=where, what=what)
-        if todo.text:
-            return Message("input.what_todo", "{what}; {todo}.", what=what, todo=todo)
-        return Message("input.what", "{what}.", what=what)
+        where = self.where if isinstance(self.where, Message) else plain(self.where)
+        return _sentence(where, self.what, self.todo)
 
     def __reduce__(self) -> tuple[object, ...]:
         return _restored, (type(self), self.what, self.where, self.todo)
@@ -84,6 +75,16 @@ class WrongValue(ValueError):
     def __init__(self, what: Message) -> None:
         super().__init__(what)
         self.what = what
+
+
+def _sentence(where: Message, what: Message, todo: Message) -> Message:
+    if where.text and todo.text:
+        return Message("input.where_what_todo", "{where}: {what}; {todo}.", where=where, what=what, todo=todo)
+    if where.text:
+        return Message("input.where_what", "{where}: {what}.", where=where, what=what)
+    if todo.text:
+        return Message("input.what_todo", "{what}; {todo}.", what=what, todo=todo)
+    return Message("input.what", "{what}.", what=what)
 
 
 def words_of(error: Exception) -> Message | str:

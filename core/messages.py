@@ -229,15 +229,21 @@ class Language:
         return message.many if message.many and n != 1 else message.text
 
 
-_WITH_UNIT = re.compile(
-    r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))|(?<=\bISO) (?=\d)"
-)
-"""The space between a number and its unit (East Asian words follow without a space), or a standard and its number."""
+_WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|min|h|ppm)(?![^\W\u2e80-\uffff]))")
+"""The space between a number and its unit; East Asian words follow without a space."""
+_EQUATION = re.compile(r"(?<=\w) = (?=[+\-−±]?\d)")
+"""The sign between a symbol and its number, as in U = 0.02 mm."""
+_STANDARD = re.compile(r"(?<=\bISO) (?=\d)|(?<=/VDE) (?=\d)")
+"""The space within the name of a standard, as in ISO 14253-1."""
+_COUNTED = re.compile(r"(?<=\d) (?=[\u4e00-\u9fff])")
+"""The space between a number and the Chinese measure word it counts in."""
 
 
 def unparted(text: str) -> str:
-    """`text` with spaces that no line break parts between each number and its unit, and in the name of a standard."""
-    return _WITH_UNIT.sub(NO_BREAK_SPACE, text)
+    """`text` with spaces that no line break parts: of a number and its unit or symbol, of a standard's name."""
+    for space in (_WITH_UNIT, _STANDARD, _COUNTED):
+        text = space.sub(NO_BREAK_SPACE, text)
+    return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)
 
 
 def capital(text: str) -> str:

@@ -129,3 +129,9 @@ def test_a_refused_value_is_an_ordinary_error_of_pythons_too():
     again = pickle.loads(pickle.dumps(error.value))
     assert isinstance(again, WrongValue)
     assert again.what == Message("study.no_repeats", "repeats need one finite thickness or more")
+
+
+def test_a_sentence_has_the_signs_of_the_readers_language():
+    error = InputError(Message("file.missing", "the file is missing"), where="rig.toml", todo="x")
+    assert error.told() == "rig.toml: the file is missing; x."
+    assert error.told(language("zh_CN")) == "rig.toml：缺少该文件；x。"

@@ -6,14 +6,17 @@ one is chosen, the window is replaced.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import replace
 from datetime import datetime
 from typing import Any
 
 from PySide6.QtCore import QCoreApplication, QLibraryInfo, QObject, QTranslator
+from PySide6.QtGui import QFontDatabase, QFontInfo
+from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError, WrongValue
-from core.messages import Language, Message, label
+from core.messages import Language, Message, capital, label
 from core.translations import languages
 from workbench.work.worker import ENDED, Failure
 
@@ -60,6 +63,11 @@ _chosen = _for_the_window(Language())
 _of_qt: QTranslator | None = None
 """Qt's own words, as on the buttons of its dialogs."""
 
+FONTS = {
+    "zh_CN": ("Sans CJK SC", "Han Sans SC", "Sans SC", "YaHei UI", "YaHei", "PingFang SC", "MicroHei", "Micro Hei"),
+}
+"""In the names of fonts, the best first, whose characters are a language's: East Asian ones differ by country."""
+
 
 def choose(language: Language, parent: QObject) -> None:
     """Have windows that are built from now on speak `language`; what is shown already stays as it is."""
@@ -70,6 +78,18 @@ def choose(language: Language, parent: QObject) -> None:
     _of_qt = QTranslator(parent)
     if _of_qt.load(f"qtbase_{language.name}", QLibraryInfo.path(QLibraryInfo.LibraryPath.TranslationsPath)):
         QCoreApplication.installTranslator(_of_qt)
+    _write_as(language.name)
+
+
+def _write_as(name: str) -> None:
+    """Have windows that are built from now on draw a language's characters as it writes them."""
+    font = QApplication.font()
+    there = QFontDatabase.families() if name in FONTS else []
+    found = [family for part in FONTS.get(name, ()) for family in there if part in family][:1]
+    if not found and len(font.families()) < 2:
+        return
+    font.setFamilies([QFontInfo(font).family(), *found])
+    QApplication.setFont(font)
 
 
 def chosen() -> Language:
@@ -103,6 +123,21 @@ def text_of(message: Message | Exception | Failure | str) -> str:
     if isinstance(message, WrongValue):
         return _chosen(message.what)
     return _chosen(message) if isinstance(message, Message) else str(message)
+
+
+def joined(texts: Iterable[str], how: str = "") -> str:
+    """Several texts in a row, as the window's language parts them: `how` is ";" for parts that hold commas, "and"."""
+    return _chosen.joined(list(texts), how)
+
+
+def sentence(text: str) -> str:
+    """A text as a sentence, with the full stop of the window's language."""
+    return _chosen(Message("input.what", "{what}.", what=capital(text)))
+
+
+def named(name: str, text: str) -> str:
+    """A text after what it is about, with the colon of the window's language."""
+    return tr("{name}: {value}", name=name, value=text)
 
 
 def numeral(digits: str) -> str:

@@ -9,7 +9,7 @@ from enum import StrEnum
 from core.files.project.data import Done, Project
 from core.files.project.keys import changed, rests_on
 from core.messages import label
-from workbench.language import time_of, tr
+from workbench.language import joined, time_of, tr
 
 ORDER = ("project", "camera", "planes", "scan", "inspect", "report")
 """The steps in the order of work."""
@@ -66,14 +66,14 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
         why = list(changed(done.rests_on, rests_on(step, project, results)))
         stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
-            return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=", ".join(why)))
+            return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=joined(why)))
         if stale:
-            names = ", ".join(tr(_NAMES[need]) for need in stale)
+            names = joined(tr(_NAMES[need]) for need in stale)
             return StepState(State.OUTDATED, tr("Out of date, because this is: {steps}.", steps=names))
         return StepState(State.DONE, tr("Done on {at}.", at=time_of(done.at)))
     missing = [need for need in NEEDS[step] if need not in results]
     if missing:
-        return StepState(State.TODO, tr("First: {steps}.", steps=", ".join(tr(_NAMES[need]) for need in missing)))
+        return StepState(State.TODO, tr("First: {steps}.", steps=joined(tr(_NAMES[need]) for need in missing)))
     return StepState(State.READY, tr("Ready to be done."))
 
 

@@ -41,7 +41,7 @@ def show(plan: ImportPlan, target: Path, rig: Path | None, *, dry_run: bool, as_
         _print_pictures(plan.pictures)
     rows = [(part, _part_in_words(plan, part)) for part in plan.parts]
     if imported is not None:
-        ways = ", ".join(tr("{n} as {way}", n=n, way=told(way)) for way, n in imported.ways.items())
+        ways = spoken().joined([tr("{n} as {way}", n=n, way=told(way)) for way, n in imported.ways.items()])
         rows += [(tr("files"), ways), (tr("written"), f"{target}: {', '.join(plan.parts)}, {IMPORTED}")]
     output.print_rows(rows, notes if imported is not None else (*notes, _NOTHING_WRITTEN))
 

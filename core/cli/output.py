@@ -333,7 +333,7 @@ def _past_check(check: PastCheck, chart: ControlChart) -> str:
         "{step:g} mm off by {error:+.3f} mm, {where} {lower:+.3f} … {upper:+.3f} mm {rule}",
         step=check.step_mm, error=check.error_mm, where=where, lower=chart.lower, upper=chart.upper, rule=rule,
     )  # fmt: skip
-    return f"{tr(CHECKS[check.verdict])}, {by}; {off}{warm}"
+    return spoken().joined([spoken().joined([tr(CHECKS[check.verdict]), by]), f"{off}{warm}"], ";")
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
@@ -354,7 +354,7 @@ def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
     )
     rows = [(tr("frames"), told(said))]
     for reason, names in reasons.items():
-        shown = ", ".join(names[:_NAMES_SHOWN]) + (", …" if len(names) > _NAMES_SHOWN else "")
+        shown = spoken().joined(names[:_NAMES_SHOWN] + ["…"] * (len(names) > _NAMES_SHOWN))
         rows.append(("", tr("{n} left out: {reason} ({names})", n=len(names), reason=reason, names=shown)))
     return [*rows, (tr("points"), grouped(points))]
 
@@ -372,7 +372,7 @@ def picture_rows(pictures: Sequence[PictureStep]) -> Rows:
             if one.reason is None
             else told(one.reason)
         )
-        rows.append(("", f"{one.name}: {step}"))
+        rows.append(("", tr("{name}: {value}", name=one.name, value=step)))
     return rows
 
 

@@ -214,7 +214,9 @@ def _told(entry: Entry) -> str:
     from core.files.project.people import ROLE_NAMES
 
     said = tr("{what} by {who} on {host}", what=tr(WHAT_NAMES[entry.what]), who=entry.who, host=entry.host)
-    return f"{said}, {entry.by} ({tr(ROLE_NAMES[entry.role])})" if entry.role in ROLE_NAMES else said
+    if entry.role not in ROLE_NAMES:
+        return said
+    return spoken().joined([said, f"{entry.by} ({tr(ROLE_NAMES[entry.role])})"])
 
 
 def _pin(name: str) -> str:

@@ -9,13 +9,14 @@ from dataclasses import replace
 import pytest
 import shiboken6
 from PySide6.QtCore import QCoreApplication, QEvent
+from PySide6.QtGui import QFontDatabase, QFontInfo
 from PySide6.QtWidgets import QApplication, QPushButton
 
 import workbench.language
 from core.translations import language
 from workbench.app import build_window, speak
 from workbench.bench import Bench
-from workbench.language import choose, spoken
+from workbench.language import choose, joined, named, sentence, spoken
 from workbench.main_window import MainWindow
 from workbench.work import jobs
 
@@ -73,3 +74,24 @@ def test_while_something_is_measured_the_language_changes_at_the_next_start(wind
     windows[0].menus.actions["language zh_CN"].trigger()
     assert windows[0].notice_list.count() >= 1
     assert speaks(windows, "en", 1) and bench.settings.language == "zh_CN"
+
+
+def test_chinese_is_drawn_with_chinese_characters_and_latin_as_before(qapp, monkeypatch):
+    latin = QFontInfo(qapp.font()).family()
+    monkeypatch.setattr(QFontDatabase, "families", lambda: ["Noto Sans CJK JP", "Microsoft YaHei"])
+    try:
+        choose(language("zh_CN"), qapp)
+        assert qapp.font().families() == [latin, "Microsoft YaHei"]
+    finally:
+        choose(language("en"), qapp)
+    assert qapp.font().families() == [latin]
+
+
+def test_words_are_put_together_with_the_signs_of_the_language(qapp):
+    try:
+        choose(language("zh_CN"), qapp)
+        assert named("量具 R&R", sentence(joined(("甲", "乙")))) == "量具 R&R：甲、乙。"
+        choose(language("de"), qapp)
+        assert named("Streuung", sentence(joined(("a", "b"), ";"))) == "Streuung: A; b."
+    finally:
+        choose(language("en"), qapp)

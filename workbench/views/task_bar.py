@@ -5,7 +5,7 @@ from __future__ import annotations
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
 
-from workbench.language import tr
+from workbench.language import named, tr
 from workbench.views.layouts import Elided, enable
 
 
@@ -46,7 +46,7 @@ class TaskBar(QWidget):
 
     def progress(self, label: str, stage: str, share: float | None, left: str) -> None:
         """What the job is doing, the share of it that is done (None: unknown), and the time left in words."""
-        self._label.setText(f"{label}: {stage}" if stage else label)
+        self._label.setText(named(label, stage) if stage else label)
         if share is None:
             self._bar.setRange(0, 0)
         else:

@@ -10,7 +10,7 @@ from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
 from core.calibrate.grades import TILT, VIEWS
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
-from workbench.language import number, text_of, tr
+from workbench.language import named, number, text_of, tr
 from workbench.pages.calibration.words import graded_row, history_row, used_row
 from workbench.pages.words import degrees, mm, percent, px
 from workbench.views.lists.value_rows import ValueRow
@@ -120,7 +120,7 @@ def view_sentence(name: str, quality: ViewQuality | None) -> str:
         )
     reason = text_of(quality.reason or "")
     if math.isnan(quality.rms_px):
-        return f"{name}: {reason}"
+        return named(name, reason)
     return tr("{name}: {reason}; RMS {rms}", name=name, reason=reason, rms=px(quality.rms_px))
 
 

@@ -9,8 +9,8 @@ from core.calibrate.camera.views import RecalledCamera, SeenViews, ViewsJudgemen
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
-from core.messages import Message, capital
-from workbench.language import text_of, tr
+from core.messages import Message
+from workbench.language import joined, sentence, text_of, tr
 from workbench.pages.calibration.work import CalibrationWork, Key
 from workbench.work import jobs
 
@@ -54,7 +54,7 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
         if not isinstance(problem, InputError) or problem.where not in ("", "camera"):
             return super()._in_words(problem)
         said = [text_of(part) for part in (problem.what, problem.todo) if str(part)]
-        return capital(f"{'; '.join(said)}.")
+        return sentence(joined(said, ";"))
 
     def _recall(self, folder: Path, project: Project) -> None:
         if not project.accepted.camera:

@@ -9,7 +9,7 @@ from PySide6.QtCore import QObject, Signal
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.kinds import kind_of
 from core.report.wording import grouped
-from workbench.language import number, tr
+from workbench.language import joined, number, tr
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.plan import REMEMBERING, InspectFeatures
 from workbench.pages.inspect.scan import InspectScan
@@ -123,7 +123,7 @@ class InspectClicked(QObject):
         if not faces:
             click = tr("Click a face.") if self.mode == "face" else tr("Click the first of two faces.")
             return click + " " + tr("Drag turns the view, Esc ends.")
-        shown = "; ".join(map(_said, faces))
+        shown = joined(map(_said, faces), ";")
         if self.mode == "step" and len(faces) < 2:
             return shown + "\n" + tr("Click the second face. Esc ends.")
         return shown + "\n" + self._what_enter_does() + " " + tr("Click elsewhere for another, Esc drops it.")

@@ -16,7 +16,7 @@ from core.files.recording.recorder import Ending
 from core.messages import Message
 from core.pipeline.live.sources import SOURCES
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import sentence, text_of, tr
 from workbench.work import jobs
 
 FIRST = next(iter(SOURCES))
@@ -127,7 +127,7 @@ class LiveSettings(QObject):
         def found(devices: Any, missing: Message | None = None) -> None:
             if kind == self.kind:
                 self.devices, self.looking = tuple(devices), False
-                self.missing = "" if missing is None else f"{text_of(missing)}."
+                self.missing = "" if missing is None else sentence(text_of(missing))
                 self.devices_changed.emit()
 
         def listed(devices: Any) -> None:

@@ -9,8 +9,7 @@ from typing import Any
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
-from core.messages import capital
-from workbench.language import number, text_of, tr
+from workbench.language import joined, named, number, sentence, text_of, tr
 from workbench.pages.calibration.words import history_row, used_row
 from workbench.pages.words import degrees, mm, px
 from workbench.views.colours import Level
@@ -45,7 +44,7 @@ def left_out_lines(poses: Sequence[PlanePose | PoseFeatures]) -> list[str]:
         if pose.reason:
             reasons.setdefault(text_of(pose.reason), []).append(pose.name)
     return [
-        f"{len(names)} × {reason}: {', '.join(names)}"
+        named(f"{len(names)} × {reason}", joined(names))
         for reason, names in sorted(reasons.items(), key=lambda entry: -len(entry[1]))
     ]
 
@@ -53,7 +52,7 @@ def left_out_lines(poses: Sequence[PlanePose | PoseFeatures]) -> list[str]:
 def verdict_sentence(calibration: FanCalibration | None) -> str:
     """Whether the laser is the pencil it is said to be, as a sentence."""
     verdict = text_of((calibration and calibration.verdict) or "")
-    return f"{capital(verdict)}." if verdict else ""
+    return sentence(verdict) if verdict else ""
 
 
 def notes(calibration: FanCalibration | None) -> str:
@@ -61,7 +60,7 @@ def notes(calibration: FanCalibration | None) -> str:
     if calibration is None:
         return ""
     said = [text_of(note) for note in calibration.notes if note.code != "fan.poses_left_out"]
-    return "\n".join(f"{capital(note)}." if note[-1:] != "." else note for note in said)
+    return "\n".join(sentence(note) if note[-1:] not in ".。" else note for note in said)
 
 
 def short_names(names: Sequence[str]) -> list[str]:
@@ -117,7 +116,7 @@ def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...
     """The kept planes: when, RMS of each line, poses, id, camera, whether in use."""
     return [
         history_row(
-            entry, accepted, ", ".join(number(rms, '.3f') for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
+            entry, accepted, joined(number(rms, ".3f") for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
             entry.id, entry.camera_id,
         )
         for entry in entries

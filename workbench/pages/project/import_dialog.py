@@ -25,7 +25,7 @@ from PySide6.QtWidgets import (
 from core.files.recording.import_pictures import Imported
 from core.files.recording.import_plan import ImportedPicture, ImportPlan, ImportRequest, Order, Where
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import joined, named, sentence, text_of, tr
 from workbench.views import ask
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
@@ -172,7 +172,10 @@ class ImportDialog(QDialog):
         if plan is None:
             told = [tr("Nothing is written before you press Import; the pictures themselves stay as they are.")]
         else:
-            told = [f"{part}: {len(found)}, {text_of(plan.rules[part])}." for part, found in plan.parts.items()]
+            told = [
+                named(part, sentence(joined((str(len(found)), text_of(plan.rules[part])), ";")))
+                for part, found in plan.parts.items()
+            ]
             told += [f"⚠ {text_of(note)}" for note in plan.notes]
         self.words.setText("\n".join(told))
         self._show_whether()

@@ -19,7 +19,7 @@ from core.pipeline.set_result import SET_COLUMNS, SetProgress, SetResult, set_ce
 from core.remaining import Remaining, in_words
 from core.states import SET_STATES
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import joined, named, text_of, tr
 from workbench.pages.scan_form import add_scan_settings
 from workbench.pages.scan_settings import changed_options, values_of
 from workbench.pages.stripes import set_stripe_editable
@@ -297,7 +297,7 @@ class ManySetsWindow(QWidget):
         under_way = [one for one in (chosen, *self._measured) if one is not None and one.running is not None]
         now = under_way[0].running if under_way else None
         self.within.setValue(round(PARTS * now.share) if now is not None else 0)
-        self.stage.setText(f"{under_way[0].folder.name}: {tr(now.stage)}" if now is not None and now.stage else "")
+        self.stage.setText(named(under_way[0].folder.name, tr(now.stage)) if now is not None and now.stage else "")
         self.bar.setValue(round(PARTS * self._done_share))
         for bar in (self.within, self.bar):
             bar.setVisible(bool(self._measured))
@@ -305,7 +305,7 @@ class ManySetsWindow(QWidget):
         said = [tr("{done} of {total} sets", done=done, total=total)] if total else []
         if self._task is not None and not self._task.cancelling and (left := self._remaining.left) is not None:
             said.append(tr("about {time} left", time=in_words(left)))
-        self.counted.setText(", ".join(said))
+        self.counted.setText(joined(said, ";"))
         for widget in (self.within, self.stage):
             widget.setEnabled(self._task is not None)
 

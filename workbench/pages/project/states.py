@@ -14,7 +14,7 @@ from core.files.project.folder import Version, read_project, recoverable, rescue
 from core.files.project.json_form import NewerProject
 from core.files.project.lock import held_by
 from core.messages import visible
-from workbench.language import time_of, tr
+from workbench.language import named, time_of, tr
 from workbench.project_model import Access
 from workbench.views import ask
 
@@ -103,7 +103,7 @@ def _ask_for_recovery(parent: QWidget, folder: Path, saved: ProjectFile, recover
 def _changes(changes: tuple[Change, ...]) -> str:
     """The first few, a line each: the field, and what it was and is; of a result only which one."""
     lines = [
-        one.field if one.field.startswith("results.") else f"{one.field}: {_short(one.old)} → {_short(one.new)}"
+        one.field if one.field.startswith("results.") else named(one.field, f"{_short(one.old)} → {_short(one.new)}")
         for one in changes[:SHOWN]
     ]
     if len(changes) > SHOWN:

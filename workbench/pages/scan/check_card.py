@@ -16,7 +16,7 @@ from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.wording import with_uncertainty
 from core.states import CHECKS, STEP_STATES
 from core.study.artefact_check import KINDS, ArtefactCheck
-from workbench.language import number, text_of, time_of, tr
+from workbench.language import joined, number, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
 from workbench.pages.scan.artefacts import KnownArtefacts
@@ -192,7 +192,7 @@ class CheckCard(QFrame):
                 return "bad", tr("Not checked"), check.problem
         assert check.look is not None
         if stage is CheckStage.OUTDATED:
-            said = tr("Changed since the check: {what}; check again.", what=", ".join(check.changed_since()))
+            said = tr("Changed since the check: {what}; check again.", what=joined(check.changed_since()))
             return "warn", capital(tr(STEP_STATES["outdated"])), said
         verdict, found = check.look.verdict, [check.look.sentence]
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
@@ -311,6 +311,6 @@ def artefact_rows(artefacts: Sequence[ArtefactCheck]) -> list[ValueRow]:
         rows += [
             (tr("{artefact} measured", artefact=known.id), f"{measured} mm", f"{capital(compared)}. {said}", ""),
             (tr("{artefact} certified", artefact=known.id), f"{certified} mm", certificate, ""),
-            (tr("E_n; valid until"), f"{number(one.e_n, '.2f')}; {due}", said, level),
+            (tr("E_n; valid until"), joined((number(one.e_n, ".2f"), due), ";"), said, level),
         ]
     return rows

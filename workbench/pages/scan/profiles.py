@@ -13,7 +13,7 @@ from core.files.project.results import ProfilesSummary
 from core.files.recording.options import StatedTilt
 from core.report.wording import thickness_line
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import named, text_of, tr
 from workbench.pages.scan.stage import ProfilesFacts, why_not_profiles
 from workbench.pages.words import wording
 from workbench.views.forms.editors import NumberRange
@@ -110,7 +110,7 @@ class ProfilesPanel(QWidget):
         lines = [
             thickness_line(summary.gauge, wording()),
             tr("{n} of {m} pictures used", n=len(used), m=len(summary.pictures)),
-            *(f"{one.name}: {text_of(one.reason)}" for one in summary.pictures if one.reason is not None),
+            *(named(one.name, text_of(one.reason)) for one in summary.pictures if one.reason is not None),
             *(text_of(note) for note in summary.gauge.notes),
         ]
         self._say("\n".join(lines), summary.report)

@@ -7,7 +7,7 @@ import math
 from core.messages import Message, capital
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
-from workbench.language import number, text_of, tr
+from workbench.language import named, number, sentence, text_of, tr
 from workbench.pages.words import count, mm, percent
 from workbench.views.lists.value_rows import ValueRow
 
@@ -89,7 +89,7 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
     if record is not None:
         return tr("{frame}: no points; {reason}.", frame=start, reason=text_of(record.reason or NO_REASON))
     if stages is not None and stages.reason:
-        return f"{start}: {text_of(stages.reason)}."
+        return named(start, sentence(text_of(stages.reason)))
     if stages is not None and stages.seen is not None:
         return tr(
             "{frame}: {count} crossings by itself; not measured yet.", frame=start, count=len(stages.seen.crossing_uv)

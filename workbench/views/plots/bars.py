@@ -11,7 +11,7 @@ from PySide6.QtCore import Qt, Signal
 from PySide6.QtGui import QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import tr
+from workbench.language import named, tr
 from workbench.theme import shades
 from workbench.views.common import draw_focus
 from workbench.views.plots.base import Plot, tinted, written
@@ -190,7 +190,7 @@ class BarsWithThreshold(Plot):
         if bar is None:
             return ""
         value = tr("no value") if bar.value is None else f"{written(bar.value, self._height / 400)} {self._unit}"
-        return "\n".join(part for part in (f"{bar.name}: {value}", bar.tip) if part)
+        return "\n".join(part for part in (named(bar.name, value), bar.tip) if part)
 
     def _clicked(self, event: Any) -> None:
         if event.button() != Qt.MouseButton.LeftButton or not self._bars:

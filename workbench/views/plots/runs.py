@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import number, tr
+from workbench.language import named, number, tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot, tinted, written
 
@@ -133,7 +133,7 @@ class RunChart(Plot):
         if runs is None or not 0 <= place < len(runs.values):
             return ""
         value, U = (written(float(part[place]), 1e-4) for part in (runs.values, runs.U))
-        return f"{runs.labels[place]}: {value} ± {U} mm (k = {number(runs.k, 'g')})"
+        return named(runs.labels[place], f"{value} ± {U} mm (k = {number(runs.k, 'g')})")
 
 
 class Histogram(Plot):

@@ -176,7 +176,7 @@ def test_bars_are_within_the_chosen_set_and_over_all_and_the_time_left_is_told(
     task.progressed.emit("measuring sets", 0, 200)
     task.progressed.emit("measuring sets", 90, 200)
     assert shown.bar.value() == 450
-    assert shown.counted.text().startswith("0 of 2 sets, about ") and shown.counted.text().endswith(" left")
+    assert shown.counted.text().startswith("0 of 2 sets; about ") and shown.counted.text().endswith(" left")
 
 
 def test_settings_are_those_of_the_command_and_what_was_measured_otherwise_is_measured_again(

@@ -13,7 +13,7 @@ from core.inspect.plan.feature_kind import ElementKind
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import kind_of
 from core.inspect.uncertainty.causes import MASTER_MEASURED
-from workbench.language import text_of, tr
+from workbench.language import joined, text_of, tr
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.work import jobs
 
@@ -76,7 +76,7 @@ class InspectConditions:
             tr("20 °C") if plan.temperature is not None else "",
             tr("master") if plan.master is not None else "",
         ]
-        return ", ".join(one for one in said if one)
+        return joined(one for one in said if one)
 
     def values(self) -> dict[str, Any]:
         """The fields as they stand in the form."""

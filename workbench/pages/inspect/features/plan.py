@@ -15,7 +15,7 @@ from core.inspect.plan.control_frame import datum_letters, datums_of
 from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
-from workbench.language import text_of, tr
+from workbench.language import joined, text_of, tr
 from workbench.pages.inspect.scan import InspectScan
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -145,7 +145,7 @@ class InspectFeatures(QObject):
         if self.plan.master is not None and self.plan.master.features == (name,):
             resting.append(tr("the comparison with the master"))
         if resting:
-            return tr("{name} cannot be removed: {others} rests on it.", name=name, others=", ".join(resting))
+            return tr("{name} cannot be removed: {others} rests on it.", name=name, others=joined(resting))
         return ""
 
     def move(self, name: str, by: int) -> None:

@@ -10,7 +10,7 @@ from core.inspect.plan.control_frame import control_frames, datum_letters
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of, results_of
 from core.report.wording import decision_sentence, grouped, short_value, shown_name, value_line
-from workbench.language import number, text_of, tr
+from workbench.language import named, number, text_of, tr
 from workbench.pages.words import wording
 from workbench.views.control_frames import Frame
 from workbench.views.lists.value_rows import ValueRow
@@ -44,7 +44,7 @@ def value(row: Characteristic) -> str:
 
 def tip(row: Characteristic) -> str:
     """All about one result: value with k, the decision and why, what was measured."""
-    lines = [f"{shown_name(row, wording())}: {value_line(row, wording())}"]
+    lines = [named(shown_name(row, wording()), value_line(row, wording()))]
     if row.verdict:
         lines.append(decision_sentence(row, wording()))
     if row.rule:

@@ -17,7 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.files.project.data import KeptStudy
-from workbench.language import text_of, tr
+from workbench.language import named, text_of, tr
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
@@ -194,7 +194,7 @@ class StudiesTab(QWidget):
         for chart, one in zip(self.charts, shown, strict=False):
             chart.set_values(one.values, one.good, one.tips, one.limits, axes=one.axes, unit=study.unit)
         headers, body = words.table(kept.kind, study)
-        self.title.setText(f"{words.kind_title(kept.kind)}: {text_of(kept.title)}")
+        self.title.setText(named(words.kind_title(kept.kind), text_of(kept.title)))
         self.rows.set_rows(words.rows(kept.kind, study))
         self.table.set_headers(headers)
         self.table.set_rows(body)

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core.model.arrays import Array
 from core.states import DECISIONS
 from core.study.series_chart import RULE_WORDS, Chart
-from workbench.language import number, text_of, tr
+from workbench.language import joined, named, number, text_of, tr
 from workbench.pages.inspect import words as inspect_words
 from workbench.pages.words import wording
 from workbench.views.colours import Level
@@ -96,7 +96,7 @@ def _shown(chart: Chart, count: int, label_of: Callable[[int], str], axes: tuple
     missing = count - len(chart.points)
     tips = [""] * missing
     for place, value in enumerate(chart.points):
-        said = f"{label_of(place)}: {wording().fixed(float(value), 4)} {unit}"
+        said = named(label_of(place), f"{wording().fixed(float(value), 4)} {unit}")
         rules = [RULE_WORDS[one.rule - 1] for one in chart.breaks if one.place == place]
         tips.append("\n".join([said, *map(tr, rules)]))
     good = np.array([place - missing not in chart.breaking for place in range(count)])
@@ -220,7 +220,7 @@ def _values(study: SeriesStudy) -> Table:
         (tr("Rule broken"), ""),
     ]
     body: list[Sequence[str]] = [
-        [name, wording().fixed(float(value), 4), ", ".join(broken.get(place, ()))]
+        [name, wording().fixed(float(value), 4), joined(broken.get(place, ()))]
         for place, (name, value) in enumerate(zip(called, points, strict=True))
     ]
     return headers, body
