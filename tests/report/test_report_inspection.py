@@ -13,6 +13,7 @@ from matplotlib.text import Text
 from pypdf import PdfReader
 
 from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.conformity import Verdict
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution
@@ -21,12 +22,13 @@ from core.progress import silent
 from core.report import pdf
 from core.report.content import MOST_CALLOUTS
 from core.report.drawings import drawings
-from core.report.layout.style import ReportLook
+from core.report.layout.style import BOLD, SANS, ReportLook
 from core.report.pdf import build_report
 from core.report.plots.charts import callouts, surface_figure
 from core.report.plots.run_chart import run_chart_figure
+from core.report.sections.result import DECIDED, WIDTHS, words_width
 from core.report.template import SECTIONS, ReportTemplate
-from core.report.wording import Words, study_name
+from core.report.wording import SIGNS, Words, decision, study_name
 from core.scan.surface.fused_surface import Mesh
 from core.translations import language
 
@@ -159,7 +161,7 @@ def test_names_of_ones_own_stay_as_they_are_though_the_catalogue_has_the_words(c
 
 def test_studies_are_printed_with_figures_and_notes(data):
     text = words(data)
-    assert "Type-1 gauge study n reference T mean s (n − 1) bias 25 50.0000 mm 0.4000 mm" in text
+    assert "Type-1 gauge study n reference value T mean s (n − 1) bias 25 50.0000 mm 0.4000 mm" in text
     assert "Gauge R&R (ANOVA) Source of variation σ, mm share of σ², % of the total, % of T, %" in text
     assert "%GRR of the total %GRR of T ndc verdict" in text
     assert "is pooled with the error" in text
@@ -345,3 +347,11 @@ def test_one_result_alone_fills_the_box_whatever_is_asked_of_it(quick):
         text = words(build_report(replace(quick, gauge=None, inspected=(one,)))).replace("\u00a0", " ")
         assert "top flatness 0.0310 mm ± 0.0080 mm (k = 2)" in text
         assert expected in " ".join(text.split()) or expected.replace("Tolerance ", "") in text
+
+
+@pytest.mark.parametrize("name", ["en", "de"])
+@pytest.mark.parametrize("verdict", list(Verdict))
+def test_a_decision_stands_in_one_line(name, verdict):
+    font = SANS if DECIDED[verdict] == "small" else BOLD
+    decided = f"{SIGNS[verdict]} {decision(verdict, Words.of(name))}"
+    assert words_width(decided, font, 7) < WIDTHS[-1] - 5  # its padding

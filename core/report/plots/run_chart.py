@@ -98,7 +98,7 @@ def control_charts_figure(
             room = (width_mm - LEFT_MM - WORDS_MM) / width_mm
             axes = figure.add_axes((LEFT_MM / width_mm, foot / height_mm, room, height / height_mm))
             _control_chart(look, axes, chart, count)
-            axes.set_ylabel(f"{look.words(name)}, {unit}", labelpad=2)
+            axes.set_ylabel(look.words.in_unit(look.words(name), unit), labelpad=2)
         axes.set_xlabel(look.words("number of the point"), labelpad=1)
     return figure
 

@@ -45,9 +45,9 @@ def budget_table(look: ReportLook, one: Characteristic) -> Table:
     rows: list[list[Flowable]] = [
         [
             *heads(look, "Input", "value", "distribution", "u(x)", "sensitivity", numbers=(1, 3, 4)),
-            look.text(f"{words('u of it')}, {unit}", "head_number"),
+            look.text(words.in_unit(words("u of it"), unit), "head_number"),
             look.text("ν", "head_number"),
-            look.text(f"{words('share')}, %", "head_number"),
+            look.text(words.in_unit(words("share"), "%"), "head_number"),
         ]
     ]
     for row in one.budget:
@@ -85,7 +85,7 @@ def _closed(look: ReportLook, one: Characteristic, rows: list[list[Flowable]], d
         (words("Combined standard uncertainty u"), words.fixed(factor * one.u, decimals), "small", "number"),
         (words("Effective degrees of freedom ν_eff"), _dof(look, effective_dof(one.budget)), "small", "number"),
         (
-            words("Expanded uncertainty U = k·u, k = {k}", k=words.general(one.k)) + f", {unit}",
+            words.in_unit(words("Expanded uncertainty U = k·u, k = {k}", k=words.general(one.k)), unit),
             U,
             "small_strong",
             "number_strong",

@@ -72,7 +72,8 @@ def camera_table(look: ReportLook, calibration: CameraCalibration, width: float)
             continue  # a coefficient the model leaves out
         decimals = decimals_of(sd) if sd > 0 else 6
         unit = UNITS.get(name, "")
-        label = SYMBOLS.get(name, name).format(skew=words("skew")) + (f", {unit}" if unit else "")
+        label = SYMBOLS.get(name, name).format(skew=words("skew"))
+        label = words.in_unit(label, unit) if unit else label
         spread = words.fixed(sd, decimals) if sd > 0 else words("fixed" if known else "unknown")
         rows.append(
             [look.text(label, "small"), look.text(words.fixed(value, decimals), "number"), look.text(spread, "number")]

@@ -190,7 +190,7 @@ def end(look: ReportLook, content: ReportContent) -> list[Flowable]:
     left_out = [look.words(heading) for name, heading in content.printable.items() if name in content.hidden]
     if not left_out:
         return [mark]
-    words = look.words("Left out of this report by choice: {sections}.", sections="; ".join(left_out))
+    words = look.words("Left out of this report by choice: {sections}.", sections=look.words.joined(left_out, ";"))
     return [KeepTogether([Spacer(0, 3 * mm), look.text(words, "small"), mark])]
 
 
@@ -206,7 +206,7 @@ def left_out_table(
         return []
     rows: list[list[Flowable]] = [heads(look, "Left out because", "how many", "which", numbers=(1,))]
     for reason, names in left_out[:most]:
-        which = ", ".join(names[:most_names])
+        which = look.words.joined(names[:most_names])
         if len(names) > most_names:
             which += look.words(" and {n} more", n=grouped(len(names) - most_names))
         rows.append(

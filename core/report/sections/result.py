@@ -167,8 +167,10 @@ def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowa
     return [*parts, Spacer(0, 2.5 * mm), _facts(look, facts, width), Spacer(0, 2 * mm), sentence]
 
 
-WIDTHS = [size * mm for size in (17, 27, 21, 16, 8, 18, 27)]
+WIDTHS = [size * mm for size in (15.5, 27, 19.5, 15, 8, 17, 32.5)]
 """Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
+DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for verdict in Verdict}
+"""How a decision is written: where there is none, it is not made much of."""
 
 
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
@@ -224,7 +226,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
     return [
         [title, *below],
         *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
-        look.text(decided, "small_strong"),
+        look.text(decided, DECIDED[one.verdict]),
     ]
 
 
