@@ -54,7 +54,10 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
     by_position[:, :, 2] = -xy * inverse_z[:, None]
     by_position = affine @ camera.distort_jacobian(xy) @ by_position
     by_pose = np.empty((len(points), 2, 6))
-    by_pose[:, :, :3] = np.cross(turned[:, None, :], by_position)  # a · (ω × X) = ω · (X × a)
+    (x, y, z), (a, b, c) = turned.T[:, :, None], np.moveaxis(by_position, 2, 0)
+    by_pose[:, :, 0] = y * c - z * b  # a · (ω × X) = ω · (X × a); np.cross takes twice as long
+    by_pose[:, :, 1] = z * a - x * c
+    by_pose[:, :, 2] = x * b - y * a
     by_pose[:, :, 3:] = by_position
     return uv, by_camera, by_pose
 
