@@ -21,8 +21,10 @@ BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 3 $(AS_MODULES)
 
-# Files with proofs: to import all the others takes each process as long as a proof.
-PROOFS = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
+# Files with proofs: to import all the others takes each process as long as a proof. Those of SCREEN_ONLY are proven
+# where they are tested.
+PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
+PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
 
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
@@ -43,7 +45,8 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
 	@$(MAKE) --no-print-directory -j2 --output-sync=target check examples  # neither keeps two cores busy
-	@if command -v Xvfb >/dev/null; then set -x; \
+	@TRISECT_MADE_ONCE=$$(mktemp -d) && export TRISECT_MADE_ONCE && trap 'rm -rf "$$TRISECT_MADE_ONCE"' EXIT && trap 'exit 130' INT TERM; \
+	if command -v Xvfb >/dev/null; then set -x; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
 	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); \
 	else echo "Xvfb is not installed: windows are tested without a screen only"; \
@@ -55,8 +58,12 @@ examples: compile         ## those in the code's documentation and in the manual
 quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
 
-proofs: $(READY)          ## what many rendered and simulated measurements must keep: the short form of `make accuracy`
-	$(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS)
+proofs: $(READY)          ## what many measurements must keep, and whole jobs in all their forms: the short form of `make accuracy`
+	@if command -v Xvfb >/dev/null; then set -x; \
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(filter-out $(SCREEN_ONLY),$(PROOFS)) && \
+	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS_ON_SCREEN); \
+	else echo "Xvfb is not installed: windows are proven without a screen only"; \
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS); fi
 
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual

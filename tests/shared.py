@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shutil
 import time
 from collections.abc import Callable
@@ -14,6 +15,9 @@ REAL_SETS = Path(__file__).resolve().parents[2] / "shared" / "real"
 
 GIVE_UP_S = 240.0
 
+MADE = "TRISECT_MADE_ONCE"
+"""Environment variable: the folder of what is made once, for all parts of `make test`; else each makes its own."""
+
 SAID_ALOUD = pytest.StashKey[int]()
 """Where a test process that ends at once says why: standard error while a test runs is pytest's, and would be lost."""
 
@@ -21,7 +25,8 @@ SAID_ALOUD = pytest.StashKey[int]()
 def made_once(tmp_path_factory: pytest.TempPathFactory, name: str, make: Callable[[Path], object]) -> Path:
     """The folder `name`, filled by `make` in whichever test process comes first; the others wait for it."""
     base: Path = tmp_path_factory.getbasetemp()
-    common = base.parent if base.name.startswith("popen-") else base  # of all processes of pytest-xdist
+    of_all_processes = base.parent if base.name.startswith("popen-") else base  # of pytest-xdist
+    common = Path(os.environ.get(MADE) or of_all_processes)
     folder, lock, end = common / name, common / f"{name}.lock", time.monotonic() + GIVE_UP_S
     while not folder.exists():
         try:

@@ -77,6 +77,7 @@ def test_the_report_has_the_results_with_it_as_they_are(measured):
     assert all(data == (measured / name).read_bytes() for name, data in attached.items())
 
 
+@pytest.mark.accuracy
 def test_each_step_alone_gives_the_same_files_as_the_whole_run(simulated, measured, tmp_path):
     out = tmp_path / "out"
     for step in ("camera", "planes", "scan", "gauge", "report"):
@@ -149,6 +150,7 @@ def text_of(kept):
     return kept["text"] if isinstance(kept, dict) else kept
 
 
+@pytest.mark.accuracy
 def test_pictures_are_left_out_by_name(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
     view, frame = first_name(simulated, "camera"), first_name(simulated, "scan")
@@ -165,6 +167,7 @@ def test_pictures_are_left_out_by_name(simulated, measured, tmp_path):
         assert [row for row in found.values() if row[1] == reason] == [(False, reason)]
 
 
+@pytest.mark.accuracy
 def test_a_camera_adjusted_with_the_fan_is_the_one_the_scan_uses(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
     assert trisect("planes", simulated, "--out", out, "--adjust-camera").code == 0

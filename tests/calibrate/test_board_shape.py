@@ -36,6 +36,7 @@ def test_a_bowed_board_is_found_and_does_not_spoil_the_camera():
     assert any("bowed by 0.4" in str(note) for note in found.notes)
 
 
+@pytest.mark.accuracy
 def test_a_flat_board_is_found_flat_and_nothing_is_lost():
     shaped, flat = zip(
         *[(calibrated(seed, tolerance=UNSURE), calibrated(seed, tolerance=FLAT)) for seed in range(2, 8)], strict=True
@@ -57,6 +58,7 @@ def test_the_cameras_covariance_holds_beside_an_unknown_shape():
     assert 0.8 < np.sqrt(np.mean(np.square(errors))) < 1.25
 
 
+@pytest.mark.accuracy
 def test_a_print_that_is_drawn_out_is_found_where_its_size_is_not_sure():
     drawn = (0.0, 0.0, 0.0, 4e-4)
     true, unsure = calibrated(9, drawn), calibrated(9, drawn, BoardTolerance(scale_sd=3e-4))

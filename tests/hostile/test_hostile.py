@@ -28,6 +28,7 @@ def test_no_file_causes_a_trace_a_crash_or_a_wait(good, tmp_path):
     assert not wrong, "\n\n".join(f"case {number}, {said}" for number, said in list(wrong.items())[:5])
 
 
+@pytest.mark.accuracy
 def test_what_ends_its_process_is_found_and_the_others_go_on(good, tmp_path, monkeypatch):
     monkeypatch.setenv("TRISECT_HOSTILE_ABORT", "3")
     wrong = run_cases(good, tmp_path / "work", SEED, 0, 6)

@@ -64,6 +64,7 @@ def test_a_part_is_found_however_it_lies(turn):
     assert np.abs(pose.apply(corners) - (corners @ rotation.T + shift)).max() < 0.03
 
 
+@pytest.mark.accuracy
 def test_a_start_near_another_side_is_not_taken_where_that_leaves_points_off():
     """A block of 70 × 60 × 50, its top and a side scanned: half of the points lie close with either side up."""
     rng = np.random.default_rng(5)

@@ -56,6 +56,7 @@ def test_errors_of_heights_are_as_large_as_stated(relative, name):
     assert 0.4 < spread < 1.7, relative[name]
 
 
+@pytest.mark.accuracy
 def test_all_together_they_are_neither_too_sure_nor_too_unsure(relative):
     together = float(np.sqrt(np.mean(np.square(list(relative.values())))))
     assert 0.6 < together < 1.35, relative

@@ -248,6 +248,7 @@ def measures_what_a_run_measures(executor, tiny, out):
         assert (block.out / name).read_bytes() == (tiny / "out" / name).read_bytes(), name
 
 
+@pytest.mark.accuracy
 def test_a_run_measures_pgm_frames_as_png_frames(tiny, tmp_path):
     said = trisect("run", tiny / "pgm", "--out", tmp_path, "--method", QUICK.method, "--sigma-cut", QUICK.sigma_cut_mm)
     assert said.code in (0, 1), said.err
@@ -255,7 +256,7 @@ def test_a_run_measures_pgm_frames_as_png_frames(tiny, tmp_path):
         assert (tmp_path / name).read_bytes() == (tiny / "out" / name).read_bytes(), name
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_processes_measure_the_very_same_as_a_run_and_pgm_frames_as_png_frames(tiny, tmp_path):
     with executor_of("processes", 1) as executor:
         measures_what_a_run_measures(executor, tiny, tmp_path)
@@ -272,7 +273,7 @@ def test_a_dask_cluster_of_separate_processes_measures_the_very_same_as_a_run(ti
             measures_what_a_run_measures(executor, tiny, tmp_path)
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_ctrl_c_ends_all_processes_with_its_own_code(tiny_set, tmp_path):
     copies = [Path(shutil.copytree(tiny_set, tmp_path / f"set{n}")) for n in range(3)]
     command = [sys.executable, "-m", "core.cli", "batch", *map(str, copies), "--out", str(tmp_path / "out")]

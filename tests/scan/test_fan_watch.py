@@ -46,7 +46,7 @@ def test_a_scan_at_rest_is_not_suspected(seed):
     ("what", "who"),
     [
         ({"lifted_mm": 0.4}, "scan.the_part"),
-        ({"table_mm": 0.4}, "scan.everything"),
+        pytest.param({"table_mm": 0.4}, "scan.everything", marks=pytest.mark.accuracy),
         ({"bumped_px": 0.2}, "scan.everything"),
     ],
 )
@@ -63,6 +63,7 @@ def test_what_moved_is_told_first_with_its_frames_and_by_how_far(what, who, seed
     assert {frame.reason for frame in result.frames[AT:]} == {MOVED_FRAME}
 
 
+@pytest.mark.accuracy
 def test_a_part_that_is_put_back_is_used_before_and_after():
     features, rig = features_of(BLOCK)
     lifted, _ = features_of(replace(BLOCK, lifted_mm=0.4, moved_frame=0))
@@ -72,6 +73,7 @@ def test_a_part_that_is_put_back_is_used_before_and_after():
     assert "between frame0009 and frame0010 and between frame0014 and frame0015" in str(result.notes[0])
 
 
+@pytest.mark.accuracy
 def test_a_camera_bumped_early_is_refused_with_what_happened_and_when():
     with pytest.raises(InputError, match="the first frame after it is frame0006, and only 6 frames"):
         measured(bumped_px=2.0, moved_frame=6)
@@ -89,6 +91,7 @@ def test_a_rig_that_warms_is_told_as_a_drift_and_all_frames_are_used(seed):
     assert not [frame for frame in result.frames if frame.reason == MOVED_FRAME]
 
 
+@pytest.mark.accuracy
 def test_a_rig_that_warms_too_much_is_refused_for_its_drift():
     warming = Warming(scan_px=1.0, scan_focal_ppm=500, scan_urad=300)
     with pytest.raises(InputError) as refused:

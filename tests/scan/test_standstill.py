@@ -49,6 +49,7 @@ def test_a_shift_of_three_tenths_is_found_and_so_is_its_frame(kind, frame):
     assert (found.last_before, found.first_after) == (frame - 1, frame)
 
 
+@pytest.mark.accuracy
 def test_the_larger_part_is_used_and_the_rest_says_why(moved):
     _, result = moved
     assert set(result.sweep_frames.tolist()) <= set(range(40))

@@ -51,7 +51,10 @@ def project(tmp_path: Path) -> Path:
 
 @pytest.mark.skipif(sys.platform == "win32", reason="kill -9 is not known there")
 @pytest.mark.slow
-@pytest.mark.parametrize("everything", [False, True], ids=["the window", "everything"])
+@pytest.mark.parametrize(
+    "everything",
+    [pytest.param(False, id="the window", marks=pytest.mark.accuracy), pytest.param(True, id="everything")],
+)
 def test_killed_while_recording_with_unsaved_edits_nothing_is_lost(
     program: Program, project: Path, technician: Technician, tmp_path: Path, everything: bool
 ) -> None:

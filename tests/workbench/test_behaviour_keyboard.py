@@ -48,7 +48,7 @@ def tab_to(t: Technician, name: str) -> None:
     raise AssertionError(f"{name!r} is not reached by Tab from page {t.window.current}; passed {passed}")
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_from_new_project_to_report_without_the_mouse(technician: Technician, simulated: Path, tmp_path: Path) -> None:
     t = technician
     t.activate()

@@ -116,7 +116,7 @@ def test_another_project_is_not_led_through(begun: MainWindow, tmp_path: Path) -
     assert begun.instructions.isHidden()
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_whoever_does_only_what_it_says_ends_with_a_report(
     technician: Technician, simulated: Path, tmp_path: Path
 ) -> None:

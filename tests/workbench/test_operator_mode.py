@@ -88,7 +88,7 @@ def test_where_people_have_roles_an_inspectors_pin_leads_out(
     assert not window.operator_mode.on
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_the_next_part_is_measured_without_leaving_it(
     operator: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
@@ -115,7 +115,7 @@ def test_the_next_part_is_measured_without_leaving_it(
     assert operator.operator_mode.found[0].verdict in (Verdict.CONFORMING, before[0].verdict)
 
 
-@pytest.mark.parametrize("name", ["en", "de", "zh_CN"])
+@pytest.mark.parametrize("name", ["de", *(pytest.param(name, marks=pytest.mark.accuracy) for name in ("en", "zh_CN"))])
 def test_nothing_is_cut_in_the_smallest_window(
     bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, name: str
 ) -> None:

@@ -162,7 +162,9 @@ def open_all(window: MainWindow, opened: Opened, bench: Bench, qtbot: Any) -> No
             opened.menu(menu)
 
 
-@pytest.mark.parametrize("name", [PSEUDO, *(pytest.param(name, marks=pytest.mark.slow) for name in ("de", "zh_CN"))])
+@pytest.mark.parametrize(
+    "name", [PSEUDO, *(pytest.param(name, marks=pytest.mark.accuracy) for name in ("de", "zh_CN"))]
+)
 def test_no_text_of_a_menu_or_dialog_is_past_the_catalogues_or_cut(
     bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, tmp_path: Path, name: str
 ) -> None:

@@ -252,8 +252,8 @@ def test_too_few_good_views_are_refused_with_every_reason():
         calibrate_camera([], SIZE)
 
 
-@pytest.mark.parametrize("noise_px", [0.0, 0.03])
-@pytest.mark.parametrize("tilt_deg", [0.0, 25.0])
+@pytest.mark.parametrize("noise_px", [0.0, pytest.param(0.03, marks=pytest.mark.accuracy)])
+@pytest.mark.parametrize("tilt_deg", [0.0, pytest.param(25.0, marks=pytest.mark.accuracy)])
 def test_views_all_in_parallel_are_refused(noise_px, tilt_deg):
     rng = np.random.default_rng(11)
     points = board()
@@ -284,6 +284,7 @@ def test_missing_coverage_and_few_views_are_told():
     assert calibrate_camera(views, SIZE).coverage < calibrated(0).coverage < 1
 
 
+@pytest.mark.accuracy
 def test_cross_validation_grows_with_the_noise_and_needs_six_views():
     quiet = calibrate_camera(synthetic_views(14, noise_px=0.01), SIZE).cross_validation_mm
     loud = calibrate_camera(synthetic_views(14, noise_px=0.1), SIZE).cross_validation_mm

@@ -93,6 +93,7 @@ def test_depth_is_the_middle_of_the_corners_unless_given(calibration, expected):
     assert far.median_mm > 2 * expected.median_mm
 
 
+@pytest.mark.accuracy
 def test_more_views_promise_less_error():
     few, many = (calibrate_camera(synthetic_views(3, count=count), TRUTH.image_size) for count in (6, 24))
     assert expected_error(many, 540.0).median_mm < expected_error(few, 540.0).median_mm

@@ -33,6 +33,7 @@ def test_a_ring_that_the_lens_model_lacks_is_told_with_direction_and_place():
     assert "outwards" in str(note) or "inwards" in str(note)
 
 
+@pytest.mark.accuracy
 def test_a_lens_of_the_model_is_not_accused():
     assert [seed for seed in range(4) if told(calibrated(seed, count=10))] == []
 

@@ -182,6 +182,7 @@ def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
     assert any(f"{seen[1].name} ({LEFT_OUT})" in str(note) for note in without.notes)
 
 
+@pytest.mark.accuracy
 def test_poses_of_many_points_correct_a_camera_that_is_off():
     """Views that know the focal length to 0.2 %, and poses of a checkerboard that know better."""
     true = parameters_of(CAMERA)
@@ -199,6 +200,7 @@ def test_poses_of_many_points_correct_a_camera_that_is_off():
     assert (fit_fan(seen, joint.camera, THREE).fan.pis == joint.fan.pis).all()
 
 
+@pytest.mark.accuracy
 def test_a_fan_from_a_bowed_target_is_right_within_its_covariance_once_the_bow_is_solved_for():
     """Bowed by 0.3 and 0.4 mm at the plate's edges: the same in every pose, so poses do not average it out."""
     shaped, blind = [], []
@@ -226,6 +228,7 @@ def test_an_unstated_target_is_taken_for_a_print_and_the_technician_is_told():
     assert unstated.board.values.any()
 
 
+@pytest.mark.accuracy
 def test_a_flat_target_of_uncertain_flatness_is_found_flat_and_costs_little():
     """On the whole: how far leaving out single poses moves the planes, which σ holds, varies from set to set."""
     costs = []

@@ -76,7 +76,7 @@ def test_a_short_speckled_stripe_is_not_taken_for_a_skewed_one_by_chance() -> No
 
 
 @pytest.mark.parametrize("told", [0.6, 1.6])
-@pytest.mark.parametrize("angle_deg", [0.0, 30.0])
+@pytest.mark.parametrize("angle_deg", [0.0, pytest.param(30.0, marks=pytest.mark.accuracy)])
 def test_a_wrong_width_makes_neither_the_line_nor_its_sigma_worse(angle_deg: float, told: float) -> None:
     wrong, right = (means(angle_deg, NO_SPECKLE, width) for width in (told, 1.0))
     assert rms(wrong[0]) == pytest.approx(rms(right[0]), rel=0.1)

@@ -1,6 +1,7 @@
 """Live recordings of the simulated rig, in real time, against what really is before its camera."""
 
 import numpy as np
+import pytest
 
 from core.acquire.source import SourceChoice, SourceSettings
 from core.files.recording.rig import Rig
@@ -42,6 +43,7 @@ def heights_above_table(points):
     return (points - pose.translation) @ pose.rotation[:, 2]
 
 
+@pytest.mark.accuracy
 def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
     window = Window(lambda event: Stop() if isinstance(event, LiveTaken) and event.name == "view02" else None)
     request = LiveRequest("camera", CHOICE, SourceSettings(), RIG, tmp_path / "camera")

@@ -39,6 +39,7 @@ def test_the_preview_is_the_report_and_writes_nothing(done, folder):
         assert page.std() > 5, "and not empty"
 
 
+@pytest.mark.accuracy
 def test_a_project_measures_with_a_camera_of_another_program(done, folder, tmp_path):
     file = export(folder, done.project, "opencv", tmp_path / "camera.yaml")
     bare = replace(done.project, sources=replace(done.project.sources, camera=""), accepted=Accepted())

@@ -130,6 +130,7 @@ def test_all_frames_left_out_is_said_before_the_work(done):
         measure_scan(done.folder, done.with_options(excluded=names))
 
 
+@pytest.mark.accuracy
 def test_a_scan_without_two_parallel_faces_is_no_error(done, tmp_path):
     folder = copy_of(done.folder, tmp_path / "project")
     far = np.array([[0.0, 0.0], [3.0, 0.0], [0.0, 3.0]])

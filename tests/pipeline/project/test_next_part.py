@@ -16,7 +16,7 @@ from core.pipeline.project.whole import measure_all
 from core.pipeline.steps.workspace import FILES
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_the_same_scan_gives_the_same_thickness_and_nothing_is_calibrated_anew(
     finished_project_folder: Path, simulated: Path, tmp_path: Path
 ) -> None:

@@ -152,7 +152,7 @@ def test_the_command_writes_the_same_script(project, tmp_path, capsys):
     assert (tmp_path / "one.py").read_bytes() == write_script(project, tmp_path / "two.py").read_bytes()
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_the_script_gives_the_same_bytes_in_an_empty_folder(project, tmp_path):
     _, check = compared(project)
     script = write_script(project, tmp_path / "session.py")

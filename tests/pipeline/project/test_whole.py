@@ -53,6 +53,7 @@ def steps_done(folder, file):
     return measure_all(folder, file, watch=watch), seen
 
 
+@pytest.mark.accuracy
 def test_it_gives_what_every_step_by_itself_gives_byte_for_byte(done, tmp_path):
     fresh = replace(done.project, accepted=Accepted())
     (tmp_path / "fresh").mkdir()

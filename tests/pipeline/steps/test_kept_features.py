@@ -51,7 +51,13 @@ def own(done, tmp_path):
     return folder, project
 
 
-@pytest.mark.parametrize("changes", [{"sigma_cut_mm": 0.12}, {"method": "three-crossings", "sigma_cut_mm": 2.0}])
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"sigma_cut_mm": 0.12},
+        pytest.param({"method": "three-crossings", "sigma_cut_mm": 2.0}, marks=pytest.mark.accuracy),
+    ],
+)
 def test_another_cut_or_method_gives_the_bytes_of_a_full_run_without_looking_at_a_frame(done, tmp_path, changes):
     project = done.with_options(**changes)
     quick = copy_of(done.folder, tmp_path / "quick")

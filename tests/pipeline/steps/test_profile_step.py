@@ -82,7 +82,7 @@ def test_the_report_shows_the_profiles_and_what_is_taken_for_granted(three, meas
     assert "taken to have been at rest during each exposure" in text
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_one_line_asks_how_the_faces_are_tilted(one):
     folder, out = one
     said = trisect("profile", folder, "--out", out)
@@ -91,7 +91,7 @@ def test_one_line_asks_how_the_faces_are_tilted(one):
     assert "has no pose nothing" in trisect("profile", folder, "--out", out, "--stage", "nothing").sentence
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_one_line_measures_along_the_normal_of_the_plate_that_lay_on_the_stage(one):
     folder, out = one
     said = trisect("profile", folder, "--out", out, "--stage", "planes/stage", "--json")

@@ -153,6 +153,7 @@ def test_planes_that_have_fallen_together_are_told(block):
     assert not solved.collapsed
 
 
+@pytest.mark.accuracy
 def test_the_table_does_not_outvote_a_small_part():
     """A narrow block with a tenth of the crossings: all its crossings count, and its height is right."""
     scan = ExactScan.of(Scenario(object="narrow-block", height_mm=40.0, scale=0.5))

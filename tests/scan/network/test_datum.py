@@ -21,6 +21,7 @@ def solved_datum(exact, seed):
     return datum_of(sweeps.pis, sweeps.covariance, table, exact.scan.rig.camera), sweeps
 
 
+@pytest.mark.accuracy
 def test_more_relief_fixes_the_scale_better():
     found = [datum(ExactScan.of(Scenario(height_mm=height, scale=0.5))) for height in (10.0, 25.0, 60.0)]
     assert found[0].scale > 1.5 * found[1].scale > 2.5 * found[2].scale

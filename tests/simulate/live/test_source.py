@@ -338,7 +338,7 @@ def test_the_truth_is_there_for_proofs(source):
     assert LiveScene(Scenario(scale=0.1, object="sphere")).truth.thickness_mm is None
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_frames_are_drawn_quickly_enough_for_real_time():
     scene = LiveScene(sample_scenario())
     for step, lasers in (("camera", DARK), ("planes", FAN), ("scan", BOTH)):

@@ -45,7 +45,7 @@ def test_searching_can_be_cancelled(presenter, qtbot):
     qtbot.waitUntil(lambda: not presenter.bench.quick.busy, timeout=20_000)
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_views_of_the_simulated_rig_are_taken_and_become_the_source(presenter, qtbot):
     presenter.live.settings.set_id("scale = 0.25")
     presenter.do_live()

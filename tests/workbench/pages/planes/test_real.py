@@ -59,7 +59,7 @@ def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page:
     assert [notice.text for notice in page.bench.notices.all] == []
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 @pytest.mark.parametrize("pairs", [True, False])
 def test_poses_of_the_simulated_rig_are_taken_with_or_without_the_laser_off_and_calibrated(
     page: PlanesPresenter, qtbot: Any, pairs: bool

@@ -92,7 +92,7 @@ def test_another_cut_is_solved_without_going_through_the_frames_again(page, qtbo
     assert p.scrubbing and page.picture.image.has_picture
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
     p = page.presenter
     p.live.settings.set_id("scale = 0.25")
@@ -113,6 +113,7 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
     assert p.stage is Stage.MEASURED and p.work.look.frames_used > 10
 
 
+@pytest.mark.accuracy
 def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot):
     """A rig that has not changed passes.
 
