@@ -22,11 +22,11 @@ from core.progress import silent
 from core.report import pdf
 from core.report.content import MOST_CALLOUTS
 from core.report.drawings import drawings
-from core.report.layout.style import BOLD, SANS, ReportLook
+from core.report.layout.style import BOLD, SANS, ReportLook, words_width
 from core.report.pdf import build_report
 from core.report.plots.charts import callouts, surface_figure
 from core.report.plots.run_chart import run_chart_figure
-from core.report.sections.result import DECIDED, WIDTHS, words_width
+from core.report.sections.result import DECIDED, WIDTHS
 from core.report.template import SECTIONS, ReportTemplate
 from core.report.wording import SIGNS, Words, decision, study_name
 from core.scan.surface.fused_surface import Mesh
