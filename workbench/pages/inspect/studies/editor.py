@@ -15,8 +15,8 @@ from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column, in_row, muted, say
 
-FORM_WIDTH = 250
-"""Pixels of the fields; the table beside them takes the rest."""
+FORM_WIDTH, NARROW_WIDTH = 300, 250
+"""Pixels of the fields, and of a single one; the table beside them takes the rest."""
 BESIDE_PX = 40
 """Left and right of the table's text, its scroll bar included."""
 LONGEST = 5000.0
@@ -49,8 +49,8 @@ class StudyEditor(QWidget):
         self.make.clicked.connect(lambda: self._studies.finish())
         self.cancel.clicked.connect(lambda: self._studies.give_up())
         side = QVBoxLayout()
-        for form in self.forms.values():
-            form.setFixedWidth(FORM_WIDTH)
+        for kind, form in self.forms.items():
+            form.setFixedWidth(NARROW_WIDTH if kind == "grr" else FORM_WIDTH)
             side.addWidget(form)
         side.addStretch(1)
         both = Folding(in_row(self.text), side, spacing=14, share=4)
