@@ -355,3 +355,10 @@ def test_a_decision_stands_in_one_line(name, verdict):
     font = SANS if DECIDED[verdict] == "small" else BOLD
     decided = f"{SIGNS[verdict]} {decision(verdict, Words.of(name))}"
     assert words_width(decided, font, 7) < WIDTHS[-1] - 5  # its padding
+
+
+@pytest.mark.parametrize("name", ["en", "de"])
+def test_no_head_of_the_result_breaks_within_a_word(name):
+    heads = ("nominal", "permitted", "measured", "U", "k", "deviation", "decision")
+    for width, head in zip(WIDTHS, heads, strict=True):
+        assert words_width(Words.of(name)(head), SANS, 7) < width - 6, head  # its padding

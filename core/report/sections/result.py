@@ -167,7 +167,7 @@ def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowa
     return [*parts, Spacer(0, 2.5 * mm), _facts(look, facts, width), Spacer(0, 2 * mm), sentence]
 
 
-WIDTHS = [size * mm for size in (15.5, 27, 19.5, 15, 8, 17, 32.5)]
+WIDTHS = [size * mm for size in (15.5, 27, 19.5, 14, 8, 18, 32.5)]
 """Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
 DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for verdict in Verdict}
 """How a decision is written: where there is none, it is not made much of."""
