@@ -17,7 +17,7 @@ from core.files.recording.recording_log import LOG
 from core.files.recording.recording_set import open_set
 from core.files.study.study_file import read_study, write_study
 from core.image.stripes.stripe import StripeSettings
-from core.messages import Message
+from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.camera_step import see_views
 from core.pipeline.steps.planes_step import measure_poses
@@ -135,3 +135,5 @@ def test_a_sentence_has_the_signs_of_the_readers_language():
     error = InputError(Message("file.missing", "the file is missing"), where="rig.toml", todo="x")
     assert error.told() == "rig.toml: the file is missing; x."
     assert error.told(language("zh_CN")) == "rig.toml：缺少该文件；x。"
+    how = Message("advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET"))
+    assert language("zh_CN")(how) == "先测量该扫描：trisect scan SET"

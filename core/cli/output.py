@@ -69,8 +69,8 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
     for label, value in rows:
         table.add_row(label, visible(value))
     if files:
-        folder = next(iter(files.values())).parent
-        table.add_row(tr("written"), f"{folder}: {', '.join(path.name for path in files.values())}")
+        folder, names = next(iter(files.values())).parent, ", ".join(path.name for path in files.values())
+        table.add_row(tr("written"), tr("{name}: {value}", name=folder, value=names))
     if table.rows:
         out.print(table)
     for note in notes:

@@ -270,7 +270,8 @@ def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Mes
     if camera and IMPORTED not in camera:
         fixed = {"γ"} - ({"γ"} if camera.get("skew") else set()) | set(camera.get("fixed", ()))
         free = [name for name in ("α", "β", "γ", "u0", "v0", "k1", "k2", "p1", "p2") if name not in fixed]
-        words[label("Free camera parameters")] = ", ".join(free + (["k3"] if camera.get("k3") else []))
+        written = ", ".join(free + (["k3"] if camera.get("k3") else []))
+        words[label("Free camera parameters")] = written.translate(str.maketrans("0123", "₀₁₂₃"))
     return words
 
 
