@@ -233,8 +233,8 @@ _WITH_UNIT = re.compile(r"(?<=\d) (?=(mm²?|µm|µrad|mrad|rad|px|°C|K|%|ms|s|m
 """The space between a number and its unit; East Asian words follow without a space."""
 _EQUATION = re.compile(r"(?<=\w) = (?=[+\-−±]?\d)")
 """The sign between a symbol and its number, as in U = 0.02 mm."""
-_STANDARD = re.compile(r"(?<=\bISO) (?=\d)|(?<=±) (?=\d)")
-"""The space within the name of a standard, as in ISO 14253-1, and after ±."""
+_STANDARD = re.compile(r"(?<=\bISO) (?=\d)")
+"""The space within the name of a standard, as in ISO 14253-1."""
 _COUNTED = re.compile(r"(?<=\d) (?=[\u4e00-\u9fff])")
 """The space between a number and the Chinese measure word it counts in."""
 

@@ -205,7 +205,7 @@ def test_everything_has_a_name_for_those_who_do_not_see_it(shown):
 
 
 def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
-    assert shown.card.title.text() == "50.012\u00a0mm ± 0.024\u00a0mm (k = 2)"
+    assert shown.card.title.text() == "50.012\u00a0mm ± 0.024\u00a0mm (k\u00a0=\u00a02)"
     assert shown.result.verdict.text == "Conforming"
     rows = shown.result.rows
     assert rows.text_of("Thickness") == "50.012 mm" and rows.text_of("U (k = 2)") == "± 0.024 mm"

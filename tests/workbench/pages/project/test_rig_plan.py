@@ -19,7 +19,10 @@ from workbench.pages.project.rig_plan import RigPlans
 from workbench.views import ask
 from workbench.work import jobs
 
-ROWS = [("block 50\u00a0mm", "U = 0.017\u00a0mm (k = 2)"), ("sweeps", "58 of 60 give 40 000 points")]
+ROWS = [
+    ("block 50\u00a0mm", "U\u00a0=\u00a00.017\u00a0mm (k\u00a0=\u00a02)"),
+    ("sweeps", "58 of 60 give 40 000 points"),
+]
 
 
 @pytest.fixture

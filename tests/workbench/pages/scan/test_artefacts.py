@@ -91,7 +91,8 @@ def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):
     dialog = opened(measured, qtbot)
     first, second = dialog.table.rows()
     assert first == (
-        "GB 50-7", "block, thickness", "50.00030", "0.00040 (k = 2)", "D-K-15070 2026-03", str(BLOCK.due), "mine",
+        "GB 50-7", "block, thickness", "50.00030", "0.00040 (k\u00a0=\u00a02)",
+        "D-K-15070 2026-03", str(BLOCK.due), "mine",
     )  # fmt: skip
     assert second[0] == "GB 50-8" and second[-2:] == (f"{LAPSED.due}, lapsed", "project")
     assert not dialog.compare.isEnabled() and dialog.compare.toolTip() == "Choose an artefact."
