@@ -173,6 +173,7 @@ def test_a_view_without_a_board_and_a_black_and_a_white_one_are_left_out(folder,
     assert any(f"camera/{views[0].name}" in note["text"] for note in values["notes"])
 
 
+@pytest.mark.accuracy
 def test_black_and_white_frames_among_good_ones(folder, out):
     frames = frames_of(folder)
     spoil(frames[2], "black")

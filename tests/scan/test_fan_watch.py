@@ -47,7 +47,7 @@ def test_a_scan_at_rest_is_not_suspected(seed):
     [
         ({"lifted_mm": 0.4}, "scan.the_part"),
         pytest.param({"table_mm": 0.4}, "scan.everything", marks=pytest.mark.accuracy),
-        ({"bumped_px": 0.2}, "scan.everything"),
+        pytest.param({"bumped_px": 0.2}, "scan.everything", marks=pytest.mark.accuracy),
     ],
 )
 @SEEDS

@@ -225,7 +225,7 @@ def test_views_left_out_by_hand_change_nothing_but_their_own_residuals_are_known
     assert str(with_them.notes[0]) == ("3 of 14 views are left out by hand: view02.png, view05.png, view09.png.")
 
 
-@pytest.mark.parametrize("outliers", ["gross", "all"])
+@pytest.mark.parametrize("outliers", ["gross", pytest.param("all", marks=pytest.mark.accuracy)])
 def test_a_few_misfound_corners_do_not_matter(outliers):
     views = synthetic_views(9)
     rng = np.random.default_rng(9)

@@ -44,6 +44,7 @@ def test_a_small_board_far_away():
     assert errors(detect(BOARD, seen(where)), where).max() < 0.5
 
 
+@pytest.mark.accuracy
 def test_a_small_board_among_clutter_with_more_saddles_than_the_quick_search_looks_at():
     where = pose(20, -10, 14, MIDDLE, 1000)
     picture = cluttered(seen(where, grey=(90, 150)), box_of(where))
@@ -88,6 +89,7 @@ def test_a_board_cut_at_one_end_of_each_direction_is_known_by_the_other_ends(nam
     assert errors(view, where).max() < 0.3
 
 
+@pytest.mark.accuracy
 def test_a_board_cut_at_both_ends_is_refused_for_the_camera_and_taken_for_its_plane():
     where = pose(15, 15, 5, MIDDLE, 105)
     picture = seen(where)
@@ -125,7 +127,7 @@ def test_the_thorough_search_finds_what_the_quick_one_finds():
 
 
 @pytest.mark.skipif(not LEFT13.is_dir(), reason="the real pictures of opencv-left13 are not on this machine")
-@pytest.mark.parametrize("width", [320, 200])
+@pytest.mark.parametrize("width", [pytest.param(320, marks=pytest.mark.accuracy), 200])
 def test_left13_is_found_in_small_pictures_too(width):
     import cv2
 

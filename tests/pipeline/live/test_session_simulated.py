@@ -18,6 +18,7 @@ RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
 CHOICE = SourceChoice("simulated", "scale = 0.25")
 
 
+@pytest.mark.accuracy
 def test_the_growing_cloud_of_a_block_is_true(tmp_path):
     truth = make_source(CHOICE, RIG).truth
     window = Window(lambda event: Stop() if isinstance(event, LiveView) and event.recorded >= 60 else None)

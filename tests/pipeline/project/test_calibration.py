@@ -77,6 +77,7 @@ def test_a_pose_left_out_has_no_part_in_the_fan_and_says_so(done):
     assert np.array_equal(without.fan.pis, solve_poses(done.folder, done.project, rest).fan.pis)
 
 
+@pytest.mark.accuracy
 def test_a_fan_need_not_be_a_pencil(done, tmp_path):
     project = done.with_options(constrain_fan=False)
     free = solve_poses(done.folder, project, done.poses)

@@ -80,6 +80,7 @@ def the_record_names_the_same_pictures_notes_and_frames(quick, full):
     assert repr(one.frames) == repr(other.frames)
 
 
+@pytest.mark.accuracy
 def test_a_frame_that_was_changed_on_the_disk_is_looked_at_again(own):
     folder, project = own
     measure_scan(folder, project)

@@ -67,6 +67,7 @@ def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
     assert RAW not in [note.code for note in faults_of(read_reference(sites_of("RGGB", "red").of(picture)))]
 
 
+@pytest.mark.accuracy
 def test_stripes_finer_than_the_mosaic_they_are_interpolated_from_are_told():
     colour = replace(RIG, sensor=SensorEffects(colour=True))
     assert told_of(colour) == [MOSAIC]

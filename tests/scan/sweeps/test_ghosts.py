@@ -72,7 +72,9 @@ def test_crossings_of_second_bounces_say_so(result):
     assert np.all(result.crossing_weights[bounced] == 0)
 
 
-@pytest.mark.parametrize("kind", ["block", "steps", "sphere", "mask"])
+@pytest.mark.parametrize(
+    "kind", ["block", *(pytest.param(kind, marks=pytest.mark.accuracy) for kind in ("steps", "sphere", "mask"))]
+)
 def test_a_dark_part_is_no_mirror(kind):
     """All but the longest piece of each frame, which lies on the table, are as faint as second bounces are."""
     scan = matt(kind)

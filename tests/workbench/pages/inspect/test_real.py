@@ -30,6 +30,7 @@ def settled(presenter, qtbot):
     qtbot.waitUntil(lambda: not (quiet.measuring.busy or quiet.quick.busy), timeout=60_000)
 
 
+@pytest.mark.accuracy
 def test_own_regions_are_measured_and_undone_in_full(presenter, qtbot):
     before = presenter.scan.gauge
     height = presenter.scan.view.height
@@ -134,6 +135,7 @@ def test_looking_and_measuring_never_stop_the_window(presenter, qtbot):
     assert too_long(watchdog, slowness()) == []
 
 
+@pytest.mark.accuracy
 def test_features_and_their_plots_never_keep_the_window_waiting(presenter, qtbot, monkeypatch):
     from workbench.pages.inspect.page import InspectPage
 

@@ -70,6 +70,7 @@ def states(shown: ManySetsWindow) -> list[str]:
     return [row[1] for row in shown.table.rows()]
 
 
+@pytest.mark.accuracy
 def test_sets_of_a_folder_are_measured_and_one_that_fails_costs_the_others_nothing(
     shown: ManySetsWindow,
     choose: Callable[[Path, Path, int], None],

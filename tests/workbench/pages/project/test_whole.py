@@ -42,6 +42,7 @@ def shows_its_calibration(page: Any) -> bool:
     return page.candidate == page.acceptance.accepted != ""
 
 
+@pytest.mark.accuracy
 def test_it_ends_at_the_report_with_every_page_up_to_date_and_one_undo(
     opened: Technician, measured_project: Path
 ) -> None:
@@ -64,6 +65,7 @@ def test_it_ends_at_the_report_with_every_page_up_to_date_and_one_undo(
     assert t.model.project.accepted == Accepted()
 
 
+@pytest.mark.accuracy
 def test_it_stops_where_somebody_has_to_decide_and_goes_on_from_there(opened: Technician) -> None:
     t = opened
     sources = t.model.project.sources
