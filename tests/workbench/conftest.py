@@ -88,6 +88,7 @@ def garbage_stays_here() -> Iterator[None]:
     gc.collect()
     for timer in _running_timers():
         timer.stop()
+    gc.freeze()  # what is left stays, and need not be gone through at the end of each test and module from now on
     gc.enable()
 
 
