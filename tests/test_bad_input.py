@@ -239,6 +239,7 @@ def move_from(folder, first):
         write_picture(frame, np.roll(read_picture(frame), (2, 3), axis=(0, 1)))
 
 
+@pytest.mark.accuracy
 def test_the_object_moves_towards_the_end(folder, out):
     move_from(folder, 14)
     said = trisect("scan", folder, "--out", out, *CUT, "--json")
@@ -334,6 +335,7 @@ def test_full_disk(simulated, out, monkeypatch):
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 
+@pytest.mark.accuracy
 @pytest.mark.skipif(sys.platform == "win32", reason="Windows has no SIGINT for a single child")
 def test_interrupt_half_way_leaves_whole_files_only(simulated, tmp_path):
     out = tmp_path / "new"

@@ -270,6 +270,7 @@ def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path)
     assert complaints == b""
 
 
+@pytest.mark.accuracy
 def test_width_and_contrast_of_the_stripes_can_be_given(simulated, measured, tmp_path):
     out = copy_of(measured, tmp_path / "out")
     said = trisect("scan", simulated, "--out", out, *CUT, "--stripe-width", 2.4, "--contrast", 60)

@@ -109,6 +109,7 @@ def test_a_new_measurement_replaces_all_old_results_but_the_report(done, tmp_pat
     assert {frame.name for frame in summary.frames if frame.reason == LEFT_OUT} == left_out
 
 
+@pytest.mark.accuracy
 def test_frames_left_out_keep_the_numbers_of_the_others(done, tmp_path):
     folder = copy_of(done.folder, tmp_path / "project")
     summary = measure_scan(folder, done.with_options(excluded=frozenset({"scan/frame0001.png"})))

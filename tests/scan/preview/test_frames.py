@@ -168,6 +168,7 @@ def test_a_laser_at_rest_does_not_wear_the_preview_out(block):
     assert len(preview._tracker._anchors) == 1
 
 
+@pytest.mark.accuracy
 def test_a_long_scan_keeps_few_anchors(block):
     preview = Preview(block.reference, block.camera, block.fan)
     index = 0
@@ -267,6 +268,7 @@ def test_a_window_that_adds_and_replaces_as_it_is_told_never_holds_many_more_tha
     assert counts[-1] > 300
 
 
+@pytest.mark.accuracy
 def test_a_long_scan_is_thinned_alike_from_its_first_frame_to_its_last(block):
     preview = Preview(block.reference, block.camera, block.fan, PreviewOptions(most_points=1500))
     count = len(block.features)

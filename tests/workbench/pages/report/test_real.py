@@ -55,6 +55,7 @@ def test_the_preview_follows_what_is_chosen_typed_and_undone(technician: Technic
     assert not np.array_equal(page.presenter.pages[0], whole[0])
 
 
+@pytest.mark.accuracy
 def test_everything_is_handed_over_the_report_is_what_was_seen_and_what_cannot_be_written_is_one_sentence(
     technician: Technician, page: Any, tmp_path: Path
 ) -> None:
