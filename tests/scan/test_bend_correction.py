@@ -47,6 +47,7 @@ def test_a_ball_that_wide_light_makes_too_small_has_its_diameter_when_solved_aga
     assert abs(_diameter_error(exact, second)) < 0.01
 
 
+@pytest.mark.accuracy
 def test_stripes_move_towards_their_light_planes_on_the_ball_and_stay_on_the_table(scans):
     exact, (features, _), (even, _) = scans
     (sphere,) = exact.scene.spheres

@@ -248,6 +248,7 @@ def test_rendered_stripes_cross_near_the_bound_of_their_pixels(angle_deg: float)
     assert 0.65 < honest < 1.3
 
 
+@pytest.mark.accuracy
 def test_rendered_stripes_with_speckle_are_as_sure_as_they_say() -> None:
     found = rendered(60.0, 0.18, 60)
     assert len(found) >= 57

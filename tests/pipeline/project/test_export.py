@@ -102,6 +102,7 @@ def test_what_is_not_there_is_told_and_nothing_is_written(done, folder, tmp_path
     assert not (tmp_path / "copy").exists()
 
 
+@pytest.mark.accuracy
 def test_the_report_of_a_project_that_cannot_be_written_to_is_exported_and_nothing_else_is_written(
     done, folder, tmp_path, monkeypatch
 ):

@@ -21,9 +21,9 @@ def frames_of(scenario):
     "effects",
     [
         {"room": RoomEffects(flicker=0.2), "readout_ms": 71.0},
-        {"room": RoomEffects(lamp_frame=10, lamp_change=2.0)},
-        {"room": RoomEffects(lamp_frame=10, lamp_change=-0.8)},
-        {"room": RoomEffects(shadow=0.8)},
+        pytest.param({"room": RoomEffects(lamp_frame=10, lamp_change=2.0)}, marks=pytest.mark.accuracy),
+        pytest.param({"room": RoomEffects(lamp_frame=10, lamp_change=-0.8)}, marks=pytest.mark.accuracy),
+        pytest.param({"room": RoomEffects(shadow=0.8)}, marks=pytest.mark.accuracy),
     ],
 )
 def test_stripes_are_found_where_they_are_in_light_that_stays(effects):
