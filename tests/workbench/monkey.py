@@ -2,8 +2,8 @@
 
 `python -m tests.workbench.monkey --seconds 1800 --seed 1` plays on a copy of the sample project; the same seed does the
 same as far as the machine's pace lets it. Python's fault handler tells where a crash was, the last deeds are told with
-whatever went wrong. Nothing may: no exception, no Qt warning, nothing left behind at the end. All deeds stand in
-FOLDER/deeds.txt, where a program that crashed or hangs leaves them.
+whatever went wrong. Nothing may: no exception, no Qt warning, no widget without a parent, nothing left behind at the
+end. All deeds stand in FOLDER/deeds.txt, where a program that crashed or hangs leaves them.
 """
 
 from __future__ import annotations
@@ -45,6 +45,7 @@ from PySide6.QtTest import QTest
 from PySide6.QtWidgets import QAbstractButton, QApplication, QDialog, QMenu, QMessageBox, QTabBar, QWidget
 
 from tests.workbench import screen
+from tests.workbench.parentless import parentless
 from workbench.app import build_window
 from workbench.bench import Bench, make_bench
 from workbench.main_window import MainWindow
@@ -69,6 +70,9 @@ HARMLESS = ("This plugin does not support", "propagateSizeHints", "raise()", "Op
 
 TURN_MS = 15
 """A deed every so many milliseconds."""
+
+PARENTS_EVERY = 20
+"""After so many deeds each widget is asked whether it has a parent."""
 
 LAST_DEEDS = 25
 """So many are told with what went wrong."""
@@ -104,6 +108,7 @@ class Monkey(QObject):
         self.last: deque[str] = deque(maxlen=LAST_DEEDS)
         self._depth, self._leaving_since = 0, 0.0
         self._playing = self._ended = False
+        self._parentless: set[str] = set()
 
     def play(self, seconds: float) -> None:
         """Let it play for so long, from the event loop as in the program."""
@@ -154,6 +159,8 @@ class Monkey(QObject):
             self._console: 1, self._dialog: 2, self._pull_down: 1, self._delete_and_theme: 2,
         }  # fmt: skip
         self._look_at_the_cards()
+        if self.played.deeds.total() % PARENTS_EVERY == 0:
+            self._look_for_parents()
         deed = self.random.choices(list(deeds), list(deeds.values()))[0]
         self.played.deeds[deed.__name__.strip("_")] += 1
         self._depth += 1
@@ -174,6 +181,14 @@ class Monkey(QObject):
             primary = [button for button in buttons if button.property("primary")]
             if len(primary) > 1:
                 self.note(f"on the page {self.window.current} two buttons are the next thing to do")
+
+    def _look_for_parents(self) -> None:
+        """Each widget has a parent, which deletes it; one without is told once."""
+        app = QApplication.instance()
+        assert isinstance(app, QApplication)
+        if new := set(parentless(app)) - self._parentless:
+            self._parentless |= new
+            self.note(f"without a parent: {sorted(new)}")
 
     def _wait_until_left(self) -> None:
         """A recording is being ended: the window takes no input, for a moment."""

@@ -49,8 +49,8 @@ class LivePanel(QWidget):
         self.state, self.counts = QLabel(), QLabel()
         self._go_on, self._pause_key = QShortcut(GO_ON, self), QShortcut(PAUSE, self)
         self._mark_keys = [QShortcut(key, self) for key in MARK]
+        self._lay_out()  # first: what is shown before it has a parent is a window of its own
         self._dress()
-        self._lay_out()
         self._connect()
         self.refresh()
 
@@ -139,7 +139,8 @@ class LivePanel(QWidget):
         buttons.setContentsMargins(0, 0, 0, 0)
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
-        buttons.addWidget(self.mark if self.live.step == "scan" else self.take, 1, 0, 1, 2)
+        for button in (self.take, self.mark):  # one of them is shown
+            buttons.addWidget(button, 1, 0, 1, 2)
         kept = in_row((self.add, 1), self.sound, spacing=8)
         in_column(self.form, buttons, self.auto, kept, self.state, self.counts, on=self, spacing=6)
 
@@ -184,8 +185,8 @@ class LiveStrip(QWidget):
         self.live = live
         self._gone = _Card("mdi6.power-plug-off-outline")
         self._lost = _Card("mdi6.speedometer")
-        self._advice = _Card("mdi6.brightness-6", button=True)
-        self._ask = _Card("mdi6.hand-pointing-right", button=True)
+        self._advice = _ButtonCard("mdi6.brightness-6")
+        self._ask = _ButtonCard("mdi6.hand-pointing-right")
         self.gone, self.lost, self.advice, self.question = (card.label for card in self._cards())
         self.take_advice, self.answer = self._advice.button, self._ask.button
         self.answer.setProperty("primary", True)
@@ -227,23 +228,30 @@ class LiveStrip(QWidget):
 
 
 class _Card(QFrame):
-    """A sign, a sentence and perhaps a button; hidden while there is no sentence."""
+    """A sign and a sentence; hidden while there is none."""
 
-    def __init__(self, symbol: str, *, button: bool = False) -> None:
+    def __init__(self, symbol: str) -> None:
         super().__init__()
         self.setObjectName("card")
         self._sign = QToolButton()
         self._sign.setIcon(icon(symbol, colour="warn"))
-        self.label, self.button = QLabel(), QPushButton()
+        self.label = QLabel()
         self._sign.setAutoRaise(True)
         self._sign.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self.label.setWordWrap(True)
-        row = in_row(self._sign, (self.label, 1), on=self, margins=(8, 6, 8, 6))
-        if button:
-            row.addWidget(self.button)
+        self._row = in_row(self._sign, (self.label, 1), on=self, margins=(8, 6, 8, 6))
         self.hide()
 
     def say(self, sentence: str) -> None:
         if sentence != self.label.text():
             self.label.setText(sentence)
         self.setVisible(bool(sentence))
+
+
+class _ButtonCard(_Card):
+    """A card with a button that answers."""
+
+    def __init__(self, symbol: str) -> None:
+        super().__init__(symbol)
+        self.button = QPushButton()
+        self._row.addWidget(self.button)

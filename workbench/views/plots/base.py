@@ -219,6 +219,8 @@ class Plot(QWidget):
         canvas.setFocusPolicy(Qt.FocusPolicy.NoFocus)
         self._item: Any = canvas.getPlotItem()
         self._box: Any = self._item.getViewBox()
+        menu = self._item.ctrlMenu  # never shown, but it holds the plot's switches; without a parent Python deletes it
+        menu.setParent(canvas, menu.windowFlags())
         self._item.setContentsMargins(4, 6, 10, 2)
         canvas.scene().sigMouseMoved.connect(self._moved)
         canvas.setGeometry(self._field.rect())  # at once: what is drawn next may go by its size

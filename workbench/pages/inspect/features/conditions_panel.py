@@ -35,7 +35,7 @@ class ConditionsPanel(QWidget):
         self._inside = QWidget()
         self.forms: dict[str, SettingsForm] = {}
         self.complaints: dict[str, QLabel] = {}
-        self.take = QPushButton()
+        self.take: QPushButton | None = None
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(muted(
@@ -79,7 +79,7 @@ class ConditionsPanel(QWidget):
         self._column.removeWidget(self._inside)
         self._inside.hide()
         self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
-        self._inside, self.forms, self.complaints = QWidget(), {}, {}
+        self._inside, self.forms, self.complaints, self.take = QWidget(self), {}, {}, None
         column = in_column(on=self._inside, margins=(0, 4, 0, 0), spacing=4)
         for group, add in (("frame", self._add_frame), ("temperature", self._add_temperature)):
             self._add_group(column, group, add, plan)

@@ -67,12 +67,10 @@ class FeatureForm(QWidget):
         super().__init__(parent)
         self._features, self._edit, self._scan = features, edit, scan
         self._made: object = None
-        self._inside = QWidget()
-        self.where, self.what = SettingsForm(), SettingsForm()
         self.tools: dict[tuple[int, str], QToolButton] = {}
         self.buttons: dict[str, QPushButton] = {}
-        self.frames = FramesMark()
-        self._column = in_column(self._inside, on=self)
+        self._column = in_column(on=self)
+        self._begin()
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -98,8 +96,8 @@ class FeatureForm(QWidget):
         self._column.removeWidget(self._inside)
         self._inside.hide()
         self._inside.deleteLater()  # its editors may be telling of the very edit that ends them
-        self._inside, self.where, self.what = QWidget(), SettingsForm(), SettingsForm()
-        self.tools, self.buttons, self.frames = {}, {}, FramesMark()
+        self._begin()
+        self.tools, self.buttons = {}, {}
         column = in_column(on=self._inside, margins=(0, 6, 0, 0), spacing=4)
         column.addLayout(in_row((heading(tr(kind_of(spec).title)), 1), self.frames))
         self._add_where(spec, plan)
@@ -109,9 +107,14 @@ class FeatureForm(QWidget):
         add_settings(self.what, spec)
         column.addWidget(self.what)
         self._add_buttons(spec, column)
-        self._column.addWidget(self._inside)
         self.where.edited.connect(self._edited)
         self.what.edited.connect(self._edited)
+
+    def _begin(self) -> None:
+        """What is filled next, still empty."""
+        self._inside = inside = QWidget(self)
+        self.where, self.what, self.frames = SettingsForm(inside), SettingsForm(inside), FramesMark(inside)
+        self._column.addWidget(inside)
 
     def _add_where(self, spec: FeatureSpec, plan: InspectionPlan) -> None:
         form = self.where
