@@ -159,6 +159,17 @@ def test_the_process_ends_with_its_window_and_with_the_project(technician: Techn
     assert technician.window.console.window is None
 
 
+def test_the_program_ends_after_the_process_of_a_console_closed_just_before_and_its_folder(
+    technician: Technician, console: ConsoleWindow
+) -> None:
+    assert console.kernel is not None
+    pid, folder = console.kernel.pid, Path(console.kernel._folder.name)
+    assert folder.is_dir()
+    console.close()
+    technician.window.console.end(wait=True)
+    assert gone(pid) and not folder.exists()
+
+
 def test_without_its_extra_the_entry_is_grey_and_says_what_to_install(window: MainWindow, tmp_path: Path) -> None:
     assert why_not("console", MenuFacts("", frozenset(), job=False)) == "Open a project first."
     facts = MenuFacts("scan", frozenset(), job=False)

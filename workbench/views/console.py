@@ -101,8 +101,8 @@ class ConsoleWindow(QWidget):
         self._outdated = outdated
         self._show_state()
 
-    def end(self) -> Kernel | None:
-        """End the console's process, and close; returns the process, which may still be about to end."""
+    def end(self) -> None:
+        """End the console's process, which may take a moment, and close."""
         self._next.stop()
         kernel, self.kernel = self.kernel, None
         if kernel is not None:
@@ -111,7 +111,6 @@ class ConsoleWindow(QWidget):
         self.hide()
         self.deleteLater()
         self.ended.emit()
-        return kernel
 
     def closeEvent(self, event: QCloseEvent) -> None:
         super().closeEvent(event)

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QObject
+from PySide6.QtCore import QObject, Qt
 from PySide6.QtWidgets import QWidget
 
 from core.files.project.data import ProjectFile
 from workbench.project_model import ProjectModel
 from workbench.views.console import ConsoleWindow
+from workbench.work.process import ChildProcess
 
 
 class ProjectConsole(QObject):
@@ -39,10 +40,12 @@ class ProjectConsole(QObject):
         self.window.begin()
 
     def end(self, *, wait: bool = False) -> None:
-        """End the console, if it is open; `wait` until its process is gone where no event comes any more."""
-        kernel = self.window.end() if self.window is not None else None
-        if wait and kernel is not None:
-            kernel.wait()
+        """End the console, if it is open; `wait` until all its processes are gone where no event comes any more."""
+        if self.window is not None:
+            self.window.end()
+        if wait:
+            for process in self._parent.findChildren(ChildProcess, options=Qt.FindChildOption.FindDirectChildrenOnly):
+                process.wait()
 
     def _put_on_disk(self) -> None:
         self._model.save_by_itself()
