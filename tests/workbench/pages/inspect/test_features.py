@@ -335,8 +335,7 @@ def test_the_buttons_stand_below_the_list_however_high_the_page_is_made(page, pr
     panel = page.features
     for height in (700, 1000, 720):
         page.resize(1280, height)
-        qtbot.wait(50)
-        assert panel.list.geometry().bottom() < panel.measure.geometry().top()
+        qtbot.waitUntil(lambda: panel.list.geometry().bottom() < panel.measure.geometry().top())
 
 
 def test_a_page_too_low_for_the_usual_rows_shows_fewer(page, presenter):
