@@ -139,8 +139,7 @@ class LivePanel(QWidget):
         buttons.setContentsMargins(0, 0, 0, 0)
         buttons.addWidget(self.start, 0, 0)
         buttons.addWidget(self.pause, 0, 1)
-        for button in (self.take, self.mark):  # one of them is shown
-            buttons.addWidget(button, 1, 0, 1, 2)
+        buttons.addLayout(in_row(self.take, self.mark), 1, 0, 1, 2)  # one of them is shown
         kept = in_row((self.add, 1), self.sound, spacing=8)
         in_column(self.form, buttons, self.auto, kept, self.state, self.counts, on=self, spacing=6)
 
