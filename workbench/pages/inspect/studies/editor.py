@@ -17,6 +17,8 @@ from workbench.views.layouts import STRETCH, Folding, enable, heading, in_column
 
 FORM_WIDTH, NARROW_WIDTH = 300, 250
 """Pixels of the fields, and of a single one; the table beside them takes the rest."""
+MOST_HEAD_PX = 160
+"""A longer line of names scrolls, or the fields would have no room beside the table."""
 BESIDE_PX = 40
 """Left and right of the table's text, its scroll bar included."""
 LONGEST = 5000.0
@@ -67,7 +69,8 @@ class StudyEditor(QWidget):
             return
         self.title.setText(words.kind_title(draft.kind))
         self.help.setText(self._help(draft))
-        self.text.setMinimumWidth(self.text.fontMetrics().horizontalAdvance(HEADS[draft.kind].strip()) + BESIDE_PX)
+        head = self.text.fontMetrics().horizontalAdvance(HEADS[draft.kind].strip())
+        self.text.setMinimumWidth(min(head, MOST_HEAD_PX) + BESIDE_PX)
         if self.text.toPlainText() != draft.text:
             self.text.setPlainText(draft.text)
         for kind, form in self.forms.items():
