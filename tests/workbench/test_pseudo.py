@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QGroupBox,
     QLabel,
     QLineEdit,
+    QMenu,
     QTabBar,
     QWidget,
 )
@@ -78,11 +79,19 @@ def english(text: str) -> list[str]:
     return re.findall(r"\b[A-Za-z]{3,}\b", plain)
 
 
+def is_never_shown(widget: QWidget) -> bool:
+    """Whether it is pyqtgraph's own menu of a plot, or in it: no plot opens it."""
+    parent: QWidget | None = widget
+    while parent is not None and not (isinstance(parent, QMenu) and parent.title() == "Plot Options"):
+        parent = parent.parentWidget()
+    return parent is not None
+
+
 def told_past_the_catalogues(window: QWidget, foreign: re.Pattern[str]) -> dict[str, str]:
     """Every such text of a window, and what tells it."""
     found = {}
     for widget in [window, *window.findChildren(QWidget)]:
-        for text in texts_of(widget):
+        for text in () if is_never_shown(widget) else texts_of(widget):
             if english(foreign.sub(" ", text)):
                 found[text] = f"{type(widget).__name__} {widget.objectName()}".strip()
     return found

@@ -436,4 +436,4 @@ def test_beside_an_accepted_camera_a_newer_solution_is_offered_again_too(accepte
 def test_what_went_wrong_is_told_in_the_language_of_the_window(presenter, monkeypatch):
     monkeypatch.setattr(spoken, "_chosen", language(PSEUDO))
     problem = InputError(Message("x.few", "few views"), todo=Message("x.more", "record more"))
-    assert presenter.work._in_words(problem) == "⟦fééŵ vííééŵš⟧; ⟦ŕééçóóŕd móóŕéé⟧."
+    assert presenter.work._in_words(problem) == "⟦⟦fééŵ vííééŵš⟧; ⟦ŕééçóóŕd móóŕéé⟧.⟧"

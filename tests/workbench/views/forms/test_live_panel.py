@@ -213,7 +213,7 @@ def test_a_driver_that_is_missing_is_told_in_one_sentence(panel, live, qtbot):
     live.settings.set_kind("aravis")
     live.settings.look_for_devices()
     qtbot.waitUntil(lambda: not panel.form.missing.isHidden())
-    assert panel.form.missing.text() == "aravis needs its driver."
+    assert panel.form.missing.text() == "Aravis needs its driver."
     live.settings.set_kind("simulated")
     assert panel.form.missing.isHidden()
 

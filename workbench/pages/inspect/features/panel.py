@@ -263,7 +263,9 @@ class FeaturesPanel(QWidget):
             enable(action, fields.why_not(name, self._features.plan), tr(kind_named(name).help))
         self.add.setToolTip(tr("Measure something beside the thickness"))
         can = self._features.buttons
-        again = tr("All features are up to date. Measure them again, as where a file of a nominal surface has changed")
+        again = tr(
+            "Nothing has changed since all features were measured. Measure them again, as after a nominal file did"
+        )
         tip = again if self._features.up_to_date else tr("Measure all features on this scan")
         enable(self.measure, can.measure, tip)
         for button, why_not, tip in (
