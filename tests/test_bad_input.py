@@ -186,7 +186,7 @@ def test_black_and_white_frames_among_good_ones(folder, out):
     assert records[6]["reason"]["code"] == "scan.frame_white"
 
 
-@pytest.mark.parametrize("how", ["black", "white"])
+@pytest.mark.parametrize("how", ["black", pytest.param("white", marks=pytest.mark.accuracy)])
 def test_only_black_or_white_frames(folder, out, how):
     for frame in frames_of(folder):
         spoil(frame, how)

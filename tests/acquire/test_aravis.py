@@ -105,7 +105,7 @@ def test_a_picture_is_asked_for_by_software(source):
     assert source.read(2) is not None
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_a_camera_that_falls_silent_is_told_and_looked_for_and_the_recording_goes_on_with_it(
     source, camera, monkeypatch, tmp_path
 ):

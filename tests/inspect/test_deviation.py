@@ -92,6 +92,7 @@ def test_one_face_alone_is_laid_on_a_face_it_fits_on():
     assert np.abs(feet[:, 2]).max() < 0.1
 
 
+@pytest.mark.accuracy
 def test_another_part_is_refused():
     points = np.random.default_rng(2).uniform(-30, 30, (600, 3)) + [0, 0, 500]
     with pytest.raises(InputError, match="cannot be laid"):

@@ -53,6 +53,7 @@ def test_views_of_the_board_are_taken_at_its_rests(tmp_path):
     assert {"Hold still.", "Taken."} <= {str(detail.sentence) for detail in window.details}
 
 
+@pytest.mark.accuracy
 def test_the_pictures_of_a_check_are_taken_by_themselves_and_end(tmp_path):
     truth = make_source(CHOICE, RIG).truth
     window = Window()

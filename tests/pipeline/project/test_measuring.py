@@ -71,6 +71,7 @@ def noted(stages):
     return lambda step, done, total: stages.add(step)
 
 
+@pytest.mark.accuracy
 def test_a_cancelled_measurement_leaves_the_old_results_whole(done, tmp_path):
     """In every stage; those that need no picture come sooner where another cut is asked for."""
     folder = copy_of(done.folder, tmp_path / "project")

@@ -22,6 +22,7 @@ def features_of(scenario):
     return extract_features(stage.reference(), frames, len(frames))
 
 
+@pytest.mark.accuracy
 def test_a_scan_that_is_far_too_bright_is_refused_for_that():
     rig = scenario_rig(RIG)
     bright = features_of(replace(RIG, sensor=SensorEffects(brightness=6.0)))
