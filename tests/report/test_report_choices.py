@@ -9,8 +9,12 @@ import pypdfium2
 import pytest
 from pypdf import PdfReader
 
+from core.report.content import CalibrationMark
+from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.pdf import build_report
+from core.report.sections.calibration_tables import marks_table
 from core.report.template import SECTIONS
+from core.report.wording import Words
 from core.scan.surface.fused_surface import Mesh
 
 from .report_samples import block_content, gauge, repeats
@@ -130,6 +134,14 @@ def test_one_repeat_has_no_spread_and_no_chart(quick):
 def test_the_calibrations_of_a_repeat_are_parted_between_camera_and_fan(quick):
     one = replace(*repeats(1), calibration_id="5a3fa90b859f-5dd1523170c1")
     assert re.search(r"5a3fa90b859f-\s+5dd1523170c1", words(build_report(replace(quick, repeats=(one,)))))
+
+
+def test_the_id_of_a_calibration_stays_in_one_line_however_wide_its_digits_are(content):
+    def height(id_: str) -> float:
+        marked = replace(content, calibrations=(CalibrationMark("fan", id_, "0" * 64),))
+        return float(marks_table(ReportLook(Words(), content.template.accent), marked, TEXT_WIDTH).wrap(1000, 1000)[1])
+
+    assert height("0" * 12) == height("f" * 12)
 
 
 def test_many_repeats_with_long_names_are_cut_in_number_and_not_in_width(quick):

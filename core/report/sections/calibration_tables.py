@@ -40,7 +40,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
                 look.text(mark.sha256, "mono"),
             ]
         )
-    fixed = [25 * mm, 20.5 * mm, 26 * mm, 21 * mm]
+    fixed = [25 * mm, 22 * mm, 25 * mm, 21 * mm]  # an id of twelve wide digits stays in one line
     return ruled_table(rows, [*fixed, width - sum(fixed)])
 
 

@@ -17,12 +17,13 @@ from core.pipeline.project.measuring import measure_scan
 from tests.simulated import contents, copy_of
 
 
-def test_without_an_accepted_camera_the_fan_cannot_be_looked_at(done):
+def test_without_an_accepted_camera_the_fan_cannot_be_looked_at(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
     project = replace(done.project, accepted=Accepted())
     with pytest.raises(InputError, match="no calibration of the camera is accepted"):
-        find_poses(done.folder, project)
+        find_poses(folder, project)
     with pytest.raises(InputError, match="accepted"):
-        measure_scan(done.folder, project)
+        measure_scan(folder, project)
 
 
 def test_a_fan_of_other_settings_than_those_in_force_is_not_accepted(done, tmp_path):

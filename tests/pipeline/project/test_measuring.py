@@ -126,10 +126,10 @@ def test_frames_left_out_keep_the_numbers_of_the_others(done, tmp_path):
     assert "scan/frame0001.png" not in inputs
 
 
-def test_all_frames_left_out_is_said_before_the_work(done):
+def test_all_frames_left_out_is_said_before_the_work(done, tmp_path):
     names = frozenset(frame.name for frame in done.summary.frames)
     with pytest.raises(InputError, match="left out by hand"):
-        measure_scan(done.folder, done.with_options(excluded=names))
+        measure_scan(copy_of(done.folder, tmp_path / "project"), done.with_options(excluded=names))
 
 
 @pytest.mark.accuracy
