@@ -68,7 +68,7 @@ def check_poses(
     poses: Sequence[PoseFeatures], camera: Camera, fan: FanCalibration, deviations: Sequence[Deviation]
 ) -> tuple[tuple[CheckedPose, ...], Evidence]:
     """How far the stripes of P poses are from where the calibrations have them, and what that says of K deviations."""
-    found = [_located(pose, camera, fan.fan) for pose in poses]
+    found = _as_noisy_as_all([_located(pose, camera, fan.fan) for pose in poses])
     checked, evidence = [], Evidence.none(len(deviations))
     for pose in found:
         if not pose.used:
@@ -121,6 +121,30 @@ def _located(features: PoseFeatures, camera: Camera, fan: Fan) -> LocatedPose:
     return pose.left_out(
         Message("check.no_stripe_near", "no stripe is near where the calibration has the fan: laser or camera moved")
     )
+
+
+def _as_noisy_as_all(poses: Sequence[LocatedPose]) -> list[LocatedPose]:
+    """The poses, no stripe surer than all of them together let expect by its points and their stated noise.
+
+    A stripe's own noise is known from some ten pieces of it. Where these happen to scatter little the stripe would
+    count for more than it is worth, and of a hundred rigs that nothing has changed several would seem changed.
+    """
+    stripes = [stripe for pose in poses for stripe in pose.stripes.values()]
+    if not stripes:
+        return list(poses)
+    points = np.array([len(stripe) for stripe in stripes])
+    independent = np.array([stripe.noise for stripe in stripes]) / np.sqrt(points)
+    times = np.sqrt(np.average((np.array([stripe.sigma for stripe in stripes]) / independent) ** 2, weights=points))
+    return [
+        replace(
+            pose,
+            stripes={
+                line: replace(stripe, sigma=max(stripe.sigma, float(times) * stripe.noise / np.sqrt(len(stripe))))
+                for line, stripe in pose.stripes.items()
+            },
+        )
+        for pose in poses
+    ]
 
 
 def _check(

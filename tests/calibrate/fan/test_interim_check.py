@@ -86,6 +86,23 @@ def test_a_check_says_nothing_of_the_size_of_the_target_it_is_made_with(calibrat
     assert np.linalg.norm(steps) == pytest.approx(np.linalg.norm(larger.fan.pis - calibrated.fan.pis), rel=0.01)
 
 
+def test_a_stripe_that_happens_to_scatter_little_is_no_surer_than_the_others(calibrated):
+    """Its noise is known from some ten pieces of it, that of all of them from ninety."""
+    exact = Noise(corner_px=1e-6)
+    where = poses(5, 45)[1:-1]
+    usual, quiet = features(where, exact, 5), features(where, replace(exact, stripe_px=1e-3), 5)
+    by_chance = replace(usual[1], centrelines=(as_stated(quiet[1].centrelines[0]), *usual[1].centrelines[1:]))
+    known = replace(calibrated, stripe_sd_mm=0.0)
+    found, _ = check_poses([usual[0], by_chance, usual[2]], CAMERA, known, deviations_of(known))
+    sd_px = np.concatenate([pose.sd_mm * np.abs(pose.offset_px / pose.offset_mm) for pose in found])
+    assert sd_px.min() > 0.7 * np.median(sd_px)
+
+
+def as_stated(line):
+    """The centreline with the σ that the others state."""
+    return replace(line, sigma=np.full(len(line), Noise().stripe_px))
+
+
 @pytest.mark.accuracy
 def test_a_hundred_rigs_that_have_not_changed_raise_two_alarms_at_most():
     alarms, squares = 0, []
