@@ -1,15 +1,17 @@
-"""Rules of the house that the syntax tree shows: numbers say what they are, functions have few arguments."""
+"""Rules of the house that the syntax tree shows: what numbers say, how many arguments, no logic on shown texts."""
 
 from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from functools import cache
 from itertools import chain
 from pathlib import Path
 
 import pytest
+
+from tests.translations import called
 
 ROOT = Path(__file__).parents[1]
 MOST_PARAMETERS = 8
@@ -133,3 +135,111 @@ def test_the_first_sentence_of_a_docstring_names_who_and_what_is_meant():
         if RIDDLES.search(sentence)
     ]
     assert found == [], "say plainly what it does or is"
+
+
+CUTS = {
+    "partition", "rpartition", "split", "rsplit", "removeprefix", "removesuffix", "startswith", "endswith", "replace",
+    "find", "index",
+}  # fmt: skip
+"""Methods that look at what a text says, or take it apart."""
+TELLING = frozenset(
+    ("tr", "text_of", "sentence", "words", "known", "shown_name", "headed_name", "value_line", "short_value")
+)
+"""Calls that give a text in the reader's language; so does every function that returns what one of these gives."""
+
+
+def assigned_in(function: ast.AST) -> dict[str, list[ast.expr]]:
+    """What each name of a function is given; nothing is known of names that a loop or a tuple gives."""
+    found: dict[str, list[ast.expr]] = {}
+    for node in ast.walk(function):
+        targets = node.targets if isinstance(node, ast.Assign) else [getattr(node, "target", None)]
+        if isinstance(node, ast.Assign | ast.AnnAssign | ast.NamedExpr) and node.value is not None:
+            for target in targets:
+                if isinstance(target, ast.Name):
+                    found.setdefault(target.id, []).append(node.value)
+    return found
+
+
+def tells(value: ast.expr, telling: Collection[str], given: Mapping[str, list[ast.expr]]) -> bool:
+    """Whether an expression gives a text in the reader's language."""
+    match value:
+        case ast.Call(func=ast.Attribute(attr="strip", value=inner)):
+            return tells(inner, telling, given)
+        case ast.Call():
+            return called(value) in telling
+        case ast.Name():
+            others = {name: values for name, values in given.items() if name != value.id}
+            return any(tells(one, telling, others) for one in given.get(value.id, ()))
+        case ast.JoinedStr():
+            parts = [one.value for one in value.values if isinstance(one, ast.FormattedValue)]
+        case ast.IfExp():
+            parts = [value.body, value.orelse]
+        case ast.BoolOp():
+            parts = value.values
+        case ast.BinOp(op=ast.Add()):
+            parts = [value.left, value.right]
+        case ast.Subscript(value=ast.Dict(values=values)):
+            parts = values
+        case _:
+            return False
+    return any(tells(part, telling, given) for part in parts)
+
+
+def telling_in(trees: Sequence[ast.Module]) -> frozenset[str]:
+    """Names of all functions of some modules that return a text in the reader's language, whichever has the name."""
+    returned: dict[str, list[list[tuple[ast.expr, dict[str, list[ast.expr]]]]]] = {}
+    for function in chain.from_iterable(map(ast.walk, trees)):
+        if isinstance(function, ast.FunctionDef):
+            text = isinstance(function.returns, ast.Name) and function.returns.id == "str"
+            values = (
+                [one.value for one in ast.walk(function) if isinstance(one, ast.Return) and one.value] if text else []
+            )
+            given = assigned_in(function) if values else {}
+            returned.setdefault(function.name, []).append([(value, given) for value in values])
+    found = set(TELLING)
+    while more := {
+        name
+        for name, functions in returned.items()
+        if name not in found and all(any(tells(value, found, given) for value, given in each) for each in functions)
+    }:
+        found |= more
+    return frozenset(found)
+
+
+def cuts(tree: ast.Module, telling: Collection[str]) -> Iterator[tuple[int, str]]:
+    """Line and source of each place where a text in the reader's language is looked at or taken apart."""
+    for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
+        tried = [
+            node.func
+            for node in ast.walk(function)
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in CUTS
+        ]
+        given = assigned_in(function) if tried else {}
+        yield from ((one.lineno, ast.unparse(one)) for one in tried if tells(one.value, telling, given))
+
+
+def test_no_logic_looks_at_a_shown_text():
+    trees = {path: tree for path, _, tree in modules("core", "workbench")}
+    telling = telling_in(list(trees.values()))
+    found = [f"{path}:{line} {source}" for path, tree in trees.items() for line, source in cuts(tree, telling)]
+    assert found == [], "in another language it says something else: keep apart what is apart"
+
+
+@pytest.mark.parametrize(
+    ("line", "seen"),
+    [
+        ("tr('a. b').partition('.')", True),
+        ("self.tip().partition('.')", True),
+        ("shown_name(row, words).strip().removeprefix('a')", True),
+        ("text = tr('a') if x else ''; text.startswith('a')", True),
+        ("f'{tr(kind)} …'.replace(' ', '')", True),
+        ("path.name.partition('.')", False),
+        ("name.removeprefix('a')", False),
+        ("tr('a').strip()", False),
+        ("', '.join(tr('a').split)", False),
+    ],
+)
+def test_a_text_that_is_cut_is_seen(line, seen):
+    source = f"def tip(self) -> str:\n    first = {{1: tr('a')}}[x]\n    return f'{{first}} b'\ndef f():\n    {line}\n"
+    tree = ast.parse(source)
+    assert bool(list(cuts(tree, telling_in([tree])))) == seen

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import datetime
 from decimal import ROUND_HALF_EVEN, Decimal
 
@@ -121,13 +121,18 @@ def count(number: int, noun: str) -> str:
 
 def thickness_line(gauge: GaugeResult, words: Words = ENGLISH) -> str:
     """'50.012 mm ± 0.024 mm (k = 2)'."""
-    return _line(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", words)
+    return " ".join(_parts(gauge.thickness_mm, gauge.U_mm, gauge.k, "mm", words))
 
 
 def value_line(one: Characteristic, words: Words = ENGLISH) -> str:
     """'50.012 mm ± 0.024 mm (k = 2)', or the same in degrees."""
+    return " ".join(value_parts(one, words))
+
+
+def value_parts(one: Characteristic, words: Words = ENGLISH) -> tuple[str, str]:
+    """The same in two: '50.012 mm ± 0.024 mm' and '(k = 2)', or what is to be said of an uncertainty not known."""
     unit, factor = shown_unit(one)
-    return _line(factor * one.value, factor * one.U, one.k, unit, words)
+    return _parts(factor * one.value, factor * one.U, one.k, unit, words)
 
 
 def short_value(one: Characteristic, words: Words = ENGLISH) -> str:
@@ -148,6 +153,12 @@ def result_name(one: Characteristic) -> Message:
     if not kind or not re.fullmatch(r"(.* )?", feature) or not re.fullmatch(r"( \d+)?", number):
         return plain(one.name)  # somebody's own name, as of a cut
     return Message("report.result_name", "{feature}{kind}{number}", feature=feature, kind=label(kind), number=number)
+
+
+def name_within(one: Characteristic, feature: str, words: Words = ENGLISH) -> str:
+    """What a result is called under its feature: "flatness", "height 2", or the name a user gave it."""
+    own = one.name.removeprefix(f"{feature} ")
+    return words(result_name(replace(one, name=own)))
 
 
 def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
@@ -176,12 +187,17 @@ def with_unit(shown: str, unit: str, space: str = "\u00a0") -> str:
     return f"{shown}{unit}" if unit == "°" else f"{shown}{space}{unit}"
 
 
-def _line(value: float, U: float, k: float, unit: str, words: Words) -> str:
+def unbroken(text: str) -> str:
+    """The same text, which no line break parts."""
+    return text.replace(" ", NO_BREAK_SPACE)
+
+
+def _parts(value: float, U: float, k: float, unit: str, words: Words) -> tuple[str, str]:
     if not math.isfinite(U):
-        return with_unit(words.fixed(value, 3), unit, " ") + f" ({words('uncertainty unknown')})"
+        return with_unit(words.fixed(value, 3), unit, " "), f"({words('uncertainty unknown')})"
     decimals = decimals_of(U)
     value_shown, U_shown = (with_unit(words.fixed(one, decimals), unit, " ") for one in (value, U))
-    return f"{value_shown} ± {U_shown} (k = {words.general(k)})"
+    return f"{value_shown} ± {U_shown}", f"(k = {words.general(k)})"
 
 
 def uncertainty_sentence(k: float, U: float, words: Words = ENGLISH) -> str:

@@ -15,6 +15,7 @@ from core.report.wording import (
     grouped,
     headed_name,
     limits_of_thickness,
+    name_within,
     points_counted,
     shown_name,
     thickness_line,
@@ -23,6 +24,7 @@ from core.report.wording import (
     value_line,
     verdict_sentence,
 )
+from core.translations import PSEUDO
 
 
 def gauge(thickness, u, k=2.0, **more):
@@ -110,6 +112,21 @@ INF = math.inf
 def test_permitted_deviations_are_said_as_they_are_asked(limits, english, german):
     one = Characteristic("a", "thickness", 50.0, 0.01, limits=limits)
     assert (tolerance_words(one), tolerance_words(one, Words.of("de"))) == (english, german)
+
+
+@pytest.mark.parametrize(
+    ("name", "kind", "english", "chinese", "pseudo"),
+    [
+        ("block thickness", "thickness", "thickness", "厚度", "⟦⟦ţĥííçķñééšš⟧⟧"),
+        ("block height 2", "height", "height 2", "高度 2", "⟦⟦ĥééííĝĥţ⟧ 2⟧"),
+        ("block height of the rib", "height", *3 * ["height of the rib"]),
+        ("thickness", "thickness", "thickness", "厚度", "⟦⟦ţĥííçķñééšš⟧⟧"),
+    ],
+)
+def test_under_its_feature_a_result_is_called_by_its_kind_or_by_its_users_name(name, kind, english, chinese, pseudo):
+    one = Characteristic(name, kind, 50.0, 0.01)
+    said = [name_within(one, "block", Words.of(language)) for language in ("en", "zh_CN", PSEUDO)]
+    assert said == [english, chinese, pseudo]
 
 
 def test_an_angle_is_said_in_degrees():

@@ -41,8 +41,9 @@ from core.report.wording import (
     shown_name,
     shown_unit,
     tolerance_words,
+    unbroken,
     uncertainty_sentence,
-    value_line,
+    value_parts,
     with_unit,
 )
 
@@ -107,9 +108,8 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
 
 def _value(look: ReportLook, one: Characteristic) -> Paragraph:
     """'50.012 mm ± 0.024 mm', large, and k."""
-    value, _, rest = value_line(one, look.words).partition(" (")
-    rest = rest.replace(" ", "\u00a0")
-    said = f'{look.markup(value)} <font name="{SANS}" size="11">({markup(rest)}</font>'
+    value, coverage = value_parts(one, look.words)
+    said = f'{look.markup(value)} <font name="{SANS}" size="11">{markup(unbroken(coverage))}</font>'
     return Paragraph(said, look.style("result"))
 
 

@@ -19,7 +19,7 @@ from PySide6.QtWidgets import (
 
 from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from core.report.wording import verdict_sentence
-from workbench.language import text_of, tr
+from workbench.language import sentence, text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
 from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
@@ -169,24 +169,27 @@ class FacesPanel(QWidget):
                 button.setAutoRaise(True)
                 button.setIconSize(QSize(20, 20))
                 button.setIcon(icon("mdi6.vector-polygon" if kind == "polygon" else "mdi6.lasso"))
-                button.setAccessibleName(self._tip(face, kind).partition(".")[0])
+                button.setAccessibleName(self._does(face, kind))
                 button.clicked.connect(lambda _=False, face=face, kind=kind: self.draw.emit(face, kind))
                 self.tools[face, kind] = button
                 grid.addWidget(button, row, column)
         return grid
 
-    def _tip(self, face: str, kind: str) -> str:
-        first = {
-            ("upper", "polygon"): tr("Draw the upper face corner by corner."),
-            ("lower", "polygon"): tr("Draw the lower face corner by corner."),
-            ("upper", "lasso"): tr("Draw round the upper face with the button held down."),
-            ("lower", "lasso"): tr("Draw round the lower face with the button held down."),
+    @staticmethod
+    def _does(face: str, kind: str) -> str:
+        return {
+            ("upper", "polygon"): tr("Draw the upper face corner by corner"),
+            ("lower", "polygon"): tr("Draw the lower face corner by corner"),
+            ("upper", "lasso"): tr("Draw round the upper face with the button held down"),
+            ("lower", "lasso"): tr("Draw round the lower face with the button held down"),
         }[face, kind]
+
+    def _tip(self, face: str, kind: str) -> str:
         more = tr(
             "In the picture the region is what you draw. In 3D it becomes the outline, in the picture, of the plane "
             "face you draw round; what is seen behind it does not count. A region may reach over the face's edge."
         )
-        return f"{first} {more}"
+        return f"{sentence(self._does(face, kind))} {more}"
 
 
 class ResultPanel(QWidget):

@@ -83,7 +83,7 @@ class PoseTab(PictureTab):
                 self.image.remove_layer(name)
         for line in sorted({line for _, line in stripes}):
             mine = [uv[::-1] if line % 2 else uv for uv, of in stripes if of == line]
-            name = tr("line {number}", number=line + 1) if line >= 0 else tr("no line of the fan")
+            title = tr("line {number}", number=line + 1) if line >= 0 else tr("no line of the fan")
             colour = fan_colour(line + 1) if line >= 0 else EXCLUDED
             labels = [str(line + 1)] * len(mine) if line >= 0 else None
-            self.image.set_lines(f"stripe {line}", mine, colour=colour, width=2.0, labels=labels, title=name)
+            self.image.set_lines(f"stripe {line}", mine, colour=colour, width=2.0, labels=labels, title=title)

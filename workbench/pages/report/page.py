@@ -12,7 +12,7 @@ from core.translations import languages, own_name
 from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter
 from workbench.pages.report.stage import Stage
-from workbench.pages.report.words import USUAL_EXPORTS, export_words
+from workbench.pages.report.words import SHORT_TITLES, USUAL_EXPORTS, export_words
 from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views import ask
@@ -54,7 +54,7 @@ class ReportPage(StepPage):
         for name, title, shown in p.sections():
             box, why = self.boxes[name], p.empty_section(name)
             box.setChecked(shown)
-            short = title.partition(",")[0]
+            short = tr(SHORT_TITLES[name]) if name in SHORT_TITLES else title
             box.setText(tr("{title} (nothing yet)", title=short) if why else short)
             box.setToolTip(why or tr("{title}. What is left out is named on the last page.", title=title))
         self._show_looks()

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from core.messages import label
 from workbench.language import tr
 
 USUAL_EXPORTS = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
 """Exports with a button of their own; the others are in a menu."""
+
+SHORT_TITLES = {"maps": label("Residuals of both faces"), "inputs": label("Inputs")}
+"""What the page calls the sections of the report whose own titles are too long for a box that is ticked."""
 
 
 def export_words(kind: str) -> tuple[str, str, str]:

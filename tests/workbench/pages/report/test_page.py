@@ -53,6 +53,11 @@ def export_button(page: ReportPage, kind: str) -> QPushButton:
     return button
 
 
+def test_long_titles_of_sections_have_short_ones_beside_their_boxes(page: ReportPage) -> None:
+    assert page.boxes["maps"].text() == "Residuals of both faces"
+    assert page.boxes["inputs"].text() == "Inputs"
+
+
 def test_an_empty_project_says_what_comes_first_everywhere_and_leads_there(page: ReportPage, qtbot: Any) -> None:
     assert page.preview.message == "Scan the part first; then there is something to report."
     wanted: list[str] = []

@@ -9,7 +9,7 @@ from core.inspect.conformity import Verdict
 from core.inspect.plan.control_frame import control_frames, datum_letters
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of, results_of
-from core.report.wording import decision_sentence, grouped, short_value, shown_name, value_line
+from core.report.wording import decision_sentence, grouped, name_within, short_value, shown_name, value_line
 from workbench.language import named, number, text_of, tr
 from workbench.pages.words import wording
 from workbench.views.control_frames import Frame
@@ -54,7 +54,7 @@ def tip(row: Characteristic) -> str:
 
 def short_name(row: Characteristic, feature: str) -> str:
     """What a result is called under its feature."""
-    return shown_name(row, wording()).removeprefix(feature).strip() or row.kind
+    return name_within(row, feature, wording())
 
 
 def verdict(feature: ShownFeature) -> Verdict:
