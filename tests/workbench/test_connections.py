@@ -1,4 +1,6 @@
-"""Lambdas are connected only to signals of what the same object has made, and what is gone with it.
+"""What crashes a window is not written: loose connections, threads beside Qt's, event loops within others.
+
+Lambdas are connected only to signals of what the same object has made, and what is gone with it.
 
 A lambda has no receiver that Qt knows: the connection stays until the sender goes. On a sender that outlives the page
 it would be called for a page that is deleted, and the program would crash. So a sender is either the object itself, an
@@ -108,3 +110,76 @@ def test_the_rule_sees_a_sender_that_outlives_its_receiver(tmp_path: Path) -> No
         "        presenter.live.started.connect(partial(print, 5))\n"
     )
     assert list(connections(source)) == [(5, "self.model"), (6, "presenter"), (10, "presenter.live")]
+
+
+EXPLAINED = {
+    "work/worker.py": ("threading", "a process of its own, without Qt: it listens to the window while it computes"),
+    "work/console_kernel.py": ("threading", "the console's process, without Qt: it listens for its end"),
+    "views/scene/ready.py": ("threading", "imports the 3D libraries; it holds no object of Qt's"),
+    "notices.py": ("threading", "starts none: its hook tells of errors of other libraries' threads"),
+    "theme.py": ("gc.disable", "a guard of milliseconds, while Qt goes through its list of all widgets"),
+}
+"""The modules that touch what no other may, and why."""
+THREADS = ("threading", "_thread", "concurrent.futures", "multiprocessing")
+"""Modules that start threads, or processes that Qt does not know."""
+NESTED = ("exec", "exec_", "processEvents")
+"""What runs an event loop within another."""
+
+
+def hazards(tree: ast.AST) -> set[str]:
+    """What a module has of threads, and of turning the collection of garbage off."""
+    found = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found |= {one.name for one in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            found |= {node.module or "", *(f"{node.module}.{one.name}" for one in node.names)}
+        elif isinstance(node, ast.Name | ast.Attribute):
+            found.add(ast.unparse(node))
+    qt = {name for name in found if "QThread" in name or name.rpartition(".")[2] == "QRunnable"}
+    return qt | (found & {*THREADS, "gc.disable", "gc.set_threshold"})
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_threads_and_garbage_are_touched_only_where_it_is_explained(path: Path) -> None:
+    explained = EXPLAINED.get(path.relative_to(ROOT).as_posix())
+    assert hazards(ast.parse(path.read_text(encoding="utf-8"))) == ({explained[0]} if explained else set())
+
+
+def loops_at_close(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and source of each event loop that runs within a closeEvent, or within what it calls of its own class."""
+    for cls in (node for node in ast.walk(tree) if isinstance(node, ast.ClassDef)):
+        methods = {one.name: one for one in cls.body if isinstance(one, ast.FunctionDef)}
+        wanted = ["closeEvent"] if "closeEvent" in methods else []
+        for name in wanted:  # it grows
+            for node in ast.walk(methods[name]):
+                if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+                    continue
+                called, of = node.func.attr, ast.unparse(node.func.value)
+                if called in NESTED or of == "ask":
+                    yield node.lineno, ast.unparse(node.func)
+                if of == "self" and called in methods and called not in wanted:
+                    wanted.append(called)
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_no_event_loop_runs_while_a_window_closes(path: Path) -> None:
+    assert list(loops_at_close(ast.parse(path.read_text(encoding="utf-8")))) == []
+
+
+def test_threads_and_loops_at_close_are_seen() -> None:
+    assert hazards(ast.parse("from threading import Thread\nfrom PySide6.QtCore import QThreadPool\ngc.disable()")) == {
+        "threading", "PySide6.QtCore.QThreadPool", "gc.disable",
+    }  # fmt: skip
+    source = (
+        "class Window:\n"
+        "    def closeEvent(self, event):\n"
+        "        QTimer.singleShot(0, self, self._later)\n"
+        "        self._ask()\n"
+        "    def _ask(self):\n"
+        "        ask.confirm(self)\n"
+        "        QDialog(self).exec()\n"
+        "    def _later(self):\n"
+        "        QDialog(self).exec()\n"
+    )
+    assert list(loops_at_close(ast.parse(source))) == [(6, "ask.confirm"), (7, "QDialog(self).exec")]
