@@ -117,7 +117,7 @@ EXPLAINED = {
     "work/console_kernel.py": ("threading", "the console's process, without Qt: it listens for its end"),
     "views/scene/ready.py": ("threading", "imports the 3D libraries; it holds no object of Qt's"),
     "notices.py": ("threading", "starts none: its hook tells of errors of other libraries' threads"),
-    "theme.py": ("gc.disable", "a guard of milliseconds, while Qt goes through its list of all widgets"),
+    "theme.py": ("gc.disable", "a guard only while Qt goes through its list of all widgets"),
 }
 """The modules that touch what no other may, and why."""
 THREADS = ("threading", "_thread", "concurrent.futures", "multiprocessing")

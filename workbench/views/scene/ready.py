@@ -4,9 +4,10 @@
 2. Else another process renders a small picture off screen: if it comes out well, pictures of the scene are shown.
 3. Else there is no 3D.
 
-The libraries are imported by a thread that knows nothing of Qt: importing pyvista takes 1 s of processor time and, from
-a slow disk, many seconds, for which the window would stand still. It is the only thread that the window starts; at the
-program's end it stops before the next module. The answer holds for the life of the program.
+The libraries are imported by a thread that makes and holds no object of Qt's, though PySide6 and pyvistaqt are among
+what it imports: importing pyvista takes 1 s of processor time and, from a slow disk, many seconds, for which the
+window would stand still. It is the only thread that the window starts; at the program's end it stops before the next
+module. The answer holds for the life of the program.
 """
 
 from __future__ import annotations
@@ -125,7 +126,7 @@ class Readiness(QObject):
         self.give_up("pictures")
 
     def _import(self, kind: Kind) -> None:
-        """Import the libraries on a thread that knows nothing of Qt."""
+        """Import the libraries on a thread that makes no object of Qt's."""
         failed: list[Exception] = []
         self._thread = threading.Thread(target=self._stoppable.run, args=(failed,), name="pyvista import")
         self._thread.start()
