@@ -313,6 +313,7 @@ def _set_values(result: SetResult) -> dict[str, Any]:
 
 
 def _set_row(result: SetResult) -> tuple[str, ...]:
-    thickness, U, verdict, *rest = set_cells(result, output.words())
-    lengths = (f"{text} mm" if text else "" for text in (thickness, U))
-    return result.folder.name, *lengths, verdict or tr(SET_STATES["failed"]), *rest
+    cells = set_cells(result, output.words())
+    thickness, U = (f"{text} mm" if text else "" for text in (cells.thickness, cells.U))
+    verdict = cells.verdict or tr(SET_STATES["failed"])
+    return result.folder.name, thickness, U, verdict, cells.points, cells.frames, cells.time

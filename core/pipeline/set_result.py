@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from core.messages import Message, label
 from core.report.wording import Words, grouped, with_uncertainty
@@ -53,13 +54,26 @@ class SetProgress:
     share: float
 
 
-def set_cells(result: SetResult, words: Words) -> tuple[str, str, str, str, str, str]:
-    """Thickness and U in mm without their unit, verdict, points, frames used, time; "" for what there is not."""
+class SetCells(NamedTuple):
+    """A row of a table of sets; "" for what there is not."""
+
+    thickness: str
+    """In mm, without the unit, as U."""
+    U: str
+    verdict: str
+    points: str
+    frames: str
+    """How many were used, of how many."""
+    time: str
+
+
+def set_cells(result: SetResult, words: Words) -> SetCells:
+    """What a table says of a set."""
     seconds = words("{seconds:.1f} s", seconds=result.seconds)
     if result.error:
-        return "", "", "", "", "", seconds
+        return SetCells("", "", "", "", "", seconds)
     thickness = U = ""
     if result.thickness_mm is not None and result.U_mm is not None:
         thickness, U = with_uncertainty(result.thickness_mm, result.U_mm, words)
     frames = words("{used} of {all}", used=result.frames_used, all=result.frames)
-    return thickness, U, words(DECISIONS[result.verdict]), grouped(result.points), frames, seconds
+    return SetCells(thickness, U, words(DECISIONS[result.verdict]), grouped(result.points), frames, seconds)

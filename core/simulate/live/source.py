@@ -13,6 +13,7 @@ import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step
 from core.simulate.live.exposure_timer import ExposureTimer
@@ -49,6 +50,17 @@ class _State:
 
     def _sweep(self, time_s: float) -> float:
         return self.swept_s + (max(0.0, time_s - self.lit_s) if self.lasers.hand else 0.0)
+
+
+class _Exposure(NamedTuple):
+    """One frame to be exposed, and the `orders` that had been given when it was due."""
+
+    orders: int
+    moment: Moment
+    lost: int
+    """Instants lost before it."""
+    exposure: float
+    gain: float
 
 
 @dataclass(slots=True)
@@ -209,16 +221,16 @@ class SimulatedSource:
         try:
             rendered: set[Step] = set()
             while (task := self._next_exposure()) is not None:
-                orders, moment, lost, exposure, gain = task
-                picture = self._scene.picture(moment, exposure, gain)
+                moment = task.moment
+                picture = self._scene.picture(moment, task.exposure, task.gain)
                 if moment.step not in rendered:  # the first one takes long, and is no measure of the machine
                     rendered.add(moment.step)
                     with self._changed:
                         self._timer.skip()
                     continue
                 with self._changed:
-                    if orders == self._orders:
-                        self._lost += lost
+                    if task.orders == self._orders:
+                        self._lost += task.lost
                         when = self._timer.time_of(moment.number)
                         self._waiting = Frame(picture, self._delivered + self._lost, when, self._lost)
                         self._hand.shows(self._waiting.index, moment.time_s)
@@ -228,7 +240,7 @@ class SimulatedSource:
                 self._problem = problem
                 self._changed.notify_all()
 
-    def _next_exposure(self) -> tuple[int, Moment, int, float, float] | None:
+    def _next_exposure(self) -> _Exposure | None:
         """Wait for the next instant at which a frame is due; None when it is time to stop."""
         with self._changed:
             while not self._stopping:
@@ -244,5 +256,5 @@ class SimulatedSource:
                 time_s = self._timer.time_of(number)
                 plate_s = self._hand.plate_s(max(0.0, time_s - self._state.began_s), slow_s)
                 moment = self._state.at(number, time_s, plate_s)
-                return self._orders, moment, lost, self._exposure, self._gain
+                return _Exposure(self._orders, moment, lost, self._exposure, self._gain)
         return None

@@ -133,15 +133,18 @@ class SettingsPanel(QWidget):
             tr("0: a global shutter. Empty: not known, a global one is assumed."),
         )
         form.add_section(tr("Since its calibration the rig may have changed by"))
-        for key, label, unit, decimals, usual in STABILITY:
-            form.add_number(
-                key,
-                tr(label),
-                NumberRange(
-                    0.0, 10_000.0, decimals=decimals, step=usual / 10, unit=unit, none_text=tr("assumed"), first=usual
-                ),
-                tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=usual, unit=unit),
+        for one in STABILITY:
+            allowed = NumberRange(
+                0.0,
+                10_000.0,
+                decimals=one.decimals,
+                step=one.usual / 10,
+                unit=one.unit,
+                none_text=tr("assumed"),
+                first=one.usual,
             )
+            tip = tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=one.usual, unit=one.unit)
+            form.add_number(one.key, tr(one.name), allowed, tip)
         form.add_section(tr("How long calibration and check hold"))
         for key, label, usual in VALIDITY:
             form.add_number(

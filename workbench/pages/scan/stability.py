@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, NamedTuple
 
 from core.calibrate.change import DEFAULT_STABILITY, Stability
 from core.messages import label
@@ -12,8 +12,21 @@ from core.messages import label
 _PER_UNIT: Mapping[str, float] = {"turn": 1e6, "shift_mm": 1e3, "centre_px": 1.0, "focal_share": 1e6}
 """Of each field of a Stability: its unit here over the field's own."""
 
-STABILITY: tuple[tuple[str, str, str, int, float], ...] = tuple(
-    (key, name, unit, decimals, round(getattr(DEFAULT_STABILITY, key) * _PER_UNIT[key], 6))
+
+class StabilityField(NamedTuple):
+    """One number that the page asks for."""
+
+    key: str
+    name: str
+    """A fixed word, not yet in the window's language."""
+    unit: str
+    decimals: int
+    usual: float
+    """What is assumed where nothing is stated."""
+
+
+STABILITY: tuple[StabilityField, ...] = tuple(
+    StabilityField(key, name, unit, decimals, round(getattr(DEFAULT_STABILITY, key) * _PER_UNIT[key], 6))
     for key, name, unit, decimals in (
         ("turn", label("Laser turned"), "µrad", 0),
         ("shift_mm", label("Laser shifted"), "µm", 1),
@@ -21,7 +34,7 @@ STABILITY: tuple[tuple[str, str, str, int, float], ...] = tuple(
         ("focal_share", label("Focal length"), "× 10⁻⁶", 0),
     )
 )
-"""Key, name, unit, decimals and what is assumed where nothing is stated."""
+"""In the order they are shown."""
 
 
 def shown(stability: Stability | None) -> dict[str, float | None]:

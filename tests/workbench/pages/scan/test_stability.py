@@ -18,7 +18,7 @@ def test_an_emptied_value_states_nothing_any_more():
 
 
 def test_what_is_assumed_is_shown_in_the_units_of_rig_toml():
-    assert {key: usual for key, _, _, _, usual in STABILITY} == {
+    assert {one.key: one.usual for one in STABILITY} == {
         "turn": 200.0, "shift_mm": 20.0, "centre_px": 0.2, "focal_share": 100.0,
     }  # fmt: skip
-    assert shown(DEFAULT_STABILITY) == {key: usual for key, _, _, _, usual in STABILITY}
+    assert shown(DEFAULT_STABILITY) == {one.key: one.usual for one in STABILITY}
