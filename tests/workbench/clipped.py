@@ -16,6 +16,7 @@ from PySide6.QtWidgets import (
     QStyle,
     QStyleOptionButton,
     QStyleOptionComboBox,
+    QStyleOptionHeader,
     QTabBar,
     QToolButton,
     QWidget,
@@ -103,10 +104,17 @@ def _heads(heads: QHeaderView) -> Iterator[tuple[str, str]]:
         return
     for section in range(heads.count()):
         text = str(model.headerData(section, Qt.Orientation.Horizontal) or "")
+        if heads.isSectionHidden(section) or not text:
+            continue
         tip = model.headerData(section, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
+        elided = heads.textElideMode() is not Qt.TextElideMode.ElideNone  # else it is cut without a sign, at either end
+        option = QStyleOptionHeader()
+        option.initFrom(heads)
+        option.rect = QRect(0, 0, heads.sectionSize(section), heads.height())
+        has = heads.style().subElementRect(QStyle.SubElement.SE_HeaderLabel, option, heads).width()
         needed = heads.fontMetrics().horizontalAdvance(text)
-        if not heads.isSectionHidden(section) and needed > heads.sectionSize(section) + SLACK and not tip:
-            yield text, f"needs {needed} px, has {heads.sectionSize(section)}"
+        if needed > has + SLACK and not (tip and elided):
+            yield text, f"needs {needed} px, has {has}"
 
 
 def _choice(choice: QComboBox) -> Iterator[tuple[str, str]]:

@@ -3,6 +3,7 @@ import pytest
 from PySide6.QtCore import QPoint, Qt
 from PySide6.QtGui import QGuiApplication
 
+from tests.workbench.clipped import clipped
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.view_list import ListRow, ViewList
 
@@ -32,6 +33,13 @@ def names(view_list):
 
 def place(view_list, row, x):
     return QPoint(x, view_list.table.rowViewportPosition(row) + 10)
+
+
+def test_a_header_wider_than_its_column_ends_with_an_ellipsis_and_one_that_did_not_would_be_seen(view_list):
+    view_list.set_headers("View", "Median σ of all points [mm]")
+    assert clipped(view_list) == {}
+    view_list.table.horizontalHeader().setTextElideMode(Qt.TextElideMode.ElideNone)
+    assert set(clipped(view_list)) == {"Median σ of all points [mm]"}
 
 
 def test_a_click_on_the_check_box_tells_and_leaves_the_current_row(qtbot, view_list):
