@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import ast
 import json
+import re
 import subprocess
 import sys
 import tarfile
@@ -33,8 +34,9 @@ HEAD = """## Before and after
 Written by `make structure`, which measures both trees in the same way: the last one with flat folders, and this one,
 which does more by now. Modules to open are those on the shortest ways of imports from the command, or the live page, to
 each stage of the data flow above. Files to open for something new are those that name its neighbour in their code: of a
-cylinder, also those that simulate one or grow a face from a click. An arrow leads to another folder; a room is a folder
-with modules.
+cylinder, also those that simulate one or grow a face from a click. The [recipe](recipes.md) for a cone opens fewer: a
+new module, the shape, the entry among the kinds, a test, and the catalogues. An arrow leads to another folder; a room
+is a folder with modules.
 
 """
 """How the last section of the page begins; the rest of it is the table."""
@@ -52,6 +54,9 @@ LIVE_TO_OVERLAY = (
 )
 NEIGHBOURS = {"a cone": ("cylinder",), "a camera": ("basler", "pypylon"), "a language": ("german", "de")}
 """What one adds, and the words of a neighbour of it: a file that has one of them is opened to add the new one."""
+
+CONE = "Add a kind of feature: a cone"
+"""The recipe for it."""
 
 _ARROWS = """
 import json, sys, grimp
@@ -154,6 +159,17 @@ class House:
         resources = [path for path in (self.root / "resources").rglob("*") if "manual" not in path.parts]
         return modules + sum(path.stem in words for path in resources)
 
+    def recipe(self, title: str) -> int | None:
+        """How many files the manual's recipe has one open, each catalogue counted; None without a recipe."""
+        page = self.root / "resources" / "manual" / "recipes.md"
+        text = page.read_text(encoding="utf-8") if page.exists() else ""
+        section = re.search(rf"^## {re.escape(title)}\n+((?:(?:\d\. |   ).*\n)+)", text, re.MULTILINE)
+        if section is None:
+            return None
+        catalogues = len(list((self.root / "resources" / "translations").glob("*.po")))
+        places = set(re.findall(r"`((?:core|tests|workbench)/[^`]+)`", section[1]))
+        return len(places) + (catalogues if "make translations" in section[1] else 0)
+
 
 def _has(text: str, words: Sequence[str]) -> bool:
     """Whether one of the words is in a text; one of two letters only as the whole of it."""
@@ -192,6 +208,8 @@ def table(before: House, now: House, date: str = "") -> str:
     for title, words in NEIGHBOURS.items():
         named = " or ".join(f"`{word}`" for word in words)
         rows.append([f"files to open for {title}: those that name {named}", *(f"{one.naming(words)}" for one in both)])
+    steps = (house.recipe(CONE) for house in both)
+    rows.append(["files to open for a cone by its recipe", *("" if count is None else f"{count}" for count in steps)])
     folders = [["folder", *(f"{when}: {what}" for when in ("before", "now") for what in _OF_A_FOLDER)], ["---"] * 7]
     names = sorted({".".join(room.split(".")[:2]) for house in both for room in house.rooms} - set(PACKAGES))
     folders += [[name.replace(".", "/"), *(cell for house in both for cell in _folder(house, name))] for name in names]

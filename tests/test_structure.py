@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.structure import House, table
+from tests.structure import CONE, ROOT, House, table
 
 TREE = {
     "core/__init__.py": "",
@@ -64,3 +64,15 @@ def test_both_trees_stand_side_by_side(house, monkeypatch):
     small = house()
     assert "| modules, lines | 9, 11 | 9, 11 |" in table(small, small)
     assert "| core/high | 2, 5 | 1 | 1 | 2, 5 | 1 | 1 |" in table(small, small)
+
+
+def test_a_recipe_counts_the_files_of_its_steps_and_the_catalogues(house):
+    assert house().recipe("Add a cone") is None
+    steps = "1. `core/NAME.py` as `old.py`,\n   `core/shapes.py`\n2. `make translations`\n\nElse `core/no.py`\n"
+    (house().root / "resources" / "manual").mkdir()
+    (house().root / "resources" / "manual" / "recipes.md").write_text(f"## Add a cone\n\n{steps}")
+    assert house().recipe("Add a cone") == 3
+
+
+def test_the_recipe_for_a_cone_is_in_the_manual():
+    assert House(ROOT).recipe(CONE) == 6
