@@ -25,8 +25,12 @@ from scipy.linalg import cho_factor, cho_solve
 from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
 
-TUKEY = 6.0
-"""A stretch this many of its own standard deviations off has no weight left."""
+SILENT_SD = 6.0
+"""Limit of Tukey's biweight: a stretch this many of its own standard deviations off has no weight left, but 1e-6.
+
+Wider than `core.model.robust.TUKEY`, as the weights also serve to find how large own noise is: of normal residuals
+their mean square comes out 11 % too small with 6, and 17 % with 4.685 (by integration). The estimate is 98 % efficient.
+"""
 ROUNDS = 10
 """Of weights and variance components, at most; it ends as soon as the form changes by less than a twentieth."""
 PRIOR_FREEDOM = 10.0
@@ -83,7 +87,7 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalis
             mine = group == number
             spent = float(np.sum(inverse * of_group[number]))
             factor[number] = max(1.0, factor[number] * _variance_factor(weights[mine], residuals[mine], spent))
-        weights = np.clip(1 - (residuals / TUKEY) ** 2, 1e-3, None) ** 2
+        weights = np.clip(1 - (residuals / SILENT_SD) ** 2, 1e-3, None) ** 2
         if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
             break
     gains = inverse[:fixed] @ (columns * root[:, None]).T
