@@ -203,6 +203,9 @@ def _natural(text: str) -> list[tuple[int, int, str]]:
 CHECK_WIDTH = 30
 """A click so near to the left edge means the check box."""
 
+_NARROWEST, _WIDEST, _AROUND_HEADER = 104, 124, 18
+"""Pixels of the values' column, which is as wide as its header within these bounds, and of what is beside that."""
+
 _PAD, _BAR = 4, 4
 """Pixels: room beside a text, and height of the bar that shows a value."""
 
@@ -373,6 +376,10 @@ class ViewList(QWidget):
         """Name both columns: what is listed, and the value with its unit."""
         self.model.set_headers(what, value)
         self.table.setAccessibleName(what)
+        header = self.table.horizontalHeader()
+        header.ensurePolished()
+        needed = header.fontMetrics().horizontalAdvance(value) + _AROUND_HEADER
+        header.resizeSection(1, min(max(needed, _NARROWEST), _WIDEST))
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
         """Show rows. Which are chosen, which is current, and the scrolling are kept."""
@@ -430,7 +437,6 @@ class ViewList(QWidget):
         header = table.horizontalHeader()
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.Fixed)
-        header.resizeSection(1, 104)
         header.setTextElideMode(Qt.TextElideMode.ElideRight)  # else Qt cuts what is right-aligned at its beginning
         header.setHighlightSections(False)
         header.setDefaultAlignment(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter)

@@ -42,6 +42,12 @@ def test_a_header_wider_than_its_column_ends_with_an_ellipsis_and_one_that_did_n
     assert set(clipped(view_list)) == {"Median σ of all points [mm]"}
 
 
+def test_a_header_a_little_wider_than_usual_is_seen_whole(view_list):
+    view_list.set_headers("Frame", "Median σ [mm]")
+    view_list.table.horizontalHeader().setTextElideMode(Qt.TextElideMode.ElideNone)
+    assert clipped(view_list) == {}
+
+
 def test_a_click_on_the_check_box_tells_and_leaves_the_current_row(qtbot, view_list):
     view_list.set_current("view3.png")
     said = []
