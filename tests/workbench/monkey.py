@@ -19,6 +19,7 @@ import tempfile
 import threading
 import time
 import traceback
+import uuid
 from collections import Counter, deque
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -82,7 +83,13 @@ SLOWEST_S = 60.0
 
 
 LEFT_WITHIN_S = 20.0
-"""A recording that is still being written when the window is closed ends within this time."""
+"""A recording that is still being written when the window is closed ends within this time, and so do processes."""
+
+MARK = "TRISECT_MONKEY"
+"""Variable of the environment by which processes are known that were started while the window was played with."""
+
+TRACKER = "multiprocessing.resource_tracker"
+"""Python's own process, which ends with the one that started it."""
 
 
 @dataclass
@@ -364,6 +371,7 @@ def play(seconds: float, seed: int, folder: Path, sample: Path | None = None) ->
     app = QApplication.instance() or QApplication(["trisect"])
     assert isinstance(app, QApplication)
     threads, widgets = set(threading.enumerate()), set(map(id, app.topLevelWidgets()))
+    mark = mark_processes()
     project = folder / "sample"
     if sample is None:
         from core.pipeline.project.sample_project import sample_project
@@ -395,7 +403,9 @@ def play(seconds: float, seed: int, folder: Path, sample: Path | None = None) ->
             monkey.play(seconds)
             _end(window, bench, monkey)
         _look_for_leftovers(app, monkey, threads, widgets)
+        _look_for_processes(app, monkey, mark)
     finally:
+        os.environ.pop(MARK)
         faulthandler.cancel_dump_traceback_later()
         diary.close()
         sys.excepthook, sys.unraisablehook = before[:2]
@@ -448,6 +458,38 @@ def _look_for_leftovers(app: QApplication, monkey: Monkey, threads: set[Any], wi
     late = [thread for thread in threading.enumerate() if thread not in threads and thread.name != "pyvista import"]
     if late:
         monkey.note(f"threads left: {late}")
+
+
+def mark_processes() -> str:
+    """Have every process that is started from now on, and those it starts, bear a mark."""
+    os.environ[MARK] = mark = uuid.uuid4().hex
+    return mark
+
+
+def marked_processes(mark: str) -> list[str]:
+    """Number and command of each process with the mark that runs, or that nobody has waited for; on Linux only."""
+    found = []
+    for folder in Path("/proc").glob("[0-9]*"):
+        try:
+            state, parent = (folder / "stat").read_text().rpartition(")")[2].split()[:2]
+            given = (folder / "environ").read_bytes() if state != "Z" else b""
+            command = (folder / "cmdline").read_bytes().replace(b"\0", b" ").decode(errors="replace").strip()
+        except OSError:
+            continue  # it has ended, or is another user's
+        if f"{MARK}={mark}".encode() in given.split(b"\0") or (state == "Z" and int(parent) == os.getpid()):
+            found.append(f"{folder.name}: {command or 'has ended, but nobody has waited for it'}")
+    return found
+
+
+def _look_for_processes(app: QApplication, monkey: Monkey, mark: str) -> None:
+    """Lanes, console, trials of drawing: whatever was started, and what that started, is gone with the window."""
+    deadline = time.monotonic() + LEFT_WITHIN_S
+    while (left := [one for one in marked_processes(mark) if TRACKER not in one]) and time.monotonic() < deadline:
+        _watch_for_a_hang()
+        app.processEvents()
+        time.sleep(0.05)
+    if left:
+        monkey.note(f"processes left: {left}")
 
 
 def _nobody_else_asks(folder: Path) -> Any:
