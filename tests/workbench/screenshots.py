@@ -40,7 +40,7 @@ from workbench.theme import is_polishing
 
 SIZES = (QSize(960, 540), QSize(1000, 700), QSize(1280, 800), QSize(1920, 1080))
 THEMES = ("light", "dark")
-README = ("camera", "scan", "inspect", "report")
+README = ("project", "camera", "planes", "scan", "inspect", "report")
 README_SIZE, README_WIDTH = QSize(1280, 800), 900
 PATIENCE_S = 600.0
 TURNS = 5
@@ -227,6 +227,8 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
         _settle(app, bench, 8.0)
         _drawn(app, bench, window, name)
         window.statusBar().clearMessage()  # it may name a folder of this machine
+        if name == "project":
+            cast(Any, window.pages[name]).place.setText(str(Path("projects", "Sample")))  # as well
         _settle(app, bench, 0.3)
         small = grab(window).scaledToWidth(README_WIDTH, Qt.TransformationMode.SmoothTransformation)
         path = folder / f"{name}.png"
