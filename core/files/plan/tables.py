@@ -256,6 +256,15 @@ class MasterTable(Table):
                     "or result says what the master measures; give one of the two",
                 ),
             )
+        if self.measured_mm is not None and not self.budget:
+            raise Clash(
+                "budget",
+                Message(
+                    "inspection.master_without_budget",
+                    "is missing: how uncertain measured_mm is counts in every U; state it as in "
+                    'budget = [{{ source = "measurement of the master", u_mm = 0.005 }}], or give result',
+                ),
+            )
         if (self.result is None) != (self.characteristic is None):
             raise Clash(
                 "characteristic",

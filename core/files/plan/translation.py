@@ -39,7 +39,7 @@ from core.inspect.plan.feature_spec import (
 )
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import results_of
-from core.inspect.uncertainty.causes import cause_named
+from core.inspect.uncertainty.causes import MASTER_MEASURED, cause_named
 from core.messages import Message
 
 
@@ -267,7 +267,8 @@ def master_of(table: MasterTable, path: Path) -> Master:
                 todo=Message("advice.name_one_of", "name one of these"),
             )
         row = rows[table.characteristic]
-        measured, budget = row.value, tuple((one.source, one.u_mm) for one in row.budget)
+        rows_of = tuple((one.source, one.u_mm) for one in row.budget)
+        measured, budget = row.value, rows_of or ((MASTER_MEASURED, row.u),)
     assert measured is not None  # one of the two, says the table
     return Master(
         name=table.name,

@@ -83,6 +83,7 @@ def test_a_form_has_its_tolerance_above_only(tmp_path):
     assert read_plan(path).features[0].limits_of("flatness") == Limits(0.0, -math.inf, 0.05)
 
 
+MASTER = '[master]\nname = "M50"\ncertified_mm = 50\nu_certified_mm = 0.0001\nfeatures = ["a"]\nmeasured_mm = 50.02\n'
 FEATURE = '[[feature]]\nname = "a"\nkind = "plane"\n'
 
 
@@ -103,6 +104,8 @@ FEATURE = '[[feature]]\nname = "a"\nkind = "plane"\n'
         ('[[feature]]\nname = "d"\nkind = "distance"\nof = ["d", "e"]\n', "no feature 'e'"),
         (FEATURE + "region = { points_of = 'a' }\n", "rests on itself"),
         (FEATURE + "regions = []\n", "has no region"),
+        (FEATURE + MASTER, r"master\.budget is missing: how uncertain measured_mm is .* as in budget = \[\{ source"),
+        (FEATURE + MASTER + "budget = []\n", r"master\.budget is missing"),
         ("k = [\n", "no valid TOML"),
         ('[temperature]\npart_celsius = "warm"\n', "temperature in °C"),
     ],

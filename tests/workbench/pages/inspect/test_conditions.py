@@ -99,17 +99,30 @@ def test_temperature_begins_with_steel_and_what_the_project_page_says(presenter,
 def test_a_master_waits_until_all_of_it_is_known(presenter, conditions):
     conditions.set_value(fields.WITH_MASTER, True)
     said = [conditions.complaint("master")]
-    for key, value in (("name", "Block"), ("certified_mm", 50.001), ("measured_mm", 50.006)):
+    assert conditions.values()["u_certified_mm"] is None and conditions.values()[fields.U_MEASURED] is None
+    for key, value in (
+        ("name", "Block"),
+        ("certified_mm", 50.001),
+        ("u_certified_mm", 0.0002),
+        ("measured_mm", 50.006),
+        (fields.U_MEASURED, 0.004),
+    ):
         assert presenter.features.plan.master is None
         conditions.set_value(key, value)
         said.append(conditions.complaint("master"))
-    assert [part in text for part, text in zip(("name", "certificate", "measured", ""), said, strict=True)] == [
-        True
-    ] * 4
+    asked = (
+        "name",
+        "length by the certificate",
+        "u by the certificate",
+        "what was measured",
+        "u of what was measured",
+        "",
+    )
+    assert [part in text for part, text in zip(asked, said, strict=True)] == [True] * 6
     assert said[-1] == ""
     conditions.set_value(fields.U_MEASURED, 0.005)
     conditions.set_value(fields.COMPARED + "ball", False)
-    wanted = Master("Block", 50.001, 0.0, 50.006, ((MASTER_MEASURED, 0.005),), ("height",), True)
+    wanted = Master("Block", 50.001, 0.0002, 50.006, ((MASTER_MEASURED, 0.005),), ("height",), True)
     assert presenter.features.plan.master == wanted
     conditions.set_value(fields.COMPARED + "height", False)
     assert presenter.features.plan.master == wanted and "Choose a feature" in conditions.complaint("master")
@@ -118,6 +131,7 @@ def test_a_master_waits_until_all_of_it_is_known(presenter, conditions):
 def test_a_master_is_taken_from_its_results_with_its_budget(presenter, conditions, tmp_path, qtbot):
     conditions.set_value(fields.WITH_MASTER, True)
     conditions.set_value("certified_mm", 50.001)
+    conditions.set_value("u_certified_mm", 0.0001)
     conditions.take_master(tmp_path)
     qtbot.waitUntil(lambda: presenter.features.plan.master is not None)
     master = presenter.features.plan.master
@@ -134,6 +148,7 @@ def test_frame_and_master_follow_a_new_name_and_hold_what_they_rest_on(presenter
     conditions.set_value("secondary", "side")
     conditions.set_value(fields.WITH_MASTER, True)
     conditions.set_value("certified_mm", 50.0)
+    conditions.set_value("u_certified_mm", 0.0001)
     conditions.take_master(tmp_path)
     qtbot.waitUntil(lambda: features.plan.master is not None)
     for name, new in (("height", "block"), ("top", "table")):
@@ -181,6 +196,7 @@ def test_the_panel_takes_a_master_from_the_folder_that_is_chosen(
 ):
     conditions.set_value(fields.WITH_MASTER, True)
     conditions.set_value("certified_mm", 50.001)
+    conditions.set_value("u_certified_mm", 0.0001)
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
     qtbot.waitUntil(lambda: page.conditions.take is not None and page.conditions.take.isVisible())
     page.conditions.take.click()

@@ -101,7 +101,7 @@ class InspectConditions:
             self._take(group, {key: value, "secondary": "", "tertiary": ""})
             return
         if key == U_MEASURED:
-            key, value = "budget", ((MASTER_MEASURED, float(value)),)
+            key, value = "budget", () if value is None else ((MASTER_MEASURED, float(value)),)
         self._take(group, {key: value})
 
     def take_master(self, folder: Path) -> None:
@@ -223,8 +223,12 @@ def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPl
         raise ValueError(tr("Give the master a name: the report prints it."))
     if values["certified_mm"] is None:
         raise ValueError(tr("Enter its length by the certificate."))
+    if values["u_certified_mm"] is None:
+        raise ValueError(tr("Enter its u by the certificate: what is stated there as U, over k."))
     if values["measured_mm"] is None:
         raise ValueError(tr("Enter what was measured of it, or take it from results."))
+    if not values["budget"]:
+        raise ValueError(tr("Enter the u of what was measured of it, or take it from results."))
     features = tuple(name for name in comparable(plan) if values[COMPARED + name])
     if not features:
         raise ValueError(tr("Choose a feature that is compared with it."))
@@ -242,13 +246,13 @@ def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPl
     )
 
 
-def combined(budget: Sequence[tuple[str, float]]) -> float:
-    """What the causes of a master's measurement come to, in mm, as it is shown."""
-    return round(math.hypot(*(u for _, u in budget)), 6)
+def combined(budget: Sequence[tuple[str, float]]) -> float | None:
+    """What the causes of a master's measurement come to, in mm, as it is shown; None if none is known."""
+    return None if not budget else round(math.hypot(*(u for _, u in budget)), 6)
 
 
 def _master_values(master: Master | None) -> dict[str, Any]:
     if master is None:
-        first = {"name": "", "u_certified_mm": 0.0, "budget": ((MASTER_MEASURED, 0.0),), "same_calibration": True}
+        first = {"name": "", "budget": (), "same_calibration": True}  # nothing unstated is zero
         return dict.fromkeys(MASTER) | first
     return {key: getattr(master, key) for key in MASTER}

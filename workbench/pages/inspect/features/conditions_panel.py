@@ -169,8 +169,8 @@ class ConditionsPanel(QWidget):
                     decimals=5,
                     step=0.001 if u else 1.0,
                     unit="mm",
-                    none_text=None if u else tr("none"),
-                    first=None if u else 50.0,
+                    none_text=tr("not stated") if u else tr("none"),
+                    first=0.001 if u else 50.0,
                 ),
                 help,
             )
