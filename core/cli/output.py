@@ -33,6 +33,7 @@ from core.scan.results import FrameRecord
 from core.states import CHECKS, DECISIONS
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
+from core.urgent import is_urgent, urgent_first
 
 Rows = list[tuple[str, str]]
 _NAMES_SHOWN = 3
@@ -73,8 +74,9 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         table.add_row(tr("written"), tr("{name}: {value}", name=folder, value=names))
     if table.rows:
         out.print(table)
-    for note in notes:
-        out.print(visible(tr("note: {note}", note=note)), soft_wrap=True)
+    for note in urgent_first(notes):
+        style = "red" if is_urgent(note) else None
+        out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:

@@ -4,8 +4,14 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from core.messages import plain
+from core.calibrate.change import CHANGED
+from core.messages import ENGLISH, plain
 from core.report.content import Overlay
+from core.report.layout.paragraph import Paragraph
+from core.report.layout.style import ACCENT, ALARM, ReportLook, color, prepare_reportlab
+from core.report.pdf import LIMITS
+from core.report.sections.evidence import warnings
+from core.report.wording import Words
 
 from .report_samples import block_content, overlay
 
@@ -54,6 +60,16 @@ def test_notes_of_gauge_and_calibrations_are_printed_once(content):
         "The faces are small.",
         "Too few tilts.",
     ]
+
+
+def test_a_change_of_the_rig_is_printed_first_and_in_red(content):
+    changed = replace(content, notes=(*content.notes, CHANGED))
+    assert changed.all_notes[0] == CHANGED
+    prepare_reportlab()
+    (section,) = warnings(ReportLook(Words(ENGLISH), ACCENT), changed, LIMITS[0])
+    told = [one for one in section._content if isinstance(one, Paragraph) and one.style.name in ("alarm", "bullet")]
+    assert [one.style.textColor == color(ALARM) for one in told] == [True] + [False] * (len(changed.all_notes) - 1)
+    assert told[0].getPlainText() == str(CHANGED)
 
 
 def test_overlay_refuses_what_does_not_fit_together():

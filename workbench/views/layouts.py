@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Final, TypeVar
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
@@ -20,7 +21,9 @@ from PySide6.QtWidgets import (
 )
 from superqt import QElidingLabel
 
-from core.messages import unparted
+from core.messages import Message, unparted
+from core.urgent import is_urgent, urgent_first
+from workbench.language import text_of
 
 NO_MARGINS = (0, 0, 0, 0)
 """Pixels left, above, right and below."""
@@ -175,6 +178,21 @@ def muted(text: str = "") -> Sentence:
     label = Sentence(text)
     label.setObjectName("muted")
     return label
+
+
+def alarm() -> Sentence:
+    """What is said first, in red; it takes no room where there is nothing to say."""
+    label = Sentence()
+    label.setObjectName("alarm")
+    label.hide()
+    return label
+
+
+def say_notes(notes: Iterable[Message], urgent: QLabel, others: QLabel) -> None:
+    """Show notes, the urgent ones where they are said first."""
+    told = urgent_first(notes)
+    for label, wanted in ((urgent, True), (others, False)):
+        say(label, "\n".join(text_of(note) for note in told if is_urgent(note) is wanted))
 
 
 def say(label: QLabel | QAbstractButton, text: str) -> None:

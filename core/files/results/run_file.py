@@ -22,6 +22,7 @@ from core.files.tables import Finite, KeptMessage, OptionalMessage, OrInfinite, 
 from core.messages import Command, Message, plain
 from core.processor import IMPORTED_BEFORE
 from core.scan.features.frames import CrossingUse, FrameRecord
+from core.urgent import urgent_first
 
 T = TypeVar("T")
 
@@ -98,8 +99,8 @@ class RunRecord:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The notes of all steps, in the order the steps were done."""
-        return tuple(note for notes in self.notes.values() for note in notes)
+        """The notes of all steps, each once: the urgent ones, then in the order the steps were done."""
+        return urgent_first(note for notes in self.notes.values() for note in notes)
 
 
 class _Frame(ResultFile):

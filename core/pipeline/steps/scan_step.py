@@ -44,6 +44,7 @@ from core.scan.surface.mesh import build_mesh
 from core.scan.surface.normals import with_normals
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes, stage
+from core.urgent import urgent_first
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -114,11 +115,12 @@ def scan_step(
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
-        scan = replace(scan, notes=(*notes, *assumed_stability(found, change), *_assumed_shutter(found, scan)))
+        notes = (*notes, *assumed_stability(found, change), *_assumed_shutter(found, scan))
+        scan = replace(scan, notes=urgent_first(notes))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)
-        log.notes.extend((*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes))
-        log.notes.extend(_lost(found))
+        said_first = (*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes)
+        log.notes.extend(urgent_first((*said_first, *_lost(found))))
         file = _file(features, scan, calibration.id, features_key(found, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
             _write(log, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))

@@ -25,6 +25,8 @@ from core.report.layout.paragraph import Paragraph
 from core.report.template import Paper
 from core.report.wording import Words
 
+ALARM = "#A61B1B"
+"""What is urgent is written in it."""
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
 
@@ -176,6 +178,9 @@ def styles_of(accent: str, *, east_asian: bool = False) -> Mapping[str, Paragrap
         "rule": _style("rule", 6, 7.8, textColor=color(MUTED)),
         "caption": _style("caption", 7, 9.4, textColor=color(MUTED), spaceBefore=2),
         "bullet": _style("bullet", 7.5, 10.2, leftIndent=8, bulletIndent=0, spaceAfter=1.2),
+        "alarm": _style(
+            "alarm", 7.5, 10.2, leftIndent=8, spaceAfter=1.2, textColor=color(ALARM), bulletColor=color(ALARM)
+        ),
         "result": _style("result", 20, 25, fontName=BOLD),
         "fact": _style("fact", 9, 12, fontName=BOLD),
         "mono": _style("mono", 5.6, 7.6, fontName=MONO),
@@ -241,6 +246,6 @@ class ReportLook:
         """A paragraph of plain words that leads to the section or row called `key`."""
         return Paragraph(f'<a href="#{key}" color="{self.accent}">{self.markup(plain)}</a>', self.style(style))
 
-    def bullets(self, sentences: tuple[str, ...]) -> list[Paragraph]:
-        """Each sentence behind a small bullet."""
-        return [Paragraph(self.markup(sentence), self.style("bullet"), bulletText="•") for sentence in sentences]
+    def bullets(self, sentences: tuple[str, ...], style: str = "bullet") -> list[Paragraph]:
+        """Each sentence behind a small bullet; "alarm": in the colour of what is urgent."""
+        return [Paragraph(self.markup(sentence), self.style(style), bulletText="•") for sentence in sentences]

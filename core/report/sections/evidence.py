@@ -29,6 +29,7 @@ from core.report.wording import decimals_of, grouped, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.states import CHECKS
 from core.study.artefact_check import KINDS
+from core.urgent import is_urgent
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -125,10 +126,16 @@ def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> l
 
 def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Warnings and remarks of the software; they cannot be left out."""
-    notes = tuple(look.words.known(note) for note in content.all_notes)
+    notes = content.all_notes
     if not notes:
         return []
-    body = [*look.bullets(notes[: limits.notes]), *more_line(look, len(notes) - limits.notes)]
+    urgent = sum(map(is_urgent, notes))
+    told = tuple(look.words.known(note) for note in notes[: max(urgent, limits.notes)])
+    body = [
+        *look.bullets(told[:urgent], "alarm"),
+        *look.bullets(told[urgent:]),
+        *more_line(look, len(notes) - len(told)),
+    ]
     return [section(look, "notes", "Notes and warnings", body)]
 
 

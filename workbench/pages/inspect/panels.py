@@ -32,7 +32,7 @@ from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import enable, heading, in_column, in_row, muted
+from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say_notes
 from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
 
 if TYPE_CHECKING:
@@ -200,11 +200,12 @@ class ResultPanel(QWidget):
         self._presenter = presenter
         self._shown: object = None
         self.verdict, self.rows, self.rule = Verdict(), ValueRows(), muted()
-        self.budget, self.notes = ValueRows(), muted()
+        self.budget, self.notes, self.alarm = ValueRows(), muted(), alarm()
         self.budget_title, self.notes_title = heading(tr("Uncertainty budget")), heading(tr("Notes"))
         column = in_column(on=self, spacing=6)
         for widget in (
-            self.verdict, self.rows, self.rule, self.budget_title, self.budget, self.notes_title, self.notes,
+            self.verdict, self.alarm, self.rows, self.rule, self.budget_title, self.budget, self.notes_title,
+            self.notes,
         ):  # fmt: skip
             column.addWidget(widget)
 
@@ -219,9 +220,8 @@ class ResultPanel(QWidget):
         self.rows.set_rows(words.result_rows(gauge))
         self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
         self.budget.set_rows(words.budget_rows(gauge))
-        self.notes.setText("\n".join(map(text_of, gauge.notes)))
-        for widget in (self.notes, self.notes_title):
-            widget.setVisible(bool(gauge.notes))
+        say_notes(gauge.notes, self.alarm, self.notes)
+        self.notes_title.setVisible(bool(self.notes.text()))
 
     def _show_verdict(self, gauge: GaugeResult, outdated: bool) -> None:
         """What was proven of other faces or another tolerance is proven no more."""

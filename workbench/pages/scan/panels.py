@@ -21,7 +21,7 @@ from workbench.pages.stripes import set_stripe_editable
 from workbench.pages.whole import EVERYTHING
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import heading, in_column, muted
+from workbench.views.layouts import alarm, heading, in_column, muted, say_notes
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
@@ -170,10 +170,11 @@ class ResultPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.quality, self.reasons, self.notes = ValueRows(), ValueRows(), muted()
+        self.alarm = alarm()
         self._why = heading(tr("Frames without points"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.quality, self._why, self.reasons, self.notes):
+        for widget in (self.alarm, self.quality, self._why, self.reasons, self.notes):
             column.addWidget(widget)
 
     def refresh(self) -> None:
@@ -184,12 +185,9 @@ class ResultPanel(QWidget):
         self.reasons.set_rows(reasons)
         for widget in (self._why, self.reasons):
             widget.setVisible(bool(reasons))
-        said = [*map(text_of, (*look.notes, *look.problems))] if look is not None else []
+        said = (*look.notes, *look.problems) if look is not None else ()
         no_gauge = self._presenter.run.no_gauge
-        if no_gauge is not None:
-            said.append(text_of(no_gauge))
-        self.notes.setText("\n".join(said))
-        self.notes.setVisible(bool(said))
+        say_notes((*said, *([no_gauge] if no_gauge is not None else [])), self.alarm, self.notes)
 
 
 class RunningPanel(QWidget):

@@ -8,6 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from PySide6.QtCore import Qt
 
+from core.calibrate.change import CHANGED
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Sources
@@ -18,6 +19,7 @@ from core.model import LightPlane
 from core.pipeline.live.commands import Resume
 from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
 from core.scan.preview.preflight import Check
+from tests.translations import ROOT
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
 from workbench.pages.scan import overlays
@@ -29,6 +31,7 @@ from workbench.pages.whole import MeasuringAll
 from workbench.views import ask
 from workbench.work import jobs
 
+STYLE = ROOT / "resources" / "style.qss"
 LEFT = Qt.MouseButton.LeftButton
 
 
@@ -225,6 +228,17 @@ def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(
     assert "relief" in measured.result.notes.text()
     assert not measured.source_fold.isExpanded() and measured.result_fold.isExpanded()
     assert not any(button.property("primary") for button in measured.card.buttons.values())
+
+
+def test_a_change_of_the_rig_is_said_first_in_red_and_once(recorded, measuring, qtbot, monkeypatch):
+    told = replace(cases.look(), notes=(*cases.look().notes, CHANGED, CHANGED))
+    monkeypatch.setattr(recorded.presenter.work, "look", told)
+    recorded.result.refresh()
+    shown = recorded.result
+    assert shown.alarm.text() == str(CHANGED) and not shown.alarm.isHidden()
+    assert f"QLabel#{shown.alarm.objectName()} {{ color: palette(bright-text); }}" in STYLE.read_text()
+    assert shown.notes.text() == "The relief fixes the scale well."
+    assert shown.layout().indexOf(shown.alarm) == 0
 
 
 def test_a_scan_without_thickness_says_so(recorded, measuring, qtbot):

@@ -1,0 +1,44 @@
+"""What changed, and why nothing is proven, is said before all else, once, and in red where there is a colour."""
+
+import pytest
+
+from core.calibrate.change import CHANGED
+from core.cli import output
+from core.messages import Message, plain
+from core.scan.fan_watch import MOVED_WITHIN
+from core.urgent import URGENT, is_urgent, urgent_first
+from tests.translations import all_texts
+
+ASSUMED, POINTLESS = plain("Assumed is a plate."), plain("5 frames gave no points.")
+
+
+def test_the_change_is_said_first_and_each_note_once():
+    assert urgent_first((ASSUMED, POINTLESS, MOVED_WITHIN, ASSUMED, CHANGED, MOVED_WITHIN)) == (
+        MOVED_WITHIN, CHANGED, ASSUMED, POINTLESS,
+    )  # fmt: skip
+
+
+def test_what_is_said_of_a_result_is_as_urgent_as_what_is_said():
+    assert is_urgent(Message("report.note_of_result", "{name}: {note}", name="A", note=CHANGED))
+    assert not is_urgent(Message("report.note_of_result", "{name}: {note}", name="A", note=ASSUMED))
+
+
+def test_every_urgent_code_is_one_of_the_programs():
+    assert {text.code for text in all_texts()} >= URGENT
+
+
+@pytest.mark.parametrize("surroundings", [{}, {"NO_COLOR": "1"}, {"piped": "1"}])
+def test_the_command_line_says_it_in_red_on_a_screen_that_wants_colours(surroundings, capsys, monkeypatch):
+    monkeypatch.delenv("NO_COLOR", raising=False)
+    monkeypatch.setenv("TERM", "xterm-256color")
+    if "piped" not in surroundings:
+        monkeypatch.setenv("FORCE_COLOR", "1")  # as on a screen
+    else:
+        monkeypatch.delenv("FORCE_COLOR", raising=False)
+    for name, value in surroundings.items():
+        monkeypatch.setenv(name, value)
+    output.print_rows([], (ASSUMED, CHANGED))
+    first, second = capsys.readouterr().out.strip().splitlines()
+    assert str(CHANGED) in first and str(ASSUMED) in second
+    assert ("\x1b[31m" in first) is (not surroundings)
+    assert "\x1b[31m" not in second
