@@ -134,8 +134,8 @@ class BoardTolerance:
         return np.flatnonzero(self.sd)
 
 
-SIZE_ASSUMED = "target.size_assumed"
-"""Code of the note on a size that is not stated."""
+SIZE_ASSUMED, FLATNESS_ASSUMED = "target.size_assumed", "target.flatness_assumed"
+"""Codes of the notes on a size, and on a flatness, that is not stated."""
 SIZE_UNCONFIRMED = Message(
     "target.size_unconfirmed",
     "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, so that "

@@ -17,6 +17,7 @@ from typing import Literal, cast
 
 import numpy as np
 
+from core.calibrate.board_shape import FLATNESS_ASSUMED
 from core.calibrate.camera.covariance import principal_deviations
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.results import CameraCalibration, FanCalibration, Readjustment
@@ -24,8 +25,11 @@ from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
 
 Source = Literal[
-    "camera", "fan", "bend", "scale", "assumed scale", "change", "assumed change", "charted change", "readjusted"
-]
+    "camera", "fan", "assumed fan", "bend", "scale", "assumed scale",
+    "change", "assumed change", "charted change", "readjusted",
+]  # fmt: skip
+FANS: tuple[Source, ...] = ("fan", "assumed fan")
+"""The sources that are the fan's calibration."""
 SCALES: tuple[Source, ...] = ("scale", "assumed scale")
 """The sources that are the size of the plane target, which no picture of it shows."""
 UNEXPLAINED: Source = "bend"
@@ -43,8 +47,8 @@ class Deviation:
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
     "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`),
     "readjusted" (what a re-adjustment leaves uncertain of that). Where
-    nobody has stated how large scale or change may be, their sources say that they are assumed, or that the
-    change is by the rig's own checks ("charted change").
+    nobody has stated how large scale or change may be, or how flat the plane target is, on which the fan rests,
+    their sources say that they are assumed, or that the change is by the rig's own checks ("charted change").
     """
 
     source: Source
@@ -101,9 +105,11 @@ def _of_camera(camera: CameraCalibration, fan: FanCalibration) -> Iterator[Devia
 
 def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     values, vectors = np.linalg.eigh(np.asarray(fan.fan.covariance))
+    assumed = any(note.code == FLATNESS_ASSUMED for note in fan.notes)
+    source: Source = "assumed fan" if assumed else "fan"
     for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
         if value > NEGLIGIBLE * values[-1]:
-            yield Deviation("fan", camera, moved_fan(fan.fan, np.sqrt(value) * vector))
+            yield Deviation(source, camera, moved_fan(fan.fan, np.sqrt(value) * vector))
 
 
 def _of_bends(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:

@@ -5,13 +5,17 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.covariance import principal_deviations
 from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.deviations import calibration_deviations, fan_behind
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera
+from core.scan.common_errors import CommonErrors
 from tests.calibrate.camera_views import synthetic_views
 from tests.calibrate.fan_scenes import ALPHA, CAMERA, PAPER, Noise, features, poses
 
@@ -64,6 +68,17 @@ def test_an_uncertain_size_of_the_target_scales_all_of_space(camera, fan):
     assert scaled.camera is camera.camera
     assert 1 / scaled.fan.pis == pytest.approx(1.001 / fan.fan.pis, rel=1e-5)
     assert not [one for one in calibration_deviations(camera, fan) if one.source == "scale"]
+
+
+def test_the_row_of_a_fan_whose_targets_flatness_is_assumed_says_so(camera):
+    unstated = fit_fan(SEEN, camera.camera, replace(THREE, target=BoardTolerance(None, 0.0)))
+    deviations = calibration_deviations(camera, unstated)
+    steps = [(one.fan.pis - unstated.fan.pis).ravel() for one in deviations if one.source == "assumed fan"]
+    assert np.transpose(steps) @ steps == pytest.approx(np.asarray(unstated.fan.covariance), rel=1e-6, abs=1e-12)
+    assert not [one for one in deviations if one.source == "fan"]
+    assert "assumed" in str(CALIBRATIONS["assumed fan"])
+    common = CommonErrors.of_fan(camera.camera, unstated.fan, deviations)
+    assert "gauge.without_fan" not in [one.code for one in PointErrors(common=common).missing()]
 
 
 def test_a_fan_of_another_program_stays_where_it_is(camera, fan):

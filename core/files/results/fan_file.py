@@ -35,7 +35,9 @@ from core.model import Camera, Fan, LightPlane
 _PARAMETERS = len(CAMERA_PARAMETERS)
 _CHANGES = 9
 """Turns, shifts, drifts of the picture, and the focal length."""
-_ReadjustedSource = Literal["camera", "fan", "scale", "assumed scale", "change", "assumed change", "readjusted"]
+_ReadjustedSource = Literal[
+    "camera", "fan", "assumed fan", "scale", "assumed scale", "change", "assumed change", "readjusted"
+]
 _VECTOR = label("three finite numbers, not all zero")
 
 

@@ -25,6 +25,7 @@ FACE_TILT = Message("inspection.cause_face_tilt", "tilt of the faces against the
 
 CAMERA = Message("inspection.cause_camera", "camera calibration")
 FAN_CALIBRATION = Message("inspection.cause_fan", "fan calibration")
+FAN_ASSUMED = Message("inspection.cause_fan_assumed", "fan calibration (flatness of the plane target assumed)")
 BENT_LIGHT = Message("inspection.cause_bent_light", "light of the fan that lies in no planes")
 SCALE = Message("inspection.cause_scale", "scale of the targets")
 SCALE_ASSUMED = Message("inspection.cause_scale_assumed", "scale of the targets (assumed)")
@@ -57,6 +58,7 @@ GIVEN = Message("study.cause_given", "common to all scans, as given")
 CALIBRATIONS: Mapping[str, Message] = {
     "camera": CAMERA,
     "fan": FAN_CALIBRATION,
+    "assumed fan": FAN_ASSUMED,
     "bend": BENT_LIGHT,
     "scale": SCALE,
     "assumed scale": SCALE_ASSUMED,

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.deviations import UNEXPLAINED, Source
+from core.calibrate.deviations import FANS, UNEXPLAINED, Source
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.inspect.uncertainty.part import Part
@@ -127,7 +127,7 @@ class PointErrors:
             lacking.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
         if not self.knows("camera"):
             lacking.append(Message("gauge.without_camera", "that of the camera"))
-        if not self.knows("fan"):
+        if not any(map(self.knows, FANS)):
             lacking.append(Message("gauge.without_fan", "that of the fan"))
         return tuple(lacking)
 
