@@ -6,8 +6,6 @@ import time
 from collections.abc import Sequence
 from datetime import datetime
 
-import numpy as np
-
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_poses
 from core.files.results.check_file import InterimCheck
@@ -18,7 +16,7 @@ from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
-from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight
+from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight, stripe_width
 
 CHECK_EVERY_S = 1.0
 """How often it is looked whether the reference still holds, while nothing is recorded."""
@@ -104,5 +102,4 @@ def calibrated_stripe_px(request: LiveRequest) -> float | None:
         poses = read_stored_poses(*request.kept_fan)
     except InputError:
         return None
-    widths = [piece.width for pose in poses for piece in pose.centrelines]
-    return float(np.median(np.concatenate(widths))) if widths else None
+    return stripe_width(piece for pose in poses for piece in pose.centrelines)

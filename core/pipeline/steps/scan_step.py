@@ -11,11 +11,14 @@ import numpy as np
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
+from core.files.recording.features_file import read_poses
 from core.files.recording.options import Options
 from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet, require_scan
+from core.files.results.fan_file import fan_id
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
+from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
@@ -33,6 +36,7 @@ from core.scan.features.picture_faults import faults_first
 from core.scan.method import Method
 from core.scan.network.adjustment import SILENCED
 from core.scan.preview.frames import Preview
+from core.scan.preview.preflight import other_focus, stripe_width
 from core.scan.preview.shown import FramePreview
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import FrameRecord, ScanResult
@@ -111,7 +115,7 @@ def scan_step(
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
         doubt = _unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
-        said = (*change.notes, *([doubt] if doubt else []))
+        said = (*change.notes, *([doubt] if doubt else []), *notes_on_focus(work, calibration, features.fan))
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
@@ -150,6 +154,18 @@ def _unsteady(scan: ScanResult) -> Message | None:
     if scan.moved:
         return MOVED_WITHIN
     return DRIFTED_WITHIN if scan.drifted else None
+
+
+def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> tuple[Message, ...]:
+    """A note if the fan's stripes are much wider than in its calibration; none where its poses are not kept."""
+    of = calibration.fan
+    try:
+        poses = read_poses(work.path("poses"), fan_id(of.fan) if of.readjusted is None else of.readjusted.of)
+    except InputError as error:  # the scan needs nothing of them
+        return (error.message,)
+    then, now = stripe_width(line for pose in poses for line in pose.centrelines), stripe_width(fan)
+    note = None if then is None or now is None else other_focus(now, then)
+    return () if note is None else (note,)
 
 
 def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
@@ -138,26 +138,17 @@ class Preflight:
         stripes = self._stripes
         if not sum(map(len, stripes)):
             return Check("focus", "unknown", _NO_REFERENCE)
-        width = float(np.median(np.concatenate([piece.width for piece in stripes])))
+        width = stripe_width(stripes)
+        assert width is not None
         if self.stripe_px is None:
             sharp, blurred = IN_FOCUS * self.image_size[0], OUT_OF_FOCUS * self.image_size[0]
             said = Message("scan.stripe_width", "The fan's stripes are {width_px:.1f} px wide (σ)", width_px=width)
             todo = Message("scan.advice_focus", "focus camera and laser, then calibrate again")
         else:
             sharp, blurred = SAME_FOCUS * self.stripe_px, OTHER_FOCUS * self.stripe_px
-            said = Message(
-                "scan.stripe_width_changed",
-                "The fan's stripes are {width_px:.1f} px wide (σ), {then_px:.1f} px when the fan was calibrated",
-                width_px=width,
-                then_px=self.stripe_px,
-            )
-            todo = Message(
-                "scan.advice_refocus",
-                "set the focus of camera and laser back, and look for a smeared lens; else calibrate again",
-            )
+            said, todo = _width_changed(width, self.stripe_px), _REFOCUS
         if width >= blurred:
-            out = Message("scan.check_out_of_focus", "{width}: {todo}.", width=said, todo=todo)
-            return Check("focus", "failed", out)
+            return Check("focus", "failed", _out_of_focus(said, todo))
         return Check(
             "focus", "ok" if width <= sharp else "unknown", Message("scan.check_focus", "{width}.", width=said)
         )
@@ -205,3 +196,33 @@ class Preflight:
     @property
     def _stripes(self) -> Sequence[Centreline]:
         return [piece for pieces in self.fan_lines or () for piece in pieces]
+
+
+def stripe_width(pieces: Iterable[Centreline]) -> float | None:
+    """Median width (σ) of stripes, in pixels; None where there is none."""
+    widths = np.concatenate([np.empty(0), *(piece.width for piece in pieces)])
+    return float(np.median(widths)) if len(widths) else None
+
+
+def other_focus(width_px: float, then_px: float) -> Message | None:
+    """What to say of the fan's stripes in a scan where they are wider than in its calibration, by another focus."""
+    return _out_of_focus(_width_changed(width_px, then_px), _REFOCUS) if width_px >= OTHER_FOCUS * then_px else None
+
+
+_REFOCUS = Message(
+    "scan.advice_refocus",
+    "set the focus of camera and laser back, and look for a smeared lens; else calibrate again",
+)
+
+
+def _width_changed(width_px: float, then_px: float) -> Message:
+    return Message(
+        "scan.stripe_width_changed",
+        "The fan's stripes are {width_px:.1f} px wide (σ), {then_px:.1f} px when the fan was calibrated",
+        width_px=width_px,
+        then_px=then_px,
+    )
+
+
+def _out_of_focus(width: Message, todo: Message) -> Message:
+    return Message("scan.check_out_of_focus", "{width}: {todo}.", width=width, todo=todo)

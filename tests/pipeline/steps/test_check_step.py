@@ -14,10 +14,12 @@ import pytest
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, STABLE, displaced_fan
 from core.errors import InputError
+from core.files.recording.features_file import read_poses, write_poses
 from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
 from core.files.recording.set_listing import taken_at
+from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
@@ -36,7 +38,7 @@ from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
 from core.pipeline.steps.scan_pictures import look_at_scan
-from core.pipeline.steps.scan_step import Measured, scan_step
+from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.content import thickness_characteristic
@@ -278,6 +280,24 @@ def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_
     work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=stated)), work.out)
     notes = scan_of(unchanged, work).scan.notes
     assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
+
+
+def test_stripes_much_wider_than_at_the_calibration_are_told_by_the_scan(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
+    assert notes_on_focus(work, known, seen) == ()
+    id_ = fan_id(known.fan.fan)
+    poses = read_poses(work.path("poses"), id_)
+    for share, said in ((1 / 1.4, []), (1 / 1.8, ["scan.check_out_of_focus"])):
+        sharp = [replace(p, centrelines=tuple(replace(c, width=share * c.width) for c in p.centrelines)) for p in poses]
+        write_poses(work.path("poses"), id_, sharp)
+        assert [note.code for note in notes_on_focus(work, known, seen)] == said
+    notes = scan_of(unchanged, work).scan.notes
+    assert "px when the fan was calibrated: set the focus of camera and laser back" in " ".join(map(str, notes))
+    work.path("poses").write_bytes(b"damaged")
+    assert [note.code for note in notes_on_focus(work, known, seen)] != [], (
+        "told, and the scan is measured all the same"
+    )
 
 
 @pytest.mark.accuracy
