@@ -190,7 +190,11 @@ class Language:
 
     def __call__(self, message: Message) -> str:
         """The text of a message, its places filled."""
-        return visible(_Formatter(self).vformat(self._text(message), (), message.values), keep="\n")
+        try:
+            told = _Formatter(self).vformat(self._text(message), (), message.values)
+        except KeyError:  # a file of an older version lacks a value that today's text tells
+            told = _Formatter(self).vformat(message.text, (), message.values)
+        return visible(told, keep="\n")
 
     def label(self, english: str, /, **values: Any) -> str:
         """Fixed words in this language; in English where they are not known in it."""

@@ -180,3 +180,11 @@ def test_nobody_writes_a_date_for_people_in_a_way_of_their_own():
         if "%Y-%m-%d" in path.read_text(encoding="utf-8")
     ]
     assert found == ["core/files/exchange/xlsx.py", "core/messages.py"]  # a stamp in a file, and English
+
+
+def test_a_message_of_an_older_file_that_lacks_a_value_of_todays_text_is_told_as_it_was():
+    kept = from_json({"code": "camera.off", "text": "off by 0.2 px", "values": {"px": 0.2}})
+    german = replace(ENGLISH, messages={"camera.off": "um {px:.1f} px ({mm:.2f} mm) daneben"})
+    assert german(kept) == "off by 0.2 px"
+    with pytest.raises(KeyError):
+        german(Message("camera.off", "off by {px} px ({mm} mm)", px=0.2))

@@ -80,7 +80,7 @@ def expected_error(
     ValueError
         If no view was used, the grid has fewer than 2 × 2 points, or the depth is not positive.
     """
-    field, depths = residual_field(calibration), _corner_depths(calibration)
+    field, depths = residual_field(calibration), corner_depths(calibration)
     if not len(field.uv):
         raise ValueError("no view was used")
     if min(grid) < 2 or (depth_mm is not None and not depth_mm > 0):
@@ -123,7 +123,7 @@ def residual_field(calibration: CameraCalibration) -> ResidualField:
     )
 
 
-def _corner_depths(calibration: CameraCalibration) -> Array:
+def corner_depths(calibration: CameraCalibration) -> Array:
     """Depths z in mm of the corners that count."""
     depths = [view.pose.apply(view.view.points[view.counted])[:, 2] for view in calibration.views if view.used]
     return np.concatenate(depths) if depths else np.zeros(0)

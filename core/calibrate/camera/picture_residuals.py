@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.calibrate.camera.coverage import REGIONS
-from core.calibrate.camera.expected_error import residual_field
+from core.calibrate.camera.expected_error import corner_depths, residual_field
 from core.calibrate.results import CameraCalibration
 from core.messages import Message
 from core.model.residuals import Judgement, Residuals, judge_residuals, of_vectors, over_picture
@@ -67,36 +67,46 @@ def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
             )
         )
     if found.outwards.systematic > max(found.over_picture.systematic / 2, WORTH_A_NOTE_PX):
-        notes.append(_on_rings(found.outwards))
+        notes.append(_on_rings(calibration, found.outwards))
     elif found.over_picture.systematic > WORTH_A_NOTE_PX:
-        notes.append(_on_regions(found.over_picture))
+        notes.append(_on_regions(calibration, found.over_picture))
     return tuple(notes)
 
 
-def _on_rings(outwards: Judgement) -> Message:
+def _at_the_target(calibration: CameraCalibration, px: float) -> dict[str, float]:
+    """What pixels are in mm across the line of sight where the target was: at the median depth of its corners."""
+    depth, focal = float(np.median(corner_depths(calibration))), float(calibration.camera.matrix[[0, 1], [0, 1]].mean())
+    return {"mm": px * depth / focal, "depth_mm": depth}
+
+
+def _on_rings(calibration: CameraCalibration, outwards: Judgement) -> Message:
     ring = outwards.strongest
     px = float(outwards.profile[ring])
     return Message(
         "camera.pattern_outwards",
-        "In all views corners lie too far {direction} by {px:.2f} px at {share:.0%} of the way from the picture's "
-        "centre to its farthest corner: the lens is not fully described, see whether k3 helps. The standard deviations "
-        "contain it.",
+        "In all views corners lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm) "
+        "at {share:.0%} of the way from the picture's centre to its farthest corner: the lens is not fully described, "
+        "see whether k3 helps. The standard deviations contain it.",
         direction=_INWARDS if px < 0 else _OUTWARDS,
         px=abs(px),
+        **_at_the_target(calibration, abs(px)),
         share=(ring + 0.5) / RINGS,
     )
 
 
-def _on_regions(found: Judgement) -> Message:
+def _on_regions(calibration: CameraCalibration, found: Judgement) -> Message:
     region = found.strongest % (GRID[0] * GRID[1])
     u, v = found.profile.reshape(2, -1)[:, region]
+    px = float(np.hypot(u, v))
     return Message(
         "camera.pattern_in_region",
-        "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px: the lens or the "
-        "print is not fully described, or corners are drawn aside by blur. The standard deviations contain it.",
+        "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a "
+        "distance of {depth_mm:.0f} mm): the lens or the print is not fully described, or corners are drawn aside by "
+        "blur. The standard deviations contain it.",
         place=REGIONS[region],
         direction=direction_of(u, v),
-        px=float(np.hypot(u, v)),
+        px=px,
+        **_at_the_target(calibration, px),
     )
 
 

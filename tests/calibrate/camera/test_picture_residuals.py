@@ -31,6 +31,19 @@ def test_a_ring_that_the_lens_model_lacks_is_told_with_direction_and_place():
     assert note.code == "camera.pattern_outwards"
     assert 0.02 < note.values["px"] < 0.3
     assert "outwards" in str(note) or "inwards" in str(note)
+    at = note.values["depth_mm"]
+    assert note.values["mm"] == pytest.approx(note.values["px"] * at / TRUTH.matrix[0, 0], rel=0.02)
+    assert f"px ({note.values['mm']:.3f} mm at a distance of {at:.0f} mm)" in str(note)
+
+
+def test_a_part_of_the_picture_that_is_off_is_told_in_mm_too():
+    views = []
+    for view in synthetic_views(1, 14, 0.03):
+        wave = 0.2 * np.sin(3 * np.pi * view.uv[:, 0] / TRUTH.image_size[0])
+        views.append(changed(view, view.uv + np.column_stack([np.zeros_like(wave), wave])))
+    (note,) = told(calibrate_camera(views, TRUTH.image_size))
+    assert note.code == "camera.pattern_in_region"
+    assert f"px ({note.values['mm']:.3f} mm at a distance of" in str(note)
 
 
 @pytest.mark.accuracy
