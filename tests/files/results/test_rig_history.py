@@ -7,6 +7,7 @@ import pytest
 
 from core.calibrate.change import DEFAULT_STABILITY, STABLE
 from core.calibrate.rig_spread import FACTORS
+from core.cli.output import history_rows
 from core.errors import InputError
 from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
 from core.study.artefact_check import Artefact, ArtefactCheck
@@ -186,3 +187,10 @@ def test_a_day_that_there_is_not_is_told():
     history_file("bench").write_text(text)
     with pytest.raises(InputError, match=r"checks\[0\]\.due is .2028-13-01., not a date"):
         read_history("bench")
+
+
+def test_the_printed_history_has_the_temperature_where_it_is_known():
+    lines = dict(history_rows(RigHistory("bench", (replace(FIRST, celsius=None), later(1)))))
+    told = list(lines.values())[1:]
+    assert [line.endswith(", 21.5 °C") for line in told] == [False, True]
+    assert "°C" not in told[0]
