@@ -22,6 +22,7 @@ from core.simulate.rig import FULL_SIZE, Rig
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 from core.simulate.scene.boards import printed
 from core.simulate.scene.image import Picture, Sensor, generator
+from core.simulate.scene.patterns import Pattern
 from core.simulate.scene.stage import table_pose
 from core.simulate.scene.targets import RenderContext, camera_picture, fan_centres, plane_pictures
 from core.simulate.scene.wrong_plates import scaled
@@ -77,6 +78,12 @@ def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:
     return Sensor(rig.optics, scenario.bits, scenario.noise, effects=effects, seed=scenario.seed)
 
 
+def plane_plate(scenario: Scenario) -> tuple[Pattern, float]:
+    """The plane target of a scenario as it truly is, and how far its left and right edges are bent, in mm."""
+    plates = scenario.plates
+    return scaled(printed(PLATES[scenario.plane_target]), plates.plane_scale), plates.plane_bow_mm
+
+
 class CalibrationPictures:
     """The camera views and plane poses of one scenario, rendered one at a time."""
 
@@ -84,7 +91,7 @@ class CalibrationPictures:
         self._seed, self._bow_mm = scenario.seed, scenario.plates.camera_bow_mm
         self._context = RenderContext(rig, rays, calibration_sensor(scenario, rig), scenario.lens)
         self._camera_plate = scaled(printed(PLATES[scenario.camera_target]), scenario.plates.camera_scale)
-        self._plane_plate = scaled(printed(PLATES[scenario.plane_target]), scenario.plates.plane_scale)
+        self._plane_plate, self._plane_bow_mm = plane_plate(scenario)
         views = camera_poses(
             rig.camera, self._camera_plate.outline, scenario.camera_views, generator(self._seed, "camera poses")
         )
@@ -103,7 +110,8 @@ class CalibrationPictures:
             return
         index = list(self.plane_poses).index(name)
         pose = self.plane_poses[name]
-        pictures = plane_pictures(self._context, self._plane_plate, pose, PLANE_GREY, self._seed, index)
+        plate = self._plane_plate, self._plane_bow_mm
+        pictures = plane_pictures(self._context, plate, pose, PLANE_GREY, self._seed, index)
         yield from ((f"planes/{name}{ending}.png", picture) for ending, picture in pictures.items())
 
     def _view(self, name: str, pose: Pose) -> Picture:
@@ -127,9 +135,9 @@ class CheckPictures:
     def __init__(self, scenario: Scenario, rig: Rig, rays: Map) -> None:
         self._seed = scenario.seed
         self._context = RenderContext(rig, rays, calibration_sensor(scenario, rig), scenario.lens)
-        self._plate = scaled(printed(PLATES[scenario.plane_target]), scenario.plates.plane_scale)
+        self._plate = plane_plate(scenario)
         poses = plane_poses(
-            fan_centres(rig, scenario.check_poses), self._plate.outline, generator(self._seed, "check poses")
+            fan_centres(rig, scenario.check_poses), self._plate[0].outline, generator(self._seed, "check poses")
         )
         self.poses = {f"check{i:02d}": pose for i, pose in enumerate(poses)}
 

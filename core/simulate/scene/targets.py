@@ -19,7 +19,7 @@ from core.simulate.scene.laser import fan_sheets, laser_light
 from core.simulate.scene.patterns import Pattern, draw_pattern
 from core.simulate.scene.scene import Scene, SurfaceMaps
 from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
-from core.simulate.scene.wrong_plates import rays_to_bowed
+from core.simulate.scene.wrong_plates import points_on_bowed, rays_to_bowed
 
 DIFFUSE_SHARE, FRONT_SHARE = 0.35, 0.65
 """Of the room's light on a plate: from all sides, and with the cosine of its tilt."""
@@ -66,14 +66,17 @@ def camera_picture(
 
 
 def plane_pictures(
-    context: RenderContext, pattern: Pattern, pose: Pose, grey: float, seed: int, index: int
+    context: RenderContext, plate: tuple[Pattern, float], pose: Pose, grey: float, seed: int, index: int
 ) -> dict[str, Picture]:
     """The pictures of pose `index` of the plane target by the ending of their names: with the fan on, "", and "_off".
 
-    A sensor that takes second pictures adds those, "@2" and "_off@2".
+    The `plate` is its pattern, and by how many mm its left and right edges are bent out of its plane. A sensor that
+    takes second pictures adds those, "@2" and "_off@2".
     """
-    rig, rays, sensor = context[:3]
+    (pattern, bow_mm), (rig, straight, sensor) = plate, context[:3]
+    rays = rays_to_bowed(pattern, pose, straight, bow_mm)
     points, light = room_light(pattern, pose, rays, grey)
+    points = points_on_bowed(pattern, pose, straight, points, bow_mm)
     light = context.image(light, points)
     albedo = draw_pattern(replace(pattern, background=0.0), pose, rays)[1]
     fan = context.image(bare_fan_light(rig, points, albedo, pose), points)

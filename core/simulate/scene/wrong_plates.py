@@ -5,8 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core.model import Pose
+from core.model.arrays import Array
 from core.simulate.rays import Map
 from core.simulate.scene.patterns import Pattern
 
@@ -32,6 +34,24 @@ def rays_to_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> Map
     """Rays (h, w, 2) that meet a flat plate where `rays` meet the bowed one: it is drawn as flat along them."""
     if not bow_mm:
         return rays
+    on_plate, met = _met_on_bowed(pattern, pose, rays, bow_mm)
+    on_plate[..., 2] = 0.0
+    flat = on_plate @ pose.rotation.T + pose.translation
+    met &= flat[..., 2] > 0
+    seen = flat[..., :2] / np.where(met, flat[..., 2], 1.0)[..., None]
+    return np.where(met[..., None], seen, rays).astype(np.float32)
+
+
+def points_on_bowed(pattern: Pattern, pose: Pose, rays: Map, points: Map, bow_mm: float) -> Map:
+    """Points (h, w, 3) in mm where `rays` meet the bowed plate; `points` on the flat one where they do not."""
+    if not bow_mm:
+        return points
+    on_plate, met = _met_on_bowed(pattern, pose, rays, bow_mm)
+    return np.where(met[..., None], on_plate @ pose.rotation.T + pose.translation, points).astype(np.float32)
+
+
+def _met_on_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> tuple[Array, NDArray[np.bool_]]:
+    """Where rays meet the bowed plate, (h, w, 3) in its own frame, and whether they do."""
     x0, x1 = pattern.x_edges[[0, -1]]
     middle, half = (x0 + x1) / 2, (x1 - x0) / 2
     ahead = np.dstack([rays, np.ones(rays.shape[:2])]).astype(np.float64)
@@ -42,8 +62,4 @@ def rays_to_bowed(pattern: Pattern, pose: Pose, rays: Map, bow_mm: float) -> Map
     for _ in range(_ROUNDS):
         on_plate = (ahead * ((along + height) / facing)[..., None] - pose.translation) @ pose.rotation
         height = -bow_mm * np.minimum(((on_plate[..., 0] - middle) / half) ** 2, 4.0)
-    on_plate[..., 2] = 0.0
-    flat = on_plate @ pose.rotation.T + pose.translation
-    met &= flat[..., 2] > 0
-    seen = flat[..., :2] / np.where(met, flat[..., 2], 1.0)[..., None]
-    return np.where(met[..., None], seen, rays).astype(np.float32)
+    return on_plate, met
