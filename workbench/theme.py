@@ -49,6 +49,12 @@ DARK = Shades(
 CHECKED = "#1f6feb"
 """Behind the white tick: dark enough for it and light enough on the ground of either theme."""
 
+FIELDS = ("QAbstractSpinBox", "QComboBox")
+"""What Fusion frames in a shade of the window's ground: in the dark theme nearly black, and no field could be seen."""
+
+FRAME_DARKER = 1.4
+"""By this Fusion's frames are darker than the ground."""
+
 POLISHED_AT_ONCE = 150
 """Hidden widgets that take their new colours in one go: some 10 ms."""
 
@@ -84,6 +90,8 @@ def apply_colours(app: QApplication, name: str) -> None:
     qtawesome.reset_cache()
     with _nothing_collected():
         app.setPalette(_palette(chosen))
+        for field in FIELDS:  # after the palette of all, which forgets those of single classes
+            app.setPalette(_palette_of_fields(chosen), field)
 
 
 def apply_sheet(app: QApplication) -> None:
@@ -183,6 +191,16 @@ def _palette(s: Shades) -> QPalette:
         palette.setColor(which, QColor(colour))
     for which in (role.WindowText, role.Text, role.ButtonText):
         palette.setColor(QPalette.ColorGroup.Disabled, which, QColor(s.muted))
+    return palette
+
+
+def _palette_of_fields(s: Shades) -> QPalette:
+    """That of all, but with a ground whose frames are seen on a dark one: as bright as those of other fields."""
+    palette = _palette(s)
+    if s is DARK:
+        frame = QColor(s.line)
+        ground = QColor.fromHsvF(frame.hsvHueF(), frame.hsvSaturationF(), min(1.0, frame.valueF() * FRAME_DARKER))
+        palette.setColor(QPalette.ColorRole.Window, ground)
     return palette
 
 
