@@ -15,6 +15,8 @@ from PySide6.QtWidgets import (
     QLabel,
     QLayout,
     QScrollArea,
+    QStyle,
+    QTabBar,
     QTabWidget,
     QVBoxLayout,
     QWidget,
@@ -146,12 +148,21 @@ class Tabs(QTabWidget):
 
     def __init__(self) -> None:
         super().__init__()
+        self.setTabBar(_TabBar())  # before anything is set that it is to keep
         self.setUsesScrollButtons(False)
         self.setElideMode(Qt.TextElideMode.ElideRight)
 
     def add(self, tab: QWidget, title: str, tip: str = "") -> None:
         """Put a tab after the others."""
         self.setTabToolTip(self.addTab(tab, title), tip or title)
+
+
+class _TabBar(QTabBar):
+    """Titles of tabs, whole ones: what Fusion lowers those in the background by, it cuts off the feet of their "g"."""
+
+    def tabSizeHint(self, index: int) -> QSize:
+        lowered = self.style().pixelMetric(QStyle.PixelMetric.PM_TabBarTabShiftVertical, None, self)
+        return super().tabSizeHint(index) + QSize(0, lowered)
 
 
 def heading(text: str) -> QLabel:

@@ -9,21 +9,27 @@ from typing import Any
 
 import pytest
 import shiboken6
-from PySide6.QtCore import QRect, QSize
+from PySide6.QtCore import QPoint, QRect, QSize
 from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import (
     QAbstractButton,
     QApplication,
     QCheckBox,
+    QComboBox,
+    QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
+    QLineEdit,
     QPushButton,
+    QStyle,
+    QStyleOptionTab,
     QToolButton,
     QWidget,
 )
 
 from workbench.theme import CHECKED, DARK, LIGHT, Shades, _ThemedIcon, icon
 from workbench.views.common import IconLabel
+from workbench.views.layouts import Tabs
 
 
 def card_in(parent: QWidget) -> QFrame:
@@ -82,6 +88,43 @@ def test_what_has_the_focus_does_not_look_chosen(
     accents = [accent_share(button, shades) for button in (plain, focused, chosen)]
     assert accents[:2] == [0.0, 0.0] and accents[2] > 0.0  # the accent is for what is chosen
     assert focused.grab().toImage() != plain.grab().toImage()
+
+
+@pytest.mark.parametrize("order", [("dark", "light"), ("light", "dark")])
+def test_no_field_has_a_frame_that_is_hardly_seen(qtbot: Any, theme: Callable[[str], None], order: list[str]) -> None:
+    window = QWidget()
+    qtbot.addWidget(window)
+    card = QFrame(window)
+    card.setObjectName("card")
+    QHBoxLayout(window).addWidget(card)
+    row, fields = QHBoxLayout(card), (QLineEdit(), QDoubleSpinBox(), QComboBox())
+    for field in fields:
+        row.addWidget(field)
+    for name in order:
+        theme(name)
+        window.show()
+        image, ground = window.grab().toImage(), QColor((DARK if name == "dark" else LIGHT).panel).lightness()
+        frames = [image.pixelColor(f.mapTo(window, QPoint(0, f.height() // 2))) for f in fields]
+        seen = [abs(frame.lightness() - ground) for frame in frames]
+        assert min(seen[1:]) >= seen[0] - 1  # a text's frame has the colour of lines; a rounding more or less
+        assert seen[0] >= 20
+
+
+def test_titles_of_tabs_are_whole_down_to_the_feet_of_their_letters(
+    qtbot: Any, theme: Callable[[str], None]
+) -> None:
+    theme("light")
+    tabs = Tabs()
+    qtbot.addWidget(tabs)
+    for title in ("Surface", "Repeats (g)"):
+        tabs.add(QWidget(), title)
+    tabs.show()
+    bar, room = tabs.tabBar(), list[int]()
+    for place in range(bar.count()):
+        option = QStyleOptionTab()
+        bar.initStyleOption(option, place)
+        room.append(bar.style().subElementRect(QStyle.SubElement.SE_TabBarTabText, option, bar).height())
+    assert min(room) >= bar.fontMetrics().height()
 
 
 def accent_share(widget: QWidget, shades: Shades) -> float:
