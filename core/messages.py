@@ -242,10 +242,13 @@ _STANDARD = re.compile(r"(?<=\bISO) (?=\d)")
 _COUNTED = re.compile(r"(?<=\d) (?=[\u4e00-\u9fff])")
 """The space between a number and the Chinese measure word it counts in."""
 
+_SPREAD = re.compile(r"(?<=[\d°]) (?=± ?\d)|(?<=±) (?=\d)")
+"""The spaces round the sign between a value and its uncertainty, as in 5.002° ± 0.003°."""
+
 
 def unparted(text: str) -> str:
-    """`text` with spaces that no line break parts: of a number and its unit or symbol, of a standard's name."""
-    for space in (_WITH_UNIT, _STANDARD, _COUNTED):
+    """`text` with spaces that no line break parts: of a number and its unit, symbol or uncertainty, of a standard's name."""
+    for space in (_WITH_UNIT, _STANDARD, _COUNTED, _SPREAD):
         text = space.sub(NO_BREAK_SPACE, text)
     return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)
 

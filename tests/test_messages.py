@@ -84,6 +84,8 @@ def test_chinese_names_are_joined_by_their_own_signs():
 def test_no_line_break_parts_a_number_from_its_unit():
     assert unparted("U = 0.02 mm (k = 2)") == "U\u00a0=\u00a00.02\u00a0mm (k\u00a0=\u00a02)"
     assert unparted("通常 50 次") == "通常 50\u00a0次"
+    assert unparted("5.002° ± 0.003° free") == "5.002°\u00a0±\u00a00.003° free"
+    assert unparted("50.002 mm ± 0.020 mm") == "50.002\u00a0mm ±\u00a00.020\u00a0mm"  # where it is long
     assert unparted("by ISO 14253-1") == "by ISO\u00a014253-1"
     assert unparted("0.02 mm of 20 °C, 5 % and 3 places") == "0.02\u00a0mm of 20\u00a0°C, 5\u00a0% and 3 places"
     assert unparted("by ISO 14253-1 at most") == "by ISO\u00a014253-1 at most"
