@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from PySide6.QtCore import QModelIndex, QPersistentModelIndex, QPointF, QRect, QRectF, QSize, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QIcon, QIconEngine, QPainter, QPaintEvent, QPen, QPixmap
-from PySide6.QtWidgets import QApplication, QStyledItemDelegate, QStyleOptionViewItem, QWidget
+from PySide6.QtWidgets import QApplication, QStyle, QStyledItemDelegate, QStyleOptionViewItem, QWidget
 
 from core.inspect.plan.control_frame import STROKES
 from core.inspect.plan.feature_kind import ToleranceSymbol
@@ -15,6 +15,8 @@ from workbench.theme import shades
 
 FRAMES_ROLE = Qt.ItemDataRole.UserRole + 1
 """Frames that an item of a list shows in place of its icon."""
+SHORT_ROLE = Qt.ItemDataRole.UserRole + 2
+"""Words that an item of a list shows where there is no room for all; its tip is to tell these."""
 HEIGHT, GAP, PADDING = 16, 5, 3
 """Of a frame, between two, and beside its letters, in logical pixels."""
 LETTERS = 0.8
@@ -115,7 +117,7 @@ class FramesMark(QWidget):
 
 
 class FramesDelegate(QStyledItemDelegate):
-    """Shows the frames of an item in place of its icon."""
+    """Shows the frames of an item in place of its icon, and its shorter words where the long ones have no room."""
 
     def initStyleOption(self, option: QStyleOptionViewItem, index: QModelIndex | QPersistentModelIndex) -> None:
         super().initStyleOption(option, index)
@@ -125,3 +127,14 @@ class FramesDelegate(QStyledItemDelegate):
             option.features |= QStyleOptionViewItem.ViewItemFeature.HasDecoration
             option.decorationSize = engine.size
             option.icon = QIcon(engine)
+        short = index.data(SHORT_ROLE)
+        if short and option.fontMetrics.horizontalAdvance(option.text) > _room(option):
+            option.text = short
+
+
+def _room(option: QStyleOptionViewItem) -> int:
+    """For the words of an item, in logical pixels."""
+    style = option.widget.style()
+    margin = style.pixelMetric(QStyle.PixelMetric.PM_FocusFrameHMargin, option, option.widget) + 1
+    words = style.subElementRect(QStyle.SubElement.SE_ItemViewItemText, option, option.widget)
+    return words.width() - 2 * margin

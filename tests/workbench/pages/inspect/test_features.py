@@ -7,9 +7,9 @@ from typing import cast
 
 import numpy as np
 import pytest
-from PySide6.QtCore import Qt
+from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QIcon
-from PySide6.QtWidgets import QAbstractButton, QLabel
+from PySide6.QtWidgets import QAbstractButton, QLabel, QStyleOptionViewItem
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic, Limits
@@ -822,3 +822,16 @@ def test_a_control_frame_is_drawn_in_its_own_size(qapp):
     assert inked[0].mean() > 0.8  # the upper edge of its boxes
     assert not inked.any(axis=0).all()  # with a gap between the two
     assert icon.size.width() > FramesIcon((Frame("position", ("⌀0.1",)),)).size.width()
+
+
+def test_a_name_is_whole_in_the_list_where_its_kind_has_no_room_beside_it(lie, page):
+    tree = page.features.list
+    item = item_named(page, "other")
+    assert item.text(0) == "other, flatness"
+    index, delegate = tree.indexFromItem(item), tree.itemDelegateForColumn(0)
+    for width, words in ((400, "other, flatness"), (70, "other")):
+        option = QStyleOptionViewItem()
+        option.widget, option.rect = tree, QRect(0, 0, width, 20)
+        delegate.initStyleOption(option, index)
+        assert option.text == words
+    assert "other flatness" in item.toolTip(0)

@@ -33,7 +33,7 @@ from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesDelegate
+from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
 from workbench.views.layouts import enable, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -177,6 +177,7 @@ class FeaturesPanel(QWidget):
         )
         item.setData(0, Qt.ItemDataRole.UserRole, name)
         item.setData(0, FRAMES_ROLE, [*([self._datums[name]] if name in self._datums else []), *frames])
+        item.setData(0, SHORT_ROLE, name if named else "")  # its icon says the kind as well
         item.setIcon(0, icon(kind.icon))
         item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         below = [self._row(words.short_name(row, name), row, name) for row in rows] if len(rows) > 1 else []
