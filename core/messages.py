@@ -247,7 +247,7 @@ _SPREAD = re.compile(r"(?<=[\d°]) (?=± ?\d)|(?<=±) (?=\d)")
 
 
 def unparted(text: str) -> str:
-    """`text` with spaces that no line break parts: of a number and its unit, symbol or uncertainty, of a standard's name."""
+    """`text` with spaces that no line break parts: of a number and its unit, symbol or U, of a standard."""
     for space in (_WITH_UNIT, _STANDARD, _COUNTED, _SPREAD):
         text = space.sub(NO_BREAK_SPACE, text)
     return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)

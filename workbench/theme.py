@@ -91,7 +91,7 @@ def apply_colours(app: QApplication, name: str) -> None:
     with _nothing_collected():
         app.setPalette(_palette(chosen))
         for field in FIELDS:  # after the palette of all, which forgets those of single classes
-            app.setPalette(_palette_of_fields(chosen), field)
+            app.setPalette(_palette_of_fields(chosen), field)  # type: ignore[arg-type]  # it takes a str, no bytes
 
 
 def apply_sheet(app: QApplication) -> None:

@@ -110,9 +110,7 @@ def test_no_field_has_a_frame_that_is_hardly_seen(qtbot: Any, theme: Callable[[s
         assert seen[0] >= 20
 
 
-def test_titles_of_tabs_are_whole_down_to_the_feet_of_their_letters(
-    qtbot: Any, theme: Callable[[str], None]
-) -> None:
+def test_titles_of_tabs_are_whole_down_to_the_feet_of_their_letters(qtbot: Any, theme: Callable[[str], None]) -> None:
     theme("light")
     tabs = Tabs()
     qtbot.addWidget(tabs)
