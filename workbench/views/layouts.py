@@ -160,6 +160,10 @@ class Tabs(QTabWidget):
 class _TabBar(QTabBar):
     """Titles of tabs, whole ones: what Fusion lowers those in the background by, it cuts off the feet of their "g"."""
 
+    def __init__(self) -> None:
+        super().__init__()
+        self.setDrawBase(False)  # as a tab widget's own
+
     def tabSizeHint(self, index: int) -> QSize:
         lowered = self.style().pixelMetric(QStyle.PixelMetric.PM_TabBarTabShiftVertical, None, self)
         return super().tabSizeHint(index) + QSize(0, lowered)

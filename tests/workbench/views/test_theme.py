@@ -123,6 +123,7 @@ def test_titles_of_tabs_are_whole_down_to_the_feet_of_their_letters(qtbot: Any, 
         bar.initStyleOption(option, place)
         room.append(bar.style().subElementRect(QStyle.SubElement.SE_TabBarTabText, option, bar).height())
     assert min(room) >= bar.fontMetrics().height()
+    assert not bar.drawBase(), "a line across the tabs, which a bar on its own has"
 
 
 def accent_share(widget: QWidget, shades: Shades) -> float:
