@@ -1,13 +1,19 @@
 import io
+from dataclasses import replace
 
+import pytest
 from PIL import Image
 from pypdf import PdfReader
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import SimpleDocTemplate, Spacer
 
-from core.report.layout.blocks import Figures, OnOnePage, Picture, section
+from core.report.layout.blocks import Heading, OnOnePage, Picture, Sections, section
 from core.report.layout.style import SANS, ReportLook, prepare_reportlab
+from core.report.pdf import LIMITS
+from core.report.sections.standard import story
 from core.report.wording import Words
+
+from .report_samples import block_content
 
 LOOK = ReportLook(Words(), "#14586E")
 
@@ -52,7 +58,7 @@ def test_a_heading_and_what_it_belongs_to_are_on_one_page_however_little_room_is
 
 
 def heights_by_page(*heights, above):
-    """On which page of 288 points each of several sections of figures is, below a gap; they cannot shrink."""
+    """On which page of 288 points each of several sections is, below a gap; they cannot shrink."""
     places = {}
 
     def block(number, height):
@@ -61,11 +67,11 @@ def heights_by_page(*heights, above):
         return OnOnePage([made])
 
     document = SimpleDocTemplate(io.BytesIO(), pagesize=(400, 432), initialFontName=SANS)
-    document.build([Spacer(1, above), Figures([block(number, height) for number, height in enumerate(heights)])])
+    document.build([Spacer(1, above), Sections([block(number, height) for number, height in enumerate(heights)])])
     return [places[number] for number in range(len(heights))]
 
 
-def test_a_figure_that_fits_goes_before_one_that_does_not():
+def test_a_section_that_fits_goes_before_one_that_does_not():
     prepare_reportlab()
     assert heights_by_page(200, 100, 60, above=100) == [2, 1, 1]
     assert heights_by_page(150, 100, 60, above=10) == [1, 1, 2], "in their order where they fit"
@@ -81,3 +87,12 @@ def test_no_number_is_parted_from_its_unit_however_wide_its_column_is():
         lines = [" ".join(words) for _, words in paragraph.blPara.lines]
         assert len(lines) > 1
         assert not [line for line in lines if line.split()[0] in ("mm,", "mm", "%", "°C")]
+
+
+@pytest.mark.parametrize("remarks", ["Table warm.", "One line.\n" * 60])
+def test_what_a_result_rests_on_fills_pages_in_any_order_but_long_remarks_flow(remarks):
+    prepare_reportlab()
+    parts = story(LOOK, replace(block_content(), remarks=remarks), {}, LIMITS[0])
+    moved = [one for one in parts if isinstance(one, Sections)][-1].sections
+    keys = [inside.key for one in moved for inside in one._content if isinstance(inside, Heading)]
+    assert keys == ["calibrations", "frames", "notes"] + ["remarks"] * (remarks == "Table warm.")

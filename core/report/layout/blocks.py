@@ -129,8 +129,8 @@ class OnOnePage(KeepTogether):  # type: ignore[misc]
         return list(self._content)
 
 
-class Figures(KeepTogether):  # type: ignore[misc]
-    """Sections of pictures in their order, but where the next one does not fit on a page, one that does goes before."""
+class Sections(KeepTogether):  # type: ignore[misc]
+    """Sections in their order, but where the next one does not fit on a page, one that does goes before."""
 
     def __init__(self, sections: Sequence[OnOnePage]) -> None:
         super().__init__(list(sections))
@@ -143,7 +143,7 @@ class Figures(KeepTogether):  # type: ignore[misc]
         fitting = (one for one in self.sections if one.least_height(width) <= height)
         chosen = next(fitting, self.sections[0])
         rest = [one for one in self.sections if one is not chosen]
-        return [*chosen.split(width, height), *([Figures(rest)] if rest else [])]
+        return [*chosen.split(width, height), *([Sections(rest)] if rest else [])]
 
 
 def section(look: ReportLook, key: str, heading: str, first: list[Flowable], **values: object) -> OnOnePage:

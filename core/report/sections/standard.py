@@ -14,11 +14,11 @@ from core.messages import label, plural_message
 from core.report.content import ReportContent
 from core.report.layout.blocks import (
     Bookmark,
-    Figures,
     Heading,
     Limits,
     OnOnePage,
     Picture,
+    Sections,
     heads,
     more_line,
     plain_table,
@@ -35,34 +35,48 @@ from core.report.sections.studies import studies
 from core.report.wording import grouped, limits_of_cloud, limits_of_inspection, limits_of_thickness, shown_name
 
 Pictures = Mapping[str, ImageReader]
+Part = tuple[str, Callable[[], Sequence[Flowable]]]
+"""The name it is hidden by, "" for what cannot be hidden, and what makes it."""
 
 
 def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[Flowable]:
     """Everything from the title to the end mark, without what is hidden."""
-    figures: dict[str, Callable[[], Sequence[OnOnePage]]] = {
-        "surface": lambda: _surface(look, content, pictures, limits),
-        "frame": lambda: _frame(look, content, pictures, limits),
-        "profiles": lambda: _profiles(look, content, pictures, limits),
-        "sections": lambda: _sections(look, content, pictures, limits),
-        "points": lambda: _points(look, pictures, limits),
-        "maps": lambda: _maps(look, content, pictures, limits),
-        "deviation": lambda: _deviations(look, content, pictures, limits),
-    }
-    parts: list[tuple[str, Callable[[], list[Flowable]]]] = [
+    figures: list[Part] = [
+        ("surface", lambda: _surface(look, content, pictures, limits)),
+        ("frame", lambda: _frame(look, content, pictures, limits)),
+        ("profiles", lambda: _profiles(look, content, pictures, limits)),
+        ("sections", lambda: _sections(look, content, pictures, limits)),
+        ("points", lambda: _points(look, pictures, limits)),
+        ("maps", lambda: _maps(look, content, pictures, limits)),
+        ("deviation", lambda: _deviations(look, content, pictures, limits)),
+    ]
+    tables: list[Part] = [
         ("budget", lambda: _budgets(look, content, limits)),
         ("repeats", lambda: _repeats(look, content, pictures, limits)),
         ("studies", lambda: studies(look, content, pictures, limits)),
         ("artefacts", lambda: evidence.artefacts(look, content)),
+    ]
+    rest: list[Part] = []
+    grounds: list[Part] = [
         ("calibrations", lambda: evidence.calibrations(look, content, limits)),
         ("frames", lambda: evidence.pictures_used(look, content, limits)),
         ("", lambda: evidence.warnings(look, content, limits)),
-        ("remarks", lambda: evidence.remarks(look, content)),
+    ]
+    remarks = evidence.remarks(look, content)
+    (grounds if len(remarks) == 1 else rest).append(("remarks", lambda: remarks))  # long ones flow from page to page
+    rest += [
         ("settings", lambda: evidence.settings(look, content, limits)),
         ("", lambda: evidence.inputs(look, content, limits)),
         ("signatures", lambda: signatures(look, content)),
     ]
-    drawn = [one for name, part in figures.items() if name not in content.hidden for one in part()]
-    chosen = [flowable for name, part in parts if name not in content.hidden for flowable in part()]
+
+    def shown(parts: list[Part]) -> list[Flowable]:
+        return [flowable for name, part in parts if name not in content.hidden for flowable in part()]
+
+    def filling_pages(parts: list[Part]) -> list[Flowable]:
+        sections = shown(parts)
+        return [Sections(sections)] if sections else []
+
     return [
         *head(look, content),
         Spacer(0, 4 * mm),
@@ -71,8 +85,10 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         *_results(look, content, limits),
         *_compared(look, content),
         *_not_covered(look, content),
-        *([Figures(drawn)] if drawn else []),
-        *chosen,
+        *filling_pages(figures),
+        *shown(tables),
+        *filling_pages(grounds),
+        *shown(rest),
         *evidence.end(look, content),
     ]
 
