@@ -313,3 +313,11 @@ def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_p
     finally:
         choose(language("en"), qapp)
         qapp.setStyleSheet(sheet)
+
+
+def test_the_fields_of_a_study_want_their_height_however_wide_the_place_below_its_table_is(tab, studies, qtbot):
+    for kind, form in tab.editor.forms.items():
+        studies.begin(kind)
+        tab.refresh()
+        assert len({form.parentWidget().heightForWidth(width) for width in (310, 460, 800)}) == 1, kind
+        studies.give_up()

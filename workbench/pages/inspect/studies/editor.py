@@ -53,7 +53,7 @@ class StudyEditor(QWidget):
         side = QVBoxLayout()
         for kind, form in self.forms.items():
             form.setFixedWidth(NARROW_WIDTH if kind == "grr" else FORM_WIDTH)
-            side.addWidget(form)
+            side.addLayout(in_row(form, STRETCH))  # alone in a column, its help would count on all of the width
         side.addStretch(1)
         both = Folding(in_row(self.text), side, spacing=14, share=4)
         sources = in_row(self.open, self.add, STRETCH, spacing=6)
