@@ -28,6 +28,10 @@ MARGIN, BAR_WIDTH = 14.0, 14.0
 LEAST_BAR, BELOW_BAR = 60.0, 14.0
 """Height of the colour bar, which is not shown where it would be less, and what stays free below it."""
 
+LEAST_BARS = 2
+"""So many times the bar's width with its numbers is a view at least that shows it: one beside the profile of a cut in
+the smallest window is."""
+
 NAME_TOP, HINT_TOP = 4.0, 38.0
 """Pixels above the name of the frame, which may be two lines, and above what the tool in hand does."""
 
@@ -263,7 +267,7 @@ def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], c
     height = float(np.clip(size[1] * 0.5, LEAST_BAR, 300))
     top = max((size[1] - height) / 2, above)
     height = min(height, size[1] - top - BELOW_BAR)
-    if height < LEAST_BAR or size[0] < 2.5 * width:
+    if height < LEAST_BAR or size[0] < LEAST_BARS * width:
         return
     left = size[0] - width + MARGIN
     low, high = colouring.limits

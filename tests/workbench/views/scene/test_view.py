@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
 from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
-from PySide6.QtGui import QColor, QGuiApplication, QMouseEvent, QPainter, QPalette
+from PySide6.QtGui import QColor, QGuiApplication, QImage, QMouseEvent, QPainter, QPalette
 from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QStackedWidget, QWidget
 from pyvistaqt import QtInteractor
 
@@ -201,6 +201,19 @@ def test_values_have_a_colour_bar_with_name_and_unit_and_colours_of_ones_own_hav
     bar = view.picture()[:, -beside:]
     inked = [(np.abs(part.astype(int) - ground(view)).max(axis=2) > 60).sum() for part in (plain, bar)]
     assert inked[1] > inked[0] + 1500
+
+
+def test_a_view_beside_the_profile_of_a_cut_in_the_smallest_window_has_the_colour_bar(view):
+    image = QImage(283, 195, QImage.Format.Format_RGB32)
+    image.fill(Qt.GlobalColor.white)
+    painter = QPainter(image)
+    painter.setFont(view.font())
+    colours = overlay.OverlayColours.of(view.palette())
+    heights = Colouring("Höhe über der unteren Fläche", "mm", (0.0, 50.0))
+    overlay._paint_bar(painter, heights, (283, 195), colours)
+    painter.end()
+    seen = {image.pixelColor(x, 100).name() for x in range(150, 283)}
+    assert any(QColor(name).saturation() > 100 for name in seen)
 
 
 def test_a_growing_cloud_shows_its_new_points(view, qtbot):
