@@ -50,7 +50,7 @@ from workbench.views.layouts import Elided, UpAndDown, enable, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
-from workbench.views.task_bar import TaskBar
+from workbench.views.task_bar import StatusBar, TaskBar
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
 from workbench.work import jobs
 from workbench.work.jobs import name_of
@@ -268,6 +268,7 @@ class MainWindow(QMainWindow):
         self._messages_button.setObjectName("low")
         self._messages_button.setIconSize(QSize(14, 14))
         self._messages_button.clicked.connect(self._toggle_messages)
+        self.setStatusBar(StatusBar())
         self.statusBar().addPermanentWidget(self.task_bar)
         self.statusBar().addPermanentWidget(self._messages_button)
         return dock

@@ -1,12 +1,37 @@
-"""Progress, remaining time and Cancel in the status bar."""
+"""The status bar: what was told last; progress, remaining time and Cancel."""
 
 from __future__ import annotations
 
 from PySide6.QtCore import QTimer, Signal
-from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QWidget
+from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QStatusBar, QWidget
 
 from workbench.language import named, tr
 from workbench.views.layouts import Elided, enable
+
+
+class StatusBar(QStatusBar):
+    """A message beside a running job is cut with an ellipsis and its tip tells it whole; Qt's own would be clipped."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._said, self._time = Elided(), QTimer(self)
+        self._said.setContentsMargins(4, 0, 0, 0)
+        self._time.setSingleShot(True)
+        self._time.timeout.connect(self.clearMessage)
+        self.addWidget(self._said, 1)
+
+    def showMessage(self, text: str, timeout: int | None = 0) -> None:
+        self._said.setText(text)
+        if timeout:
+            self._time.start(timeout)
+        else:
+            self._time.stop()
+
+    def clearMessage(self) -> None:
+        self._said.setText("")
+
+    def currentMessage(self) -> str:
+        return str(self._said.text())
 
 
 class TaskBar(QWidget):
