@@ -12,9 +12,13 @@ from pathlib import Path
 import pytest
 
 from core.files.results.rig_history import DATA
+from tests import code
 from tests.shared import SAID_ALOUD, made_once
 
 _TESTS = itertools.count()
+
+GARBAGE_AFTER = (50_000, 20, 50)
+"""Objects and rounds until Python looks for garbage: with its own 700, a tenth of the time of tests goes into that."""
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -26,12 +30,22 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """A crash tells of the thread that crashed, not of all: logs that are cut short lose the one that matters."""
     config.stash[SAID_ALOUD] = os.dup(2)
+    gc.set_threshold(*GARBAGE_AFTER)
     own = tempfile.mkdtemp(prefix="trisect-data-")  # histories of rigs: not those of whoever runs the tests
     os.environ[DATA] = own
     os.environ["TRISECT_LANGUAGE"] = "en"  # programs started by tests: whatever the system's language
     config.add_cleanup(lambda: shutil.rmtree(own, ignore_errors=True))
     if faulthandler.is_enabled():
         faulthandler.enable(config.stash[SAID_ALOUD], all_threads=False)
+
+
+@pytest.fixture(scope="module")
+def syntax_trees() -> Iterator[None]:
+    """Where the program's own code is read: nothing of it is garbage to look for, and it goes with the module."""
+    gc.disable()
+    yield
+    code.forget()
+    gc.enable()
 
 
 @pytest.fixture(autouse=True)

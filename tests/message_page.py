@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import ast
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from fnmatch import fnmatchcase
 from functools import cache
 from itertools import groupby
 from string import Formatter
 
-from tests.translations import CODED, ROOT, all_texts, called
+from tests.code import ROOT, modules, nodes, syntax_tree
+from tests.translations import CODED, all_texts, called
 
 MANUAL = ROOT / "resources" / "manual"
 PAGE = MANUAL / "messages.md"
@@ -118,30 +119,28 @@ def is_name(code: str) -> bool:
 @cache
 def errors() -> dict[str, list[str]]:
     """By the code of an error, what the calls that tell it say to do."""
-    trees = [
-        ast.parse(path.read_text(encoding="utf-8"))
-        for folder in ("core", "workbench")
-        for path in sorted((ROOT / folder).rglob("*.py"))
-    ]
     shared: Named = {}
-    for tree in trees:
-        for name, known in _named(tree.body).items():
+    for path in modules("core", "workbench"):
+        for name, known in _named(syntax_tree(path).body).items():
             shared.setdefault(name, []).extend(known)
     found: dict[str, list[str]] = {}
-    for tree in trees:
-        for code, advice in errors_of(tree, shared):
+    for path in modules("core", "workbench"):
+        for code, advice in errors_of(nodes(path), shared):
             said = found.setdefault(code, [])
             said += [one for one in advice if one not in said]
     return found
 
 
-def errors_of(tree: ast.Module, shared: Named | None = None) -> Iterator[tuple[str, list[str]]]:
-    """The code of each error that a module tells, and what it says to do there; `shared`: constants of all modules."""
-    here = {one.asname or one.name for node in ast.walk(tree) if isinstance(node, ast.ImportFrom) for one in node.names}
+def errors_of(of_module: Sequence[ast.AST], shared: Named | None = None) -> Iterator[tuple[str, list[str]]]:
+    """The code of each error that a module tells, given all its nodes, and what it says to do there.
+
+    `shared`: constants of all modules.
+    """
+    here = {one.asname or one.name for node in of_module if isinstance(node, ast.ImportFrom) for one in node.names}
     named = {name: known for name, known in (shared or {}).items() if name in here}
-    for name, known in _named(ast.walk(tree)).items():
+    for name, known in _named(of_module).items():
         named[name] = [*named.get(name, ()), *known]
-    for node in ast.walk(tree):
+    for node in of_module:
         if isinstance(node, ast.Call) and node.args:
             todo = [keyword.value for keyword in node.keywords if keyword.arg == "todo"]
             if todo or called(node) in RAISED:
@@ -154,8 +153,9 @@ def _named(nodes: Iterable[ast.AST]) -> Named:
     found: Named = {}
     for node in nodes:
         if isinstance(node, ast.Assign | ast.AnnAssign) and node.value is not None:
-            for target in node.targets if isinstance(node, ast.Assign) else [node.target]:
-                found.setdefault(ast.unparse(target), []).extend(_messages(node.value, {}))
+            told = _messages(node.value, {})
+            for target in (node.targets if isinstance(node, ast.Assign) else [node.target]) if told else ():
+                found.setdefault(ast.unparse(target), []).extend(told)
         elif isinstance(node, ast.FunctionDef):
             given = [one.value for one in ast.walk(node) if isinstance(one, ast.Return) and one.value is not None]
             found.setdefault(f"{node.name}()", []).extend(text for one in given for text in _messages(one, {}))
@@ -174,7 +174,7 @@ def _messages(node: ast.expr, named: Named) -> list[tuple[str, str]]:
         return [(told[0], told[1])] if len(told) == 2 else []
     if isinstance(node, ast.Call):
         return named.get(f"{called(node)}()", [])
-    return named.get(ast.unparse(node), [])
+    return named.get(ast.unparse(node), []) if named else []
 
 
 if __name__ == "__main__":

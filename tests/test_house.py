@@ -5,37 +5,18 @@ from __future__ import annotations
 import ast
 import re
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from functools import cache
 from itertools import chain
 from pathlib import Path
 
 import pytest
 
+from tests.code import ROOT, modules, nodes, syntax_tree
 from tests.translations import called
 
-ROOT = Path(__file__).parents[1]
+pytestmark = pytest.mark.usefixtures("syntax_trees")
 MOST_PARAMETERS = 8
 COMMANDS = ("command", "callback")
 """Decorators of typer's: the parameters of such a function are the options of a command line."""
-
-
-@cache
-def modules_in(folder: str) -> tuple[tuple[str, str, ast.Module], ...]:
-    """Path, text and syntax tree of every module in a folder."""
-    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / folder).rglob("*.py"))}
-    return tuple((path.relative_to(ROOT).as_posix(), text, ast.parse(text)) for path, text in texts.items())
-
-
-def modules(*folders: str) -> Iterator[tuple[str, str, ast.Module]]:
-    """The same of some folders."""
-    return chain.from_iterable(map(modules_in, folders))
-
-
-@pytest.fixture(scope="module", autouse=True)
-def syntax_trees_go() -> Iterator[None]:
-    """They take hundreds of megabytes."""
-    yield
-    modules_in.cache_clear()
 
 
 def is_number(value: ast.expr | None) -> bool:
@@ -73,9 +54,9 @@ def unexplained(text: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 def test_every_number_at_the_top_of_a_module_says_what_it_is():
     found = [
-        f"{path}:{line} {name}"
-        for path, text, tree in modules("core", "workbench")
-        for line, name in unexplained(text, tree)
+        f"{path.relative_to(ROOT)}:{line} {name}"
+        for path in modules("core", "workbench")
+        for line, name in unexplained(path.read_text(encoding="utf-8"), syntax_tree(path))
     ]
     assert found == [], "say its unit and its reason beside it"
 
@@ -103,13 +84,13 @@ def is_command(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 def test_no_function_has_more_than_eight_parameters():
     found = []
-    for path, _, tree in modules("core", "workbench", "tests"):
-        for node in ast.walk(tree):
+    for path in modules("core", "workbench", "tests"):
+        for node in nodes(path):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_command(node):
                 all_of_them = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
                 taken = [one for one in all_of_them if one.arg not in ("self", "cls")]
                 if len(taken) > MOST_PARAMETERS:
-                    found.append(f"{path}:{node.lineno} {node.name} has {len(taken)}")
+                    found.append(f"{path.relative_to(ROOT)}:{node.lineno} {node.name} has {len(taken)}")
     assert found == [], "put together what belongs together"
 
 
@@ -117,9 +98,9 @@ RIDDLES = re.compile(r"\b(whoever|nobody|somebody)\b|\b(is|are) asked of\b|\bIt 
 """Ways of saying who or what is meant without naming it."""
 
 
-def first_sentences(tree: ast.Module) -> Iterator[tuple[int, str]]:
+def first_sentences(path: Path) -> Iterator[tuple[int, str]]:
     """Line and first sentence of every docstring in a module, those below fields and constants included."""
-    for node in ast.walk(tree):
+    for node in nodes(path):
         body = getattr(node, "body", None)
         for line in body if isinstance(body, list) else ():
             said = line.value.value if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant) else None
@@ -129,9 +110,9 @@ def first_sentences(tree: ast.Module) -> Iterator[tuple[int, str]]:
 
 def test_the_first_sentence_of_a_docstring_names_who_and_what_is_meant():
     found = [
-        f"{path}:{line} {sentence}"
-        for path, _, tree in modules("core", "workbench")
-        for line, sentence in first_sentences(tree)
+        f"{path.relative_to(ROOT)}:{line} {sentence}"
+        for path in modules("core", "workbench")
+        for line, sentence in first_sentences(path)
         if RIDDLES.search(sentence)
     ]
     assert found == [], "say plainly what it does or is"
@@ -219,9 +200,13 @@ def cuts(tree: ast.Module, telling: Collection[str]) -> Iterator[tuple[int, str]
 
 
 def test_no_logic_looks_at_a_shown_text():
-    trees = {path: tree for path, _, tree in modules("core", "workbench")}
+    trees = {path: syntax_tree(path) for path in modules("core", "workbench")}
     telling = telling_in(list(trees.values()))
-    found = [f"{path}:{line} {source}" for path, tree in trees.items() for line, source in cuts(tree, telling)]
+    found = [
+        f"{path.relative_to(ROOT)}:{line} {source}"
+        for path, tree in trees.items()
+        for line, source in cuts(tree, telling)
+    ]
     assert found == [], "in another language it says something else: keep apart what is apart"
 
 

@@ -11,6 +11,8 @@ import pytest
 from tests import message_page
 from tests.translations import texts
 
+pytestmark = pytest.mark.usefixtures("syntax_trees")
+
 ROOT = Path(__file__).parents[1]
 PAGES = [ROOT / "README.md", ROOT / "CONTRIBUTING.md", *sorted((ROOT / "resources" / "manual").glob("*.md"))]
 LINK = re.compile(r"\]\((?!https?:)([^)#]+)")
@@ -65,7 +67,7 @@ tell(Message("a.note", "no error"))
 from core.other import SHARED
 """
     shared = {"SHARED": [("advice.shared", "share")], "_ASK": [("advice.other", "not this module's")]}
-    found = list(message_page.errors_of(ast.parse(source), shared))
+    found = list(message_page.errors_of(list(ast.walk(ast.parse(source))), shared))
     assert found == [("a.b", ["ask {whom}"]), ("a.c", []), ("a.d", []), ("a.e", ["share", "this way"])]
 
 

@@ -12,8 +12,11 @@ from core.inspect.conformity import Verdict
 from core.scan.preview.preflight import State as Condition
 from core.study.grr import Fitness
 from core.study.type1 import CAPABLE, NOT_CAPABLE
-from tests.translations import ROOT, all_texts, catalogue
+from tests.code import ROOT, modules, nodes
+from tests.translations import all_texts, catalogue
 from workbench.step_state import State
+
+pytestmark = pytest.mark.usefixtures("syntax_trees")
 
 TABLES = (states.STEP_STATES, states.CHECKS, states.CONDITIONS, states.DECISIONS)
 
@@ -91,10 +94,10 @@ def test_the_words_of_states_stand_in_one_table():
     """Elsewhere a word of the table is told by its key: as a literal it would be forgotten when the table changes."""
     words = {word for table in TABLES for word in table.values()} - {"not known"}  # as a number may be, too
     found = []
-    for path in (path for folder in ("core", "workbench") for path in sorted((ROOT / folder).rglob("*.py"))):
+    for path in modules("core", "workbench"):
         if path == ROOT / "core" / "states.py":
             continue
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        for node in nodes(path):
             if isinstance(node, ast.Call) and getattr(node.func, "id", "") in ("tr", "label") and node.args:
                 said = node.args[0]
                 if isinstance(said, ast.Constant) and str(said.value).lower() in words:

@@ -14,6 +14,9 @@ from core.messages import Message, plural_message
 from core.report.wording import Words
 from core.translations import PSEUDO, language, languages, preferred, strange
 from tests import translations
+from tests.code import modules, nodes
+
+pytestmark = pytest.mark.usefixtures("syntax_trees")
 
 OTHERS = [name for name in languages() if name != "en"]
 
@@ -41,8 +44,8 @@ def test_a_code_has_one_text():
 
 def test_code_and_text_of_a_message_stand_in_the_call():
     found = []
-    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
-        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+    for path in modules("core", "workbench"):
+        for node in nodes(path):
             if isinstance(node, ast.Call) and translations.called(node) in translations.CODED:
                 given = node.args[: translations.CODED[translations.called(node)] + 1]
                 if not all(isinstance(one, ast.Constant) for one in given) and path.name != "messages.py":
@@ -119,7 +122,7 @@ def test_a_text_that_changed_is_kept_to_be_looked_at():
 
 def test_texts_in_calls_within_calls_and_either_way_of_a_condition_are_found():
     source = 'f(Message("a.b", "one {x}", x=[g(Message("a.c", "two")) for _ in y]), tr("three" if z else "four"))'
-    found = {(text.code, *text.english) for text in translations.texts_of(ast.parse(source))}
+    found = {(text.code, *text.english) for text in translations.texts_of(ast.walk(ast.parse(source)))}
     assert found == {("a.b", "one {x}"), ("a.c", "two"), ("", "three"), ("", "four")}
 
 
@@ -178,10 +181,10 @@ WORDS = 4
 """So many words make a sentence."""
 
 
-def bypassing(tree):
-    """(line, text) of every sentence in a module that is told past the catalogues."""
+def bypassing(of_module):
+    """(line, text) of every sentence in a module, given all its nodes, that is told past the catalogues."""
     skipped = set()
-    for node in ast.walk(tree):
+    for node in of_module:
         body = getattr(node, "body", None)
         for line in body if isinstance(body, list) else ():
             if isinstance(line, ast.Expr) and isinstance(line.value, ast.Constant):
@@ -198,7 +201,7 @@ def bypassing(tree):
                 skipped |= set(ast.walk(node))
         if isinstance(node, ast.JoinedStr):
             skipped |= set(node.values)
-    for node in ast.walk(tree):
+    for node in of_module:
         if node in skipped:
             continue
         if isinstance(node, ast.JoinedStr):
@@ -213,24 +216,21 @@ def bypassing(tree):
 
 def test_no_sentence_bypasses_the_catalogues():
     found = []
-    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
+    for path in modules("core", "workbench"):
         where = path.relative_to(translations.ROOT).as_posix()
         if not where.startswith(tuple(ALLOWED)):
-            tree = ast.parse(path.read_text(encoding="utf-8"))
-            sentences = [f"{where}:{line}: {text}" for line, text in bypassing(tree)]
-            found += sentences
+            found += [f"{where}:{line}: {text}" for line, text in bypassing(nodes(path))]
     assert found == []
 
 
-def calls(tree, name):
-    return (node for node in ast.walk(tree) if isinstance(node, ast.Call) and translations.called(node) == name)
+def calls(path, *names):
+    return (node for node in nodes(path) if isinstance(node, ast.Call) and translations.called(node) in names)
 
 
 def test_no_error_is_passed_on_as_its_english_text():
     found = []
-    for path in sorted([*(translations.ROOT / "core").rglob("*.py"), *(translations.ROOT / "workbench").rglob("*.py")]):
-        tree = ast.parse(path.read_text(encoding="utf-8"))
-        told = [call for call in (*calls(tree, "plain"), *calls(tree, "InputError")) if call.args]
+    for path in modules("core", "workbench"):
+        told = [call for call in calls(path, "plain", "InputError") if call.args]
         found += [
             f"{path.relative_to(translations.ROOT)}:{call.lineno}"
             for call in told
@@ -244,6 +244,5 @@ def test_values_that_people_give_are_refused_with_a_message():
     for where in READ_BY_PEOPLE:
         place = translations.ROOT / where
         for path in place.rglob("*.py") if place.is_dir() else [place]:
-            tree = ast.parse(path.read_text(encoding="utf-8"))
-            found += [f"{path.relative_to(translations.ROOT)}:{call.lineno}" for call in calls(tree, "ValueError")]
+            found += [f"{path.relative_to(translations.ROOT)}:{call.lineno}" for call in calls(path, "ValueError")]
     assert found == [], "raise a WrongValue with a Message"

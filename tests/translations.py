@@ -9,15 +9,15 @@ from __future__ import annotations
 import argparse
 import ast
 import io
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from babel.messages.catalog import Catalog
 from babel.messages.pofile import read_po, write_po
 
-ROOT = Path(__file__).parents[1]
+from tests.code import ROOT, modules, nodes
+
 FOLDER = ROOT / "resources" / "translations"
 
 CODED = {"Message": 1, "plural_message": 2}
@@ -54,9 +54,8 @@ def all_texts() -> tuple[Text, ...]:
     """Every text of the program's modules, by module and line."""
     found: list[Text] = []
     for folder in ("core", "workbench"):
-        for path in sorted((ROOT / folder).rglob("*.py")):
-            tree = ast.parse(path.read_text(encoding="utf-8"))
-            found += sorted(texts_of(tree, path.relative_to(ROOT).as_posix()), key=lambda text: text.line)
+        for path in modules(folder):
+            found += sorted(texts_of(nodes(path), path.relative_to(ROOT).as_posix()), key=lambda text: text.line)
     return tuple(found)
 
 
@@ -65,9 +64,9 @@ def texts(*folders: str) -> list[Text]:
     return [text for text in all_texts() if not folders or text.path.startswith(folders)]
 
 
-def texts_of(tree: ast.AST, path: str = "") -> Iterator[Text]:
-    """Every text of one module, in no particular order."""
-    for node in ast.walk(tree):
+def texts_of(of_module: Iterable[ast.AST], path: str = "") -> Iterator[Text]:
+    """Every text of one module, given all its nodes, in no particular order."""
+    for node in of_module:
         if isinstance(node, ast.FunctionDef) and any(map(_makes_command, node.decorator_list)):
             yield Text("", (ast.get_docstring(node) or "",), path, node.lineno)
         if not isinstance(node, ast.Call):
