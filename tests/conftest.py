@@ -111,7 +111,7 @@ def measured(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
 def _measure(simulated: Path, out: Path) -> None:
     from tests.simulated import CUT, trisect
 
-    said = trisect("run", simulated, "--out", out, *CUT, cores=2)
+    said = trisect("run", simulated, "--out", out, *CUT)
     assert said.code in (0, 1), said.err
 
 

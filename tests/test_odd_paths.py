@@ -56,9 +56,12 @@ def value_of(param, folder):
 
 
 @pytest.mark.parametrize(("words", "command", "name", "odd"), CASES)
-def test_it_is_told_in_a_sentence_and_is_no_fault(words, command, name, odd, odd_path, tmp_path, monkeypatch):
+def test_it_is_told_in_a_sentence_and_is_no_fault(
+    words, command, name, odd, odd_path, simulated, tmp_path, monkeypatch
+):
     monkeypatch.setattr(platformdirs, "user_log_dir", lambda *_, **__: str(tmp_path / "logs"))
     monkeypatch.setattr("sys.stdin", io.StringIO())
+    monkeypatch.setattr("core.simulate.sample.sample_set", lambda progress: simulated)  # `demo` would render its own
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "folder"
     folder.mkdir()
