@@ -17,9 +17,6 @@ from tests.shared import SAID_ALOUD, made_once
 
 _TESTS = itertools.count()
 
-GARBAGE_AFTER = (50_000, 20, 50)
-"""Objects and rounds until Python looks for garbage: with its own 700, a tenth of the time of tests goes into that."""
-
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """Tests in another order, so that what one leaves behind is found by the next."""
@@ -30,7 +27,6 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 def pytest_configure(config: pytest.Config) -> None:
     """A crash tells of the thread that crashed, not of all: logs that are cut short lose the one that matters."""
     config.stash[SAID_ALOUD] = os.dup(2)
-    gc.set_threshold(*GARBAGE_AFTER)
     own = tempfile.mkdtemp(prefix="trisect-data-")  # histories of rigs: not those of whoever runs the tests
     os.environ[DATA] = own
     os.environ["TRISECT_LANGUAGE"] = "en"  # programs started by tests: whatever the system's language

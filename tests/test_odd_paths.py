@@ -10,6 +10,7 @@ import pytest
 import typer
 
 from core.cli.app import app
+from core.pipeline.executors import THREADS, executor_of
 from tests.simulated import trisect
 
 GROUP = typer.main.get_command(app)
@@ -62,6 +63,7 @@ def test_it_is_told_in_a_sentence_and_is_no_fault(
     monkeypatch.setattr(platformdirs, "user_log_dir", lambda *_, **__: str(tmp_path / "logs"))
     monkeypatch.setattr("sys.stdin", io.StringIO())
     monkeypatch.setattr("core.simulate.sample.sample_set", lambda progress: simulated)  # `demo` would render its own
+    monkeypatch.setattr("core.cli.measuring.executor_of", lambda *_: executor_of(THREADS))  # `batch`: processes
     monkeypatch.chdir(tmp_path)
     folder = tmp_path / "folder"
     folder.mkdir()

@@ -52,6 +52,7 @@ def test_the_map_shows_sigma_where_block_and_table_are_seen(base):
     assert np.allclose(base.sigma.total[seen] ** 2, (base.sigma.own**2 + base.sigma.common**2)[seen])
 
 
+@pytest.mark.accuracy  # that it writes the same bytes is in test_plan_command.py
 def test_the_same_plan_gives_the_same_figures(base):
     again = Planner(sigma_cut_mm=CUT_MM).predict(SMALL, HEIGHT, scans=1)
 
@@ -75,8 +76,7 @@ def test_without_speckle_a_thickness_is_surer(planner, base):
     assert planner.predict(replace(SMALL, speckle=0.0), HEIGHT, scans=1).u_mm < 0.85 * base.u_mm
 
 
-def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner):
-    base = planner.predict(SMALL, HEIGHT)
+def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner, base):
     impossible = Change(plain("no views"), lambda design: plain("1"), lambda design: replace(design, views=1))
     named = {str(change.name): change for change in CHANGES}
     chosen = (named["poses of the plane target doubled"], named["baseline of the fan 20 % shorter"], impossible)

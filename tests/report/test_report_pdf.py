@@ -176,13 +176,13 @@ def test_one_point_is_drawn(quick, content):
     "name",
     [
         "Endmaß Größe Ø50 „geprüft“",
-        "Κύβος μέτρησης",
-        "Концевая мера длины",
+        pytest.param("Κύβος μέτρησης", marks=pytest.mark.accuracy),
+        pytest.param("Концевая мера длины", marks=pytest.mark.accuracy),
         "校正ブロック",
-        "게이지 블록",
+        pytest.param("게이지 블록", marks=pytest.mark.accuracy),
         "<b>A & B</b> &amp; </para>",
         "x" * 400,
-        "no_space_" * 40,
+        pytest.param("no_space_" * 40, marks=pytest.mark.accuracy),
     ],
 )
 def test_names_in_any_script_and_of_any_length_are_whole(quick, name):

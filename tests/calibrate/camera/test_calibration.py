@@ -69,7 +69,7 @@ def test_without_noise_the_camera_is_found_exactly():
     assert calibration.cross_validation_mm < 1e-8
 
 
-@pytest.mark.parametrize("seed", range(5))
+@pytest.mark.parametrize("seed", [0, 1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3, 4))])
 def test_parameters_are_within_four_of_their_own_standard_deviations(seed):
     assert np.abs(errors_in_sd(calibrated(seed))).max() < 4
     assert calibrated(seed).rms_px == pytest.approx(0.03 * np.sqrt(2), rel=0.05)

@@ -39,6 +39,7 @@ def test_a_camera_that_is_not_as_calibrated_is_told():
     assert note.values["px"] > 0.05
 
 
+@pytest.mark.parametrize("seeds", [range(1), pytest.param(range(1, 4), marks=pytest.mark.accuracy)], ids=str)
 @pytest.mark.parametrize("points", [GRID, SQUARE], ids=["grid", "square"])
-def test_a_true_target_before_a_true_camera_is_not_accused(points):
-    assert [seed for seed in range(4) if told(seed, points)] == []
+def test_a_true_target_before_a_true_camera_is_not_accused(points, seeds):
+    assert [seed for seed in seeds if told(seed, points)] == []

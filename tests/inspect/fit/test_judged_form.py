@@ -20,7 +20,7 @@ from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import CENTRE, FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, pixels
 from tests.inspect.shape_scan import BALL, BALL_RADIUS, ShapeScan
 
-SEEDS = (0, 1, 2, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in range(3, 10)))
+SEEDS = (0, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in range(1, 10)))
 BLOCK = BlockScan(height=40.0, sweeps=30)
 BLOCK_ERRORS = PointErrors(BLOCK.covariance)
 SHAPES = ShapeScan()

@@ -71,7 +71,7 @@ def test_a_line_is_found_up_to_the_edges_of_the_light_squares(stripe_mm: float) 
     assert all(np.abs(np.median(errors(line))) < 1.0 for line in features.centrelines)
 
 
-@pytest.mark.parametrize("stripe_mm", [0.25, 0.6])
+@pytest.mark.parametrize("stripe_mm", [pytest.param(0.25, marks=pytest.mark.accuracy), 0.6])
 def test_marks_do_not_pull_the_points_beside_them(stripe_mm: float) -> None:
     first, last, scaled = [], [], []
     for seed in range(2, 6):
