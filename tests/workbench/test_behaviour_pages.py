@@ -25,35 +25,33 @@ MISSING = {
 """What an empty project without a name lacks on each page."""
 
 
-@pytest.mark.parametrize("page", ORDER)
-def test_an_empty_project_says_on_each_page_what_is_missing(technician: Technician, tmp_path: Path, page: str) -> None:
+def test_an_empty_project_says_on_each_page_what_is_missing(technician: Technician, tmp_path: Path) -> None:
     t = technician
     t.model.create(tmp_path / "empty", new_project(""))
-    t.window.go_to(page)
-    t.idle()
-    assert t.presenter().blocker() == MISSING[page]
-    if page == ORDER[-1]:
-        assert not t.window.next.isVisible()
-        return
-    assert not t.window.next.isEnabled()
-    assert t.window.next.toolTip() == MISSING[page]
-    assert t.window.missing.text() == MISSING[page]
-    t.shortcut(Qt.Key.Key_Right, Qt.KeyboardModifier.AltModifier)
-    assert t.window.current == page
+    for page in ORDER:
+        t.window.go_to(page)
+        t.idle()
+        assert t.presenter().blocker() == MISSING[page]
+        if page == ORDER[-1]:
+            assert not t.window.next.isVisible()
+            continue
+        assert not t.window.next.isEnabled(), page
+        assert t.window.next.toolTip() == MISSING[page]
+        assert t.window.missing.text() == MISSING[page]
+        t.shortcut(Qt.Key.Key_Right, Qt.KeyboardModifier.AltModifier)
+        assert t.window.current == page
 
 
-@pytest.mark.parametrize("page", ORDER)
-def test_a_finished_project_lacks_nothing_on_any_page(
-    technician: Technician, measured_project: Path, page: str
-) -> None:
+def test_a_finished_project_lacks_nothing_on_any_page(technician: Technician, measured_project: Path) -> None:
     t = technician
     t.window.projects.open_project(measured_project)
-    t.window.go_to(page)
-    t.idle()
-    assert t.presenter().blocker() == ""
-    if page != ORDER[-1]:
-        assert t.window.next.isEnabled()
-        assert t.window.missing.text() == ""
+    for page in ORDER:
+        t.window.go_to(page)
+        t.idle()
+        assert t.presenter().blocker() == "", page
+        if page != ORDER[-1]:
+            assert t.window.next.isEnabled(), page
+            assert t.window.missing.text() == ""
     assert t.errors() == []
 
 
