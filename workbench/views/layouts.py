@@ -188,6 +188,61 @@ class Sentence(QLabel):
         super().setText(unparted(text))
 
 
+class TwoLines(Sentence):
+    """A sentence with room for two lines, however short it is: what stands below it stays where it is.
+
+    One that is longer takes more room; a `steady` one is cut instead, and its tip tells it whole.
+    """
+
+    def __init__(self, *, steady: bool = False) -> None:
+        self._said, self._steady = "", steady
+        super().__init__()
+        self.setObjectName("muted")
+
+    def say(self, text: str, *, steady: bool) -> None:
+        """Show a text."""
+        self._steady = steady
+        self.setText(text)
+
+    def text(self) -> str:
+        """All of it."""
+        return self._said
+
+    def setText(self, text: str) -> None:
+        self._said = text
+        self._show()
+
+    def heightForWidth(self, width: int) -> int:
+        two = self._two()
+        return two if self._steady else max(two, super().heightForWidth(width))
+
+    def sizeHint(self) -> QSize:
+        return QSize(super().sizeHint().width(), self.heightForWidth(self.width()))
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(super().minimumSizeHint().width(), self._two())
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._show()
+
+    def _two(self) -> int:
+        return 2 * self.fontMetrics().lineSpacing()
+
+    def _show(self) -> None:
+        shown = self._cut() if self._steady else self._said
+        if unparted(shown) != super().text():
+            super().setText(shown)
+        self.setToolTip("" if shown == self._said else self._said)
+
+    def _cut(self) -> str:
+        lines = QElidingLabel.wrapText(unparted(self._said), self.width(), self.font())
+        if len(lines) <= 2:
+            return self._said
+        last = self.fontMetrics().elidedText("".join(lines[1:]), Qt.TextElideMode.ElideRight, self.width() - 2)
+        return lines[0] + last
+
+
 def muted(text: str = "") -> Sentence:
     """An explaining sentence."""
     label = Sentence(text)

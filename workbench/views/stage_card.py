@@ -5,10 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QWidget
+from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from workbench.theme import icon
-from workbench.views.layouts import Sentence, enable, in_column, muted
+from workbench.views.common import IconLabel
+from workbench.views.layouts import Sentence, TwoLines, enable, in_column, in_row
+from workbench.views.lists.value_rows import VERDICT_ICONS, VerdictKind
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,7 +29,11 @@ class StageCard(QFrame):
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self.title, self.words = Sentence(), muted()
+        self.title, self.words, self.sign = Sentence(), TwoLines(), IconLabel(16)
+        self.sign.hide()
+        self.sign.setSizePolicy(
+            QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored
+        )  # it comes without moving anything
         self.title.setObjectName("heading")
         row = QHBoxLayout()
         row.setSpacing(6)
@@ -39,12 +45,40 @@ class StageCard(QFrame):
             button.clicked.connect(lambda _=False, do=entry.do: do())
             row.addWidget(button, 1)
             self.buttons[entry.key] = button
-        in_column(self.title, self.words, row, on=self, margins=(10, 8, 10, 10))
+        in_column(in_row(self.sign, (self.title, 1), spacing=6), self.words, row, on=self, margins=(10, 8, 10, 10))
 
-    def show_stage(self, title: str, words: str, tips: Mapping[str, tuple[str, str]], primary: str = "") -> None:
-        """Say how far it is; `tips` has for each button why it cannot be pressed ("" if it can) and what it does."""
+    def show_stage(
+        self,
+        title: str,
+        words: str,
+        tips: Mapping[str, tuple[str, str]],
+        primary: str = "",
+        *,
+        steady: bool = False,
+        verdict: VerdictKind = "",
+    ) -> None:
+        """Say how far it is.
+
+        Parameters
+        ----------
+        title, words
+            In short, and in a sentence.
+        tips
+            For each button why it cannot be pressed ("" if it can), and what it does.
+        primary
+            The button that is the next thing to do, or "".
+        steady
+            A result comes or goes at this stage: the words take two lines whatever they say, as a value below them may
+            be in hand.
+        verdict
+            Whose sign stands before the title; "" for none.
+        """
         self.title.setText(title)
-        self.words.setText(words)
+        self.words.say(words, steady=steady)
+        if verdict:
+            symbol, colour = VERDICT_ICONS[verdict]
+            self.sign.show_icon(symbol, colour)
+        self.sign.setVisible(bool(verdict))
         for key, (why_not, tip) in tips.items():
             button, main = self.buttons[key], key == primary
             enable(button, why_not, tip)

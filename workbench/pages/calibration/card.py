@@ -11,6 +11,9 @@ from workbench.language import tr
 from workbench.pages.calibration.stage import Stage
 from workbench.views.stage_card import CardButton, StageCard
 
+STEADY = (Stage.SEARCHING, Stage.SOLVING, Stage.SOLVED, Stage.REJECTED, Stage.ACCEPTED, Stage.OTHER, Stage.OUTDATED)
+"""From one to another of these a calibration comes, or is solved anew, while views or settings may be in hand."""
+
 
 class CalibrationCard(StageCard):
     """The stage; the next thing to do is the primary button."""
@@ -52,6 +55,7 @@ class CalibrationCard(StageCard):
             sentences[stage],
             {key: (why[key], tip) for key, tip in self._tips().items()},
             self._next(stage),
+            steady=stage in STEADY,
         )
 
     @abstractmethod

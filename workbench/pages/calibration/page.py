@@ -114,7 +114,8 @@ class CalibrationPage(StepPage):
         self.target_fold = self.setup_folds[0]
         self._one = one
         self.views_fold = self.add_list(views, self.views)
-        self.result_fold = self.add_panel(tr("Result"), self.result)
+        self._add_settings()
+        self.result_fold = self.add_panel(tr("Result"), self.result)  # last: there it pushes nothing as it comes
         self.source.folder_chosen.connect(p.use_folder)
         self.source.mode_changed.connect(self.refreshing.soon)
         self.source.accept_drops_on(self)
@@ -122,6 +123,9 @@ class CalibrationPage(StepPage):
         self.views.current_changed.connect(p.choose)
         self.bars.bar_clicked.connect(p.choose)
         p.model.opened.connect(self._opened)
+
+    def _add_settings(self) -> None:
+        """What else can be set, above the result."""
 
     def _next_action(self) -> NextAction:
         return self.source.next_action(self.presenter.live)

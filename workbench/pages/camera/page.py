@@ -46,8 +46,10 @@ class CameraPage(CalibrationPage):
             tr("Views"),
             tr("View"),
         )
-        self.add_panel(tr("Camera model"), self.model, collapsed=True, kept="model")
         self.bars.threshold_changed.connect(presenter.set_threshold)
+
+    def _add_settings(self) -> None:
+        self.add_panel(tr("Camera model"), self.model, collapsed=True, kept="model")
 
     def refresh(self) -> None:
         self.model.refresh()

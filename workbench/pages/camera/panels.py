@@ -38,9 +38,7 @@ class CameraCard(CalibrationCard):
             Stage.SOLVING: tr("The camera is being solved anew."),
             Stage.SOLVED: tr("Look at the views and the residuals; leave out what is bad, then accept."),
             Stage.REJECTED: tr("Leave out bad views, or take other pictures; or accept it after all."),
-            Stage.OTHER: tr(
-                "The accepted one is listed under History. What is shown here is not in use; accept it to use it."
-            ),
+            Stage.OTHER: tr("Another one, listed under History, is in use. Accept this one to use it."),
             Stage.OUTDATED: self._presenter.state.sentence,
         }
 

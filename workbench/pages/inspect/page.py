@@ -8,7 +8,8 @@ from PySide6.QtCore import QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
-from workbench.language import tr
+from core.states import DECISIONS
+from workbench.language import sentence, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.comparison_panel import ComparisonPanel
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
@@ -28,6 +29,9 @@ from workbench.views.stage_card import CardButton, StageCard
 
 REPEATS, PLOT = 2, 3
 """Places of these tabs."""
+
+STEADY = (Stage.MEASURING, Stage.UNMEASURED, Stage.MEASURED, Stage.OUTDATED)
+"""From one to another of these a thickness comes or is no longer true, while its nominal value may be in hand."""
 
 
 class InspectPage(StepPage):
@@ -62,8 +66,6 @@ class InspectPage(StepPage):
         self.pin_to_side(self.features)
         self.add_to_side(self.features.form)  # above what would push it down as it comes
         self.add_to_side(self.features.state)
-        self.result = ResultPanel(presenter)
-        self.result_fold = self.add_panel(tr("Result"), self.result, kept="result")
         self.faces = FacesPanel(presenter)
         self.add_panel(tr("What is measured"), self.faces, kept="faces")
         self.part = PartPanel(presenter)
@@ -78,6 +80,9 @@ class InspectPage(StepPage):
         )
         self.picks = PicksPanel(presenter)
         self.add_panel(tr("Points and distances"), self.picks, kept="points")
+        self.add_to_side(self.features.notes)  # what results say is last: there it pushes nothing as it comes
+        self.result = ResultPanel(presenter)
+        self.result_fold = self.add_panel(tr("Result"), self.result, kept="result")
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
         self.features.draw.connect(self._draw)
@@ -139,7 +144,7 @@ class InspectPage(StepPage):
 
     def _show_stage(self, stage: Stage) -> None:
         p = self.presenter
-        title, sentence = self._words()[stage]
+        title, said = self._words()[stage]
         why_not = p.repeats.can_add
         self.card.buttons["measure"].setText(
             tr("Measure again") if p.scan.gauge is not None else tr("Measure thickness")
@@ -147,17 +152,21 @@ class InspectPage(StepPage):
         fresh = stage is Stage.MEASURED
         self.card.show_stage(
             title,
-            sentence,
+            said,
             {
                 "measure": (p.can_measure, tr("Measure the thickness of the two faces (Ctrl+R)")),
                 "repeat": (why_not, tr("Add this scan's thickness to the series of repeats")),
             },
             "" if fresh else "measure",
+            steady=stage in STEADY,
+            verdict=words.verdict(p.scan.gauge) if fresh else "",
         )
 
     def _words(self) -> dict[Stage, tuple[str, str]]:
         p = self.presenter
-        value = words.thickness(p.scan.gauge) if p.scan.gauge is not None else ""
+        gauge = p.scan.gauge
+        value = words.thickness(gauge) if gauge is not None else ""
+        decided = sentence(tr(DECISIONS[gauge.verdict])) if gauge is not None and gauge.verdict else ""
         return {
             Stage.NO_SCAN: (tr("Nothing to inspect yet"), tr("Scan the part first, then come back.")),
             Stage.READING: (tr("Reading the scan …"), tr("The surface is being prepared.")),
@@ -168,6 +177,6 @@ class InspectPage(StepPage):
             ),
             Stage.UNMEASURED: (tr("No thickness yet"), p.warning()),
             Stage.FAILED: (tr("No thickness was measured"), p.problem_of_measuring),
-            Stage.MEASURED: (value, p.state.sentence),
+            Stage.MEASURED: (value, f"{decided} {p.state.sentence}".strip()),
             Stage.OUTDATED: (value, f"{p.state.sentence} {p.warning()}"),
         }

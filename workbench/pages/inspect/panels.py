@@ -33,7 +33,7 @@ from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say_notes
-from workbench.views.lists.value_rows import ValueRows, Verdict, VerdictKind
+from workbench.views.lists.value_rows import ValueRows, Verdict
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
@@ -225,15 +225,10 @@ class ResultPanel(QWidget):
 
     def _show_verdict(self, gauge: GaugeResult, outdated: bool) -> None:
         """What was proven of other faces or another tolerance is proven no more."""
-        kinds: dict[str, VerdictKind] = {
-            "conforming": "conforming",
-            "not conforming": "not conforming",
-            "not proven": "not proven",
-        }
         if outdated:
             self.verdict.set_verdict("", tr("The result below is out of date."))
         else:
-            self.verdict.set_verdict(kinds.get(gauge.verdict, ""), verdict_sentence(gauge, wording()))
+            self.verdict.set_verdict(words.verdict(gauge), verdict_sentence(gauge, wording()))
 
 
 class PicksPanel(QWidget):

@@ -16,7 +16,7 @@ from workbench.language import number, text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
 from workbench.views.colours import Level
-from workbench.views.lists.value_rows import ValueRow
+from workbench.views.lists.value_rows import ValueRow, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.results import GaugeResult
@@ -30,6 +30,16 @@ CAPABLE = "capable"
 def thickness(gauge: GaugeResult) -> str:
     """'50.008 mm ± 0.027 mm (k = 2)'."""
     return thickness_line(gauge, wording())
+
+
+def verdict(gauge: GaugeResult | None) -> VerdictKind:
+    """What is decided; "" for nothing."""
+    kinds: dict[str, VerdictKind] = {
+        "conforming": "conforming",
+        "not conforming": "not conforming",
+        "not proven": "not proven",
+    }
+    return "" if gauge is None else kinds.get(gauge.verdict, "")
 
 
 def result_rows(gauge: GaugeResult) -> list[ValueRow]:

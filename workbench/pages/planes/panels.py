@@ -51,10 +51,7 @@ class PlanesCard(CalibrationCard):
             Stage.SOLVING: tr("Planes and poses are adjusted together."),
             Stage.SOLVED: tr("Look at the poses and the angles; leave out what is bad, then accept."),
             Stage.REJECTED: tr("Leave out bad poses, or take other pictures; or accept it after all."),
-            Stage.OTHER: tr(
-                "You measure with laser planes kept earlier. Those shown are of these pictures and settings; "
-                "accept them to measure with them."
-            ),
+            Stage.OTHER: tr("Laser planes kept earlier are in use. Accept these to measure with them."),
             Stage.OUTDATED: " ".join(part for part in (p.state.sentence, p.work.problem) if part),
         }
 

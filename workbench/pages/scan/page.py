@@ -77,8 +77,6 @@ class ScanPage(StepPage):
         self.live_panel = LivePanel(presenter.live)
         self.source = SourceChooser(self.live_panel, what=tr("Folder with the frames of a scan"))
         self.source_fold = self.add_panel(tr("Recording"), self.source)
-        self.result = ResultPanel(presenter)
-        self.result_fold = self.add_panel(tr("Result"), self.result)
         self.frames = ViewList(thumbnails_later=True)
         self.frames.set_headers(tr("Frame"), tr("Median σ [mm]"))
         self.frames_fold = self.add_list(tr("Frames"), self.frames)
@@ -86,8 +84,9 @@ class ScanPage(StepPage):
         self.settings_fold = self.add_panel(tr("Settings"), self.settings, collapsed=True, kept="settings")
         self.profiles = ProfilesPanel(presenter.bench)
         self.profiles_fold = self.add_panel(tr("Fixed lines alone"), self.profiles, collapsed=True, kept="profiles")
+        self.result = ResultPanel(presenter)  # last: there it pushes nothing as it comes
+        self.result_fold = self.add_panel(tr("Result"), self.result)
         self._rows: Any = None
-        self._folded = ""
         self._connect()
 
     def refresh(self) -> None:
@@ -102,7 +101,6 @@ class ScanPage(StepPage):
         self.live_panel.refresh()
         if live:
             self.source.set_mode("live")
-        self._fold(stage)
         self.below.setVisible(busy or p.scrubbing)
         self.below.setCurrentWidget(self.running if busy else self.bar)
         if p.scrubbing:
@@ -110,9 +108,9 @@ class ScanPage(StepPage):
         self.settings.refresh()
         self.settings.setEnabled(not live)
         self.profiles.refresh(p.cannot_measure)
-        self.profiles_fold.setVisible(bool(p.work.names) and not busy)
+        self.profiles_fold.setVisible(bool(p.work.names) and not live)
         self.result.refresh()
-        self.result_fold.setVisible(p.work.look is not None and not busy)
+        self.result_fold.setVisible(p.work.look is not None and not live)
         self.frames_fold.setVisible(bool(p.work.names) and not live)
         self._show_frames()
         self.picture.refresh()
@@ -168,12 +166,17 @@ class ScanPage(StepPage):
         return super().eventFilter(watched, event)
 
     def _opened(self) -> None:
-        self._folded = ""
+        """What a result was made from is folded here, and never as one comes: the hand may be on what is below it."""
         self._rows = None
+        if "scan" in self.presenter.model.results:
+            self.source_fold.collapse(animate=False)
+        else:
+            self.source_fold.expand(animate=False)
         self.views.show_alone(None)
         self.source.set_mode("live" if scan_begins_live(self.presenter.model) else "folder")
 
     def _begin_live(self, _: Any) -> None:
+        self.source_fold.expand(animate=False)
         self.running.show_detail(None, 0.0)
         self.cloud.begin_live()
 
@@ -211,18 +214,6 @@ class ScanPage(StepPage):
             return ""
         reference = tr("with a reference") if work.reference is not None else tr("without a reference")
         return tr("{count} frames, {reference}", count=len(work.frames), reference=reference)
-
-    def _fold(self, stage: Stage) -> None:
-        """Once there is a result, it takes the room of what it was made from; the user may unfold that again."""
-        wanted = "live" if stage is Stage.LIVE else "result" if self.presenter.work.look is not None else "recording"
-        if wanted == self._folded:
-            return
-        self._folded = wanted
-        if wanted == "result":
-            self.source_fold.collapse(animate=False)
-            self.result_fold.expand(animate=False)
-        else:
-            self.source_fold.expand(animate=False)
 
     def _show_frames(self) -> None:
         p = self.presenter

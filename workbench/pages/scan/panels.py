@@ -19,6 +19,7 @@ from workbench.pages.scan.stage import Stage
 from workbench.pages.scan_form import add_scan_settings
 from workbench.pages.stripes import set_stripe_editable
 from workbench.pages.whole import EVERYTHING
+from workbench.pages.words import count, mm
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import alarm, heading, in_column, muted, say_notes
@@ -63,6 +64,7 @@ class ScanCard(StageCard):
                 ),
             },
             "run" if stage in (Stage.RECORDED, Stage.FAILED, Stage.OUTDATED) else "",
+            steady=stage in (Stage.RECORDED, Stage.MEASURING, Stage.MEASURED, Stage.OUTDATED),
         )
 
     def _words(self, stage: Stage) -> tuple[str, str]:
@@ -88,10 +90,16 @@ class ScanCard(StageCard):
             case Stage.FAILED:
                 return tr("Not measured"), p.run.problem
             case Stage.MEASURED:
-                return tr("Measured"), p.state.sentence
+                return tr("Measured"), f"{self._how_good()} {p.state.sentence}".strip()
             case Stage.OUTDATED:
                 again = tr("Measure again.") if p.changed_since() else ""
                 return tr("Measured, but out of date"), f"{p.state.sentence} {again}".strip()
+
+    def _how_good(self) -> str:
+        look = self._presenter.work.look
+        if look is None:
+            return ""
+        return tr("{count} points, median σ {sigma}.", count=count(len(look)), sigma=mm(look.median_sigma_mm))
 
     def _how_to_begin(self) -> str:
         begin = tr("Sweep the part with a live source, or choose the folder of a recording.")

@@ -12,6 +12,7 @@ from core.messages import plain
 from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
 from core.translations import language
 from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages.places import moved, places
 from workbench.language import choose
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
@@ -94,6 +95,22 @@ def test_greyed_buttons_say_why(page):
 def test_the_result_takes_the_room_of_what_it_was_made_from(solved):
     assert not solved.pictures_fold.isExpanded() and not solved.target_fold.isExpanded()
     assert not solved.result_fold.isHidden()
+
+
+def test_results_push_no_section(page, views_folder, qtbot):
+    page.source.folder_chosen.emit(views_folder)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SEARCHING)
+    searching = places(page, qtbot)
+    qtbot.waitUntil(lambda: page.presenter.work.judgement is not None, timeout=30_000)
+    solved = places(page, qtbot)
+    assert not moved(searching, solved)
+    qtbot.mouseClick(page.card.buttons["accept"], LEFT)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.ACCEPTED)
+    assert not moved(solved, places(page, qtbot))
+    page.views.toggled_together.emit(("camera/view03.png",), False)
+    assert not moved(solved, places(page, qtbot)), "it is solved anew"
+    qtbot.waitUntil(lambda: not page.presenter.work.solving)
+    assert not moved(solved, places(page, qtbot))
 
 
 def test_views_are_listed_and_unchecking_one_leaves_it_out(solved, qtbot):

@@ -23,6 +23,7 @@ from core.messages import plain
 from tests.inspect.plan.toy_kind import toy
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
+from tests.workbench.pages.places import moved, places
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
 from workbench.views import ask
@@ -535,6 +536,20 @@ def test_the_list_stays_in_sight_and_results_do_not_move_the_form_of_the_one_cho
     panels.verticalScrollBar().setValue(panels.verticalScrollBar().maximum())
     assert not page.features.list.visibleRegion().isEmpty()
     assert not page.features.measure.visibleRegion().isEmpty()
+
+
+@pytest.mark.parametrize("notes", [(), (plain("The stated uncertainty does not hold that of the fan. " * 9),)])
+@pytest.mark.parametrize("chosen", ["plane 1", "lost", ""])
+def test_measured_features_push_no_section(page, features, presenter, measuring, qtbot, chosen, notes):
+    for name in ("plane 1", "lost"):
+        presenter.feature.add("plane")
+        presenter.feature.set_value("name", name)
+    features.choose(chosen)
+    page.show()
+    before = places(page, qtbot)
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: replace(shown_of(project), notes=notes)
+    measured(features, qtbot)
+    assert not moved(before, places(page, qtbot))
 
 
 def test_no_row_of_the_list_is_marked_when_no_feature_is_chosen(page, features, presenter, qtbot):

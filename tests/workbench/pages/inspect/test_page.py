@@ -19,6 +19,7 @@ from PySide6.QtWidgets import (
 from core.errors import InputError
 from core.messages import plain
 from tests.workbench.pages import inspect_cases as cases
+from tests.workbench.pages.places import moved, places
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.work import jobs
@@ -282,6 +283,29 @@ def test_half_a_pair_of_numbers_is_complained_about(shown):
     shown.faces.form.edited.emit("tolerance_mm", 0.2)
     shown.refreshing.at_once()
     assert shown.faces.form.help_of("tolerance_mm").startswith("Largest permitted deviation")
+
+
+def test_the_first_thickness_and_a_new_one_push_nothing(unmeasured, measuring, quick, qtbot):
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    before = places(unmeasured, qtbot)
+    press(qtbot, unmeasured.card.buttons["measure"])
+    assert not moved(before, places(unmeasured, qtbot)), "it is being measured"
+    measuring.finish(cases.gauge(notes=(plain("What is stated does not hold that of the fan. " * 9),)))
+    qtbot.waitUntil(lambda: unmeasured.presenter.stage is Stage.MEASURED)
+    assert not moved(before, places(unmeasured, qtbot))
+    for key, value in (("nominal_mm", 50.5), ("tolerance_mm", 0.01)):
+        unmeasured.faces.form.edited.emit(key, value)
+    assert unmeasured.presenter.stage is Stage.OUTDATED
+    assert not moved(before, places(unmeasured, qtbot)), "what is said to be out of date has no room of its own"
+
+
+def test_value_and_verdict_are_seen_without_scrolling(shown, qtbot):
+    places(shown, qtbot)
+    card = shown.card
+    for label in (card.title, card.words):
+        assert not label.visibleRegion().isEmpty()
+    assert "50.012" in card.title.text() and card.words.text().startswith("Conforming")
+    assert shown.side.indexOf(shown.result_fold) == shown.side.count() - 2, "it is last, before the room that is left"
 
 
 # ---- the 3D view

@@ -19,6 +19,7 @@ from core.messages import plain
 from core.pipeline.live.commands import Stop
 from core.pipeline.live.events import LiveAsk, LiveEnded, LiveStarted, LiveTaken, LiveView, PlanesDetail
 from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages.places import moved, places
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
 from workbench.bench import Bench
 from workbench.pages.calibration.stage import Stage
@@ -84,6 +85,19 @@ def check(qtbot: Any, page: PlanesPage, name: str) -> None:
     place = table.visualRect(page.views.model.index(page.views.model.row_of(name), 0))
     qtbot.mouseClick(table.viewport(), LEFT, pos=QPoint(place.left() + 10, place.center().y()))
     QApplication.processEvents()  # the page is refreshed in the next turn
+
+
+def test_results_push_no_section(page: PlanesPage, pictures: Path, qtbot: Any) -> None:
+    page.presenter.use_folder(pictures)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SEARCHING)
+    searching = places(page, qtbot)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED)
+    settled(qtbot, page)
+    solved = places(page, qtbot)
+    assert not moved(searching, solved)
+    qtbot.mouseClick(page.card.buttons["accept"], LEFT)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.ACCEPTED)
+    assert not moved(solved, places(page, qtbot))
 
 
 # ---- empty, failed, solved

@@ -22,6 +22,7 @@ from core.scan.preview.preflight import Check
 from tests.translations import ROOT
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
+from tests.workbench.pages.places import moved, places
 from workbench.pages.scan import overlays
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.picture import View
@@ -79,6 +80,36 @@ def start_live(page, lane, qtbot):
     page.source.set_mode("live")
     qtbot.mouseClick(page.live_panel.start, LEFT)
     lane.current.reported.emit(LiveStarted("Camera 1", cases.SIZE))
+
+
+def test_results_push_no_section(recorded, measuring, qtbot):
+    before = places(recorded, qtbot)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
+    assert not moved(before, places(recorded, qtbot))
+    measuring.finish(cases.summary())
+    qtbot.waitUntil(lambda: recorded.presenter.stage is Stage.MEASURED)
+    assert not moved(before, places(recorded, qtbot))
+    recorded.presenter.set_used([recorded.presenter.work.names[0]], False)
+    assert recorded.presenter.stage is Stage.OUTDATED
+    assert not moved(before, places(recorded, qtbot))
+    bar = recorded.scrolled.verticalScrollBar()
+    bar.setValue(bar.maximum())
+    at_end = places(recorded, qtbot)
+    qtbot.mouseClick(recorded.card.buttons["run"], LEFT)
+    assert recorded.presenter.stage is Stage.MEASURING
+    assert places(recorded, qtbot)["Settings"] == at_end["Settings"], "the result before stays"
+
+
+def test_what_a_result_was_made_from_is_folded_as_its_project_is_opened(measured):
+    assert measured.source_fold.isExpanded(), "it came while the page was in use"
+    measured._opened()
+    assert not measured.source_fold.isExpanded()
+
+
+def test_how_good_the_scan_is_is_seen_without_scrolling(measured, qtbot):
+    places(measured, qtbot)
+    assert not measured.card.words.visibleRegion().isEmpty()
+    assert "points, median σ 0." in measured.card.words.text()
 
 
 # ---- the frame of the points
@@ -226,7 +257,7 @@ def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(
     assert quality.text_of("Covered") == "63 % of what was lit"
     assert reasons.text_of("Its light plane is too uncertain for any point to pass the σ cut") == "1"
     assert "relief" in measured.result.notes.text()
-    assert not measured.source_fold.isExpanded() and measured.result_fold.isExpanded()
+    assert measured.result_fold.isExpanded()
     assert not any(button.property("primary") for button in measured.card.buttons.values())
 
 

@@ -34,7 +34,7 @@ from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
-from workbench.views.layouts import enable, in_column, in_row, muted, say
+from workbench.views.layouts import TwoLines, enable, in_column, in_row, muted, say
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
 if TYPE_CHECKING:
@@ -51,7 +51,8 @@ missing; of what is beyond, the list takes this share."""
 class FeaturesPanel(QWidget):
     """List and buttons, of one height whatever comes of them.
 
-    The form of the chosen feature, and how far the features are, stand where whoever shows the panel has room for them.
+    The form of the chosen feature, how far the features are, and the notes on their results stand where whoever shows
+    the panel has room for them.
     Without any feature: two buttons.
     """
 
@@ -75,7 +76,8 @@ class FeaturesPanel(QWidget):
         self.list, self.add, self.measure = _List(), QPushButton(), QPushButton()
         self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
-        self.state, self.form = muted(), FeatureForm(features, edit, scan)
+        self.state, self.notes = TwoLines(steady=True), muted()
+        self.form = FeatureForm(features, edit, scan)
         self.kinds: dict[str, QAction] = {}
         self._make_list()
         self._make_menu()
@@ -101,7 +103,9 @@ class FeaturesPanel(QWidget):
         self._show_list()
         self._show_buttons()
         self.templates.refresh()
-        say(self.state, self._sentence())
+        self.state.setText(self._sentence())
+        shown = features.shown
+        say(self.notes, "" if shown is None or features.problem else "\n".join(map(text_of, shown.notes)))
         self.form.refresh()
 
     # ---- the list
@@ -287,8 +291,7 @@ class FeaturesPanel(QWidget):
         if chosen is not None and chosen.problem:
             return text_of(chosen.problem)
         if features.measuring or features.shown is not None:
-            shown = features.shown
-            return "" if shown is None else "\n".join(map(text_of, shown.notes))
+            return ""
         return features.buttons.measure or tr("The features have changed or are not measured yet: measure them.")
 
     def _add(self, kind: FeatureKind) -> None:
