@@ -5,7 +5,7 @@ import math
 import pytest
 
 from core.inspect.characteristic import Limits
-from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS
 from workbench.pages.inspect.features import values as fields
@@ -82,6 +82,36 @@ def test_regions_come_from_faces_by_number_or_from_other_features():
     drawn = fields.with_region(spec, 0, Polygon(((0.0, 0.0), (1.0, 0.0), (0.0, 1.0))))
     assert fields.values_of(drawn)["source 0"] == fields.DRAWN
     assert fields.with_value(drawn, "parts", None).regions == drawn.regions[:1]
+
+
+AT = Section(point_mm=(1234.567, -0.001, 12.0), normal=(0.017452406, -0.999847695, 0.0))
+
+
+def test_a_section_by_numbers_shows_its_place_and_direction_in_part_coordinates():
+    spec = fields.new_feature("section", "new", ALL, SIZE, section=AT)
+    values = fields.values_of(spec)
+    assert values["place"] == "1234.567; -0.001; 12" and values["direction"] == "0.017452406; -0.999847695; 0"
+    assert not any(key.startswith("line ") for key in values)
+    for key, value in values.items():
+        if not key.startswith("limits "):
+            assert fields.with_value(spec, key, value) == spec, key
+    moved = fields.with_value(fields.with_value(spec, "place", "10; 20,5; 0"), "direction", "1; 1; 0")
+    assert moved.section.point_mm == (10.0, 20.5, 0.0) and moved.section.normal == (1.0, 1.0, 0.0)
+    assert moved.section.line_px is None
+
+
+@pytest.mark.parametrize("text", ["", "10; 20", "1; 2; 3; 4", "ten; 2; 3", "1; 2; inf", "1 2 3"])
+def test_a_place_that_is_none_is_refused_with_one_sentence(text):
+    spec = fields.new_feature("section", "new", ALL, SIZE, section=AT)
+    with pytest.raises(ValueError, match=r"^Write x, y and z in mm with semicolons between them, as 10; 20; 0.$"):
+        fields.with_value(spec, "place", text)
+
+
+@pytest.mark.parametrize("text", ["", "1; 0", "x; 0; 0", "0; 0; 0", "0; 0; 1", "0; 0; -2", "0; nan; 1"])
+def test_a_direction_that_cannot_be_measured_in_is_refused_with_one_sentence(text):
+    spec = fields.new_feature("section", "new", ALL, SIZE, section=AT)
+    with pytest.raises(ValueError, match=r"^Write x, y and z with semicolons between them, as 0; 1; 0: .* not along z"):
+        fields.with_value(spec, "direction", text)
 
 
 def test_heights_are_read_with_semicolons_and_refused_with_a_sentence():

@@ -166,3 +166,42 @@ def test_a_click_on_a_face_grows_from_the_point_under_it_in_either_frame(page, q
     qtbot.mouseClick(scene.focusProxy(), Qt.MouseButton.LeftButton, pos=QPoint(*np.round(at[lonely]).astype(int)))
     qtbot.waitUntil(lambda: bool(asked))
     assert asked == [((int(view.number[lonely]),), POSE)], "points and part coordinates stay what they are"
+
+
+# ---- sections in part coordinates
+
+
+def test_a_new_section_is_a_plane_in_part_coordinates_where_these_are_known(page, qtbot):
+    presenter = page.presenter
+    presenter.feature.add("section")
+    assert presenter.feature.spec.section.line_px is not None, "nothing of the part is known yet"
+    place_parts(page, qtbot)
+    presenter.feature.add("section")
+    section = presenter.feature.spec.section
+    assert section.line_px is None
+    middle = np.median(POSE.inverse().apply(presenter.scan.view.points)[:, 1])
+    assert_allclose(section.point_mm, (0.0, middle, 0.0), atol=6e-4)
+    assert_allclose(section.normal, (0.0, -1.0, 0.0), atol=1e-9)  # so that positions run along x
+
+
+def test_where_a_section_is_can_be_typed_undone_and_is_refused_with_a_sentence(page, qtbot):
+    place_parts(page, qtbot)
+    features, edit = page.presenter.features, page.presenter.feature
+    edit.add("section")
+    page.refreshing.at_once()
+    form = page.features.form.what
+    before = edit.spec.section
+    assert {"place", "direction"} <= set(form.values()) and not any(key.startswith("line ") for key in form.values())
+    form.edited.emit("place", "10; 20,5; -3")
+    form.edited.emit("direction", "1; 0; 0")
+    page.refreshing.at_once()
+    assert edit.spec.section.point_mm == (10.0, 20.5, -3.0) and edit.spec.section.normal == (1.0, 0.0, 0.0)
+    assert (form.values()["place"], form.values()["direction"]) == ("10; 20.5; -3", "1; 0; 0")
+    for key, text in (("place", "10; 20"), ("direction", "0; 0; 1")):
+        form.edited.emit(key, text)
+        page.refreshing.at_once()
+        assert form.help_of(key).startswith("Write x, y and z") and form.values()[key] == text
+        assert edit.spec.section.normal == (1.0, 0.0, 0.0), "the plan stays as it was"
+    for _ in range(2):
+        features.model.undo_stack.undo()
+    assert edit.spec.section == before

@@ -10,9 +10,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.files.project.folder import stored_source
-from core.inspect.plan.feature_spec import FeatureSpec, Polygon
+from core.inspect.plan.feature_spec import FeatureSpec, Polygon, Section
 from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import usual_stretches
+from core.inspect.shown.cut_plane import CutPlane
+from core.inspect.shown.view_frame import FrameKind, ViewFrame
 from workbench.language import text_of, tr
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.plan import InspectFeatures
@@ -62,7 +64,7 @@ class InspectFeatureEdit:
             return
         stored = "" if nominal is None else stored_source(folder, nominal)
         size = NO_PICTURE if view is None else view.image_size
-        features.put(fields.new_feature(kind, features.free_name(kind), features.plan, size, stored))
+        features.put(fields.new_feature(kind, features.free_name(kind), features.plan, size, stored, self._across()))
 
     def set_value(self, key: str, value: Any) -> None:
         """Change a field; what cannot be is kept in the form with a sentence, and the plan stays as it was."""
@@ -145,6 +147,14 @@ class InspectFeatureEdit:
             self._put(self.spec, fields.without_cut(self.spec, place))
 
     # ---- inside
+
+    def _across(self) -> Section | None:
+        """A section through the middle of the part, square to its y; None where its coordinates are not known."""
+        pose, view = self._features.pose_camera_part, self._scan.view
+        if pose is None or view is None or not len(view):
+            return None
+        frame = ViewFrame(FrameKind.PART, pose)
+        return CutPlane(frame, 1, float(np.median(frame.coordinates(view.points)[:, 1]))).section(pose)
 
     def _put(self, before: FeatureSpec, after: FeatureSpec) -> None:
         if after != before:

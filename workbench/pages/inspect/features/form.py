@@ -241,7 +241,9 @@ def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:
     """What decides which fields there are, and what they can be chosen from."""
     regions = [(type(region), region.feature if isinstance(region, PointsOf) else "") for region in spec.regions]
     others = [(one.name, one.kind) for one in plan.features if one.name != spec.name]
-    cuts = () if spec.section is None else tuple((cut.name, cut.kind) for cut in spec.section.cuts)
+    cuts: object = None
+    if spec.section is not None:
+        cuts = spec.section.line_px is None, tuple((cut.name, cut.kind) for cut in spec.section.cuts)
     return spec.kind, regions, others, cuts
 
 
@@ -256,7 +258,23 @@ _LINE = tuple(
     )
     for axis, title in enumerate(titles)
 )
-"""Where a section is."""
+"""Where a section is that was drawn in the picture."""
+
+_PLANE = (
+    TextField(
+        "place",
+        label("Place in mm"),
+        label("A point that the cut goes through: x; y; z in part coordinates."),
+        "10; 20; 0",
+    ),
+    TextField(
+        "direction",
+        label("Direction"),
+        label("What the cut is square to: x; y; z in part coordinates."),
+        "0; 1; 0",
+    ),
+)
+"""Where a section is that is placed by numbers."""
 
 _ENDS = {
     "first": (label("1st stretch, from"), label("1st stretch, to")),
@@ -277,7 +295,8 @@ def add_settings(form: SettingsForm, spec: FeatureSpec) -> None:
 def _sections(spec: FeatureSpec) -> Iterator[tuple[str, tuple[FormField, ...]]]:
     """Title ("" for none) and fields of each group."""
     kind, section = kind_of(spec), spec.section
-    yield "", (*(_LINE if section is not None and section.line_px is not None else ()), *kind.fields)
+    where = () if section is None else _PLANE if section.line_px is None else _LINE
+    yield "", (*where, *kind.fields)
     for place, cut in enumerate(section.cuts if section is not None else ()):
         yield tr("Measurement {number}", number=place + 1), _cut(f"cut {place}", cut)
     for result, given in results_of(spec).items():

@@ -15,6 +15,7 @@ from core.inspect.plan.feature_spec import (
     Deviation,
     FaceAt,
     FeatureSpec,
+    Place,
     PointsOf,
     Polygon,
     Position,
@@ -32,16 +33,26 @@ POINTS_OF = "of "
 
 SIDES = ("nominal", "lower", "upper")
 
+UPRIGHT = 1e-6
+"""Least share of x and y in what a section is square to: along z alone, heights in it would have no direction."""
 
-def new_feature(kind: str, name: str, plan: InspectionPlan, size: tuple[int, int], nominal: str = "") -> FeatureSpec:
-    """A feature with what is usual: a cut across the middle of the picture (`size`), the last two elements."""
+
+def new_feature(
+    kind: str,
+    name: str,
+    plan: InspectionPlan,
+    size: tuple[int, int],
+    nominal: str = "",
+    section: Section | None = None,
+) -> FeatureSpec:
+    """A feature with what is usual: the last two elements; `section`, or a cut across the picture's middle (`size`)."""
     made, found = FeatureSpec(name, kind), kind_named(kind)
     if found.made_of:
         made = replace(made, of=elements(plan, found)[-found.made_of :])
     match found.settings:
         case "section":
             middle = float(size[1] // 2)
-            return replace(made, section=Section(((0.0, middle), (float(size[0] - 1), middle))))
+            return replace(made, section=section or Section(((0.0, middle), (float(size[0] - 1), middle))))
         case "deviation":
             return replace(made, deviation=Deviation(nominal))
         case "position":
@@ -194,6 +205,28 @@ def _numbers(text: str) -> tuple[float, ...]:
     return numbers
 
 
+def _place(text: str) -> Place:
+    """A place in part coordinates."""
+    return _three(text, tr("Write x, y and z in mm with semicolons between them, as 10; 20; 0."))
+
+
+def _direction(text: str) -> Place:
+    """What a section is square to."""
+    wrong = tr("Write x, y and z with semicolons between them, as 0; 1; 0: a direction, and not along z.")
+    x, y, z = _three(text, wrong)
+    if math.hypot(x, y) <= UPRIGHT * abs(z):
+        raise ValueError(wrong)
+    return x, y, z
+
+
+def _three(text: str, wrong: str) -> Place:
+    try:
+        x, y, z = _numbers(text)
+    except ValueError as error:
+        raise ValueError(wrong) from error
+    return x, y, z
+
+
 # ---- settings of a kind
 
 
@@ -208,16 +241,14 @@ def _with_own(spec: FeatureSpec, holder: str, key: str, value: Any) -> FeatureSp
     """The feature with one of these changed."""
     held = getattr(spec, holder) if holder else spec
     if isinstance(getattr(held, key), tuple):
-        value = _numbers(str(value))
-        if holder == "position" and len(value) != 3:
-            raise ValueError(tr("Write x, y and z in mm with semicolons between them, as 10; 20; 0."))
+        value = _place(str(value)) if holder == "position" else _numbers(str(value))
     changed: Any = replace(held, **{key: value})
     return replace(spec, **{holder: changed}) if holder else changed
 
 
 def _shown(value: Any) -> Any:
     """A setting as its field shows it: several numbers are one text."""
-    return "; ".join(f"{one:g}" for one in value) if isinstance(value, tuple) else value
+    return "; ".join(f"{one:.10g}" for one in value) if isinstance(value, tuple) else value
 
 
 # ---- sections
@@ -225,6 +256,8 @@ def _shown(value: Any) -> Any:
 
 def _section_values(section: Section) -> dict[str, Any]:
     values: dict[str, Any] = {}
+    if section.line_px is None:
+        values |= {"place": _shown(section.point_mm), "direction": _shown(section.normal)}
     for place, corner in enumerate(section.line_px or ()):
         values |= {f"line {place} 0": corner[0], f"line {place} 1": corner[1]}
     for place, cut in enumerate(section.cuts):
@@ -236,6 +269,10 @@ def _section_values(section: Section) -> dict[str, Any]:
 
 
 def _with_section(spec: FeatureSpec, section: Section, key: str, value: Any) -> FeatureSpec:
+    if key == "place":
+        return replace(spec, section=replace(section, point_mm=_place(str(value))))
+    if key == "direction":
+        return replace(spec, section=replace(section, normal=_direction(str(value))))
     group, _, rest = key.partition(" ")
     place, _, field = rest.partition(" ")
     if group == "line" and section.line_px is not None:
