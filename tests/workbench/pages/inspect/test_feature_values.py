@@ -5,7 +5,7 @@ import math
 import pytest
 
 from core.inspect.characteristic import Limits
-from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon, Section
+from core.inspect.plan.feature_spec import Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS
 from workbench.pages.inspect.features import values as fields
@@ -112,6 +112,45 @@ def test_a_direction_that_cannot_be_measured_in_is_refused_with_one_sentence(tex
     spec = fields.new_feature("section", "new", ALL, SIZE, section=AT)
     with pytest.raises(ValueError, match=r"^Write x, y and z with semicolons between them, as 0; 1; 0: .* not along z"):
         fields.with_value(spec, "direction", text)
+
+
+SPHERE, BOX = InSphere((1.0, 2.0, 1234.567), 5.0), InBox((0.0, 1.0, -2.0), (10.0, 20.0, 5.0))
+
+
+@pytest.mark.parametrize("region", [SPHERE, BOX])
+def test_a_region_of_part_coordinates_stands_in_fields(region):
+    spec = fields.with_region(made("plane"), 0, region)
+    for key, value in fields.values_of(spec).items():
+        if not key.startswith("limits "):
+            assert fields.with_value(spec, key, value) == spec, key
+
+
+def test_a_sphere_and_a_box_are_chosen_and_typed():
+    spec = fields.with_value(made("plane"), "source 0", "sphere")
+    spec = fields.with_value(fields.with_value(spec, "centre 0", "1; 2,5; 3"), "radius 0", 4.0)
+    assert spec.regions == (InSphere((1.0, 2.5, 3.0), 4.0),)
+    spec = fields.with_value(spec, "source 0", "box")
+    spec = fields.with_value(fields.with_value(spec, "high 0", "20; 21; 22"), "low 0", "1; 2; 3")
+    assert spec.regions == (InBox((1.0, 2.0, 3.0), (20.0, 21.0, 22.0)),)
+    assert fields.with_value(spec, "source 0", "auto").regions == (Auto(),)
+
+
+@pytest.mark.parametrize(
+    ("region", "key", "text", "sentence"),
+    [
+        (SPHERE, "centre 0", "1; 2", "Write x, y and z in mm"),
+        (BOX, "low 0", "", "Write x, y and z in mm"),
+        (BOX, "high 0", "10; 1; 5", "Each of the smallest x, y and z is to be below the largest one."),
+    ],
+)
+def test_a_region_that_is_none_is_refused_with_one_sentence(region, key, text, sentence):
+    with pytest.raises(ValueError, match=sentence):
+        fields.with_value(fields.with_region(made("plane"), 0, region), key, text)
+
+
+def test_a_sphere_reaches_round_the_box_it_is_made_for():
+    sphere = fields.around("sphere", (0.0, 0.0, 0.0), (3.0, 4.0, 0.001))
+    assert sphere.centre_mm[:2] == (1.5, 2.0) and 2.5 < sphere.radius_mm < 2.502
 
 
 def test_heights_are_read_with_semicolons_and_refused_with_a_sentence():

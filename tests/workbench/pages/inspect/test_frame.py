@@ -9,7 +9,7 @@ from numpy.testing import assert_allclose
 from PySide6.QtCore import QPoint, Qt
 
 from core.inspect.conformity import Verdict
-from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec
+from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec, InBox, InSphere
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.clicked_faces import ClickedFace, ClickedFaces
 from core.inspect.shown.shown_features import ShownFeature, ShownInspection
@@ -168,7 +168,7 @@ def test_a_click_on_a_face_grows_from_the_point_under_it_in_either_frame(page, q
     assert asked == [((int(view.number[lonely]),), POSE)], "points and part coordinates stay what they are"
 
 
-# ---- sections in part coordinates
+# ---- sections and regions in part coordinates
 
 
 def test_a_new_section_is_a_plane_in_part_coordinates_where_these_are_known(page, qtbot):
@@ -205,3 +205,39 @@ def test_where_a_section_is_can_be_typed_undone_and_is_refused_with_a_sentence(p
     for _ in range(2):
         features.model.undo_stack.undo()
     assert edit.spec.section == before
+
+
+def test_a_region_of_part_coordinates_is_laid_round_the_points_used_and_typed(page, measuring, qtbot):
+    points = POSE.apply(np.array([[0.0, 0.0, 0.0], [10.0, 20.0, 4.0]])).astype(np.float32)
+
+    def measured(folder, project):
+        shown = shown_of(project.inspection)
+        return replace(shown, features=tuple(replace(one, places=points) for one in shown.features))
+
+    features, edit = page.presenter.features, page.presenter.feature
+    edit.add("plane")
+    page.refreshing.at_once()
+    form = page.features.form
+    source = form.where._editors["source 0"]
+    assert source.findData("box") < 0, "of no frame, there are no part coordinates"
+    measuring.answers[jobs.MEASURE_FEATURES] = measured
+    place_parts(page, qtbot, replace(PLACED, features=(*PLACED.features, FeatureSpec("top", "plane", (Auto(3),)))))
+    features.choose("top")
+    page.refreshing.at_once()
+    form.where.edited.emit("source 0", "box")
+    page.refreshing.at_once()
+    (box,) = edit.spec.regions
+    assert_allclose((box.low_mm, box.high_mm), ((0, 0, 0), (10, 20, 4)), atol=2e-3)
+    form.where.edited.emit("low 0", "30; 0; 0")
+    page.refreshing.at_once()
+    assert form.where.help_of("low 0").startswith("Each of the smallest") and edit.spec.regions == (box,)
+    form.where.edited.emit("high 0", "50; 20; 5")
+    assert edit.spec.regions == (InBox((30.0, 0.0, 0.0), (50.0, 20.0, 5.0)),), "both corners count together"
+    form.where.edited.emit("source 0", "sphere")
+    page.refreshing.at_once()
+    form.where.edited.emit("radius 0", 7.5)
+    form.where.edited.emit("centre 0", "1; 2; 3")
+    assert edit.spec.regions == (InSphere((1.0, 2.0, 3.0), 7.5),)
+    for _ in range(4):
+        features.model.undo_stack.undo()
+    assert edit.spec.regions == (box,)

@@ -10,11 +10,12 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.files.project.folder import stored_source
-from core.inspect.plan.feature_spec import FeatureSpec, Polygon, Section
+from core.inspect.plan.feature_spec import FeatureSpec, Place, Polygon, Section
 from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import usual_stretches
 from core.inspect.shown.cut_plane import CutPlane
 from core.inspect.shown.view_frame import FrameKind, ViewFrame
+from core.model.arrays import Array
 from workbench.language import text_of, tr
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.plan import InspectFeatures
@@ -78,6 +79,12 @@ class InspectFeatureEdit:
                 result = key.split(" ", 2)[2]
                 changed = fields.with_limits(spec, result, self.values())
                 done = [one for one in self._pending if one.startswith("limits ") and one.split(" ", 2)[2] == result]
+            elif key.split(" ")[0] in fields.CORNERS:
+                place = int(key.split(" ")[1])
+                changed = fields.with_box(spec, place, self.values())
+                done = [f"{corner} {place}" for corner in fields.CORNERS]
+            elif key.startswith("source ") and value in (fields.SPHERE, fields.BOX):
+                changed, done = self._placed(spec, int(key.split(" ")[1]), value), [key]
             else:
                 changed, done = fields.with_value(spec, key, value), [key]
         except ValueError as error:
@@ -156,6 +163,20 @@ class InspectFeatureEdit:
         frame = ViewFrame(FrameKind.PART, pose)
         return CutPlane(frame, 1, float(np.median(frame.coordinates(view.points)[:, 1]))).section(pose)
 
+    def _placed(self, spec: FeatureSpec, place: int, source: str) -> FeatureSpec:
+        """The feature with a sphere or a box of part coordinates round the points it used; the usual if none are known.
+
+        Where the plan has no frame, these are the camera's.
+        """
+        shown, pose = self._features.result(spec.name), self._features.pose_camera_part
+        framed = self._features.plan.frame is not None
+        if shown is None or not len(shown.places) or (framed and pose is None):
+            return fields.with_value(spec, f"source {place}", source)
+        points = shown.places if pose is None else pose.inverse().apply(shown.places)
+        high = np.ceil(1e3 * points.max(axis=0)) / 1e3
+        low = np.minimum(np.floor(1e3 * points.min(axis=0)) / 1e3, high - 1e-3)
+        return fields.with_region(spec, place, fields.around(source, _three(low), _three(high)))
+
     def _put(self, before: FeatureSpec, after: FeatureSpec) -> None:
         if after != before:
             self._features.put(after, before.name)
@@ -171,3 +192,8 @@ class InspectFeatureEdit:
         if self._of != self._features.chosen:
             self._of = self._features.chosen
             self._pending, self._complaints = {}, {}
+
+
+def _three(values: Array) -> Place:
+    x, y, z = (round(float(value), 3) + 0.0 for value in values)
+    return x, y, z

@@ -10,7 +10,7 @@ from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, FormField, NumberField, ResultKind, TextField
-from core.inspect.plan.feature_spec import Auto, Cut, FaceAt, FeatureSpec, InBox, InSphere, PointsOf, Polygon
+from core.inspect.plan.feature_spec import Auto, Cut, FaceAt, FeatureSpec, InBox, InSphere, PointsOf, Polygon, Region
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import FILTERS, MOST_FACES, WIDEST_MM, kind_of, results_of
 from core.messages import label
@@ -36,7 +36,7 @@ TOOLS = {
 }
 """Tools to say where a region is, and their icons."""
 
-BY_HAND = (fields.DRAWN, fields.CLICKED, fields.PLACED)
+BY_HAND = (fields.DRAWN, fields.CLICKED)
 """Sources of points that are not set by choosing them."""
 
 
@@ -142,8 +142,8 @@ class FeatureForm(QWidget):
             (fields.DRAWN, tr("drawn")),
             (fields.CLICKED, tr("clicked face")),
         ]
-        if isinstance(region, InSphere | InBox):
-            choices.append((fields.PLACED, tr("as in the plan file")))
+        if plan.frame is not None or isinstance(region, InSphere | InBox):
+            choices += [(fields.SPHERE, tr("in a sphere")), (fields.BOX, tr("in a box"))]
         choices += [
             (fields.POINTS_OF + one.name, tr("points of {name}", name=one.name))
             for one in plan.features
@@ -152,6 +152,8 @@ class FeatureForm(QWidget):
         self.where.add_choice(
             f"source {place}", self._region_title(spec, place), choices, tr("Where its points are taken from.")
         )
+        for one in _placed(place, region):
+            _add(self.where, one)
         single = kind_of(spec).most_regions > 1 and len(spec.regions) == 1
         if found and kind_of(spec).automatic == "numbered" and not single:
             self.where.add_number(
@@ -244,7 +246,36 @@ def _fields_of(spec: FeatureSpec, plan: InspectionPlan) -> object:
     cuts: object = None
     if spec.section is not None:
         cuts = spec.section.line_px is None, tuple((cut.name, cut.kind) for cut in spec.section.cuts)
-    return spec.kind, regions, others, cuts
+    return spec.kind, regions, others, cuts, plan.frame is None
+
+
+def _placed(place: int, region: Region) -> tuple[FormField, ...]:
+    """Where a region of part coordinates is."""
+    if isinstance(region, InSphere):
+        centre = label("Middle of the sphere: x; y; z in part coordinates.")
+        return (
+            TextField(f"centre {place}", label("Centre in mm"), centre, "10; 20; 0"),
+            NumberField(
+                f"radius {place}",
+                label("Radius"),
+                label("Points so near to it are used."),
+                "mm",
+                1e-3,
+                WIDEST_MM,
+                3,
+                1.0,
+            ),
+        )
+    if isinstance(region, InBox):
+        low, high = (
+            label("The corner of the smallest x; y; z in part coordinates."),
+            label("The corner of the largest x; y; z in part coordinates."),
+        )
+        return (
+            TextField(f"low {place}", label("From, in mm"), low, "0; 0; 0"),
+            TextField(f"high {place}", label("To, in mm"), high, "10; 20; 5"),
+        )
+    return ()
 
 
 MOST_PX = 100_000.0

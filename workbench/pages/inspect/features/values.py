@@ -15,6 +15,8 @@ from core.inspect.plan.feature_spec import (
     Deviation,
     FaceAt,
     FeatureSpec,
+    InBox,
+    InSphere,
     Place,
     PointsOf,
     Polygon,
@@ -26,12 +28,16 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import FILTERS, MOST_FACES, kind_named, kind_of, results_of
 from workbench.language import tr
 
-AUTO, DRAWN, CLICKED, PLACED = "auto", "drawn", "clicked", "placed"
+AUTO, DRAWN, CLICKED, SPHERE, BOX = "auto", "drawn", "clicked", "sphere", "box"
 POINTS_OF = "of "
-"""Where a region's points come from: found, drawn in the picture, a face that was clicked, placed in part coordinates,
-"of " and a feature."""
+"""Where a region's points come from: found, drawn in the picture, a face that was clicked, inside a sphere or a box of
+part coordinates, "of " and a feature."""
 
+CORNERS = ("low", "high")
 SIDES = ("nominal", "lower", "upper")
+
+USUAL_MM = 10.0
+"""Half a side of a box of which nothing is known."""
 
 UPRIGHT = 1e-6
 """Least share of x and y in what a section is square to: along z alone, heights in it would have no direction."""
@@ -85,7 +91,12 @@ def values_of(spec: FeatureSpec) -> dict[str, Any]:
         values["parts"] = None if len(spec.regions) == 1 else len(spec.regions)
     for place, region in enumerate(own_regions(spec)):
         values[f"source {place}"] = _source(region)
-        values[f"number {place}"] = region.number if isinstance(region, Auto) else 1
+        if isinstance(region, Auto):
+            values[f"number {place}"] = region.number
+        if isinstance(region, InSphere):
+            values |= {f"centre {place}": _shown(region.centre_mm), f"radius {place}": region.radius_mm}
+        if isinstance(region, InBox):
+            values |= {f"low {place}": _shown(region.low_mm), f"high {place}": _shown(region.high_mm)}
     for result in results_of(spec):
         values |= limits_values(spec, result)
     for key, holder in _holders(spec).items():
@@ -107,8 +118,15 @@ def with_value(spec: FeatureSpec, key: str, value: Any) -> FeatureSpec:
     if key == "parts":
         count = 1 if value is None else int(value)
         return replace(spec, regions=tuple(_region(spec.regions, place) for place in range(count)))
-    if group in ("source", "number"):
-        return with_region(spec, int(rest), _sourced(value) if group == "source" else Auto(int(value)))
+    if group == "source":
+        place = int(rest)
+        return spec if value == _source(spec.regions[place]) else with_region(spec, place, _sourced(value))
+    if group == "number":
+        return with_region(spec, int(rest), Auto(int(value)))
+    if group in ("centre", "radius"):
+        return _with_sphere(spec, int(rest), group, value)
+    if group in CORNERS:
+        return with_box(spec, int(rest), values_of(spec) | {key: value})
     if key in _holders(spec):
         return _with_own(spec, _holders(spec)[key], key, value)
     if spec.section is not None:
@@ -183,11 +201,40 @@ def _source(region: Region) -> str:
             return CLICKED
         case PointsOf():
             return POINTS_OF + region.feature
-    return PLACED
+        case InSphere():
+            return SPHERE
+        case InBox():
+            return BOX
 
 
 def _sourced(source: str) -> Region:
+    if source in (SPHERE, BOX):
+        return around(source, (-USUAL_MM, -USUAL_MM, -USUAL_MM), (USUAL_MM, USUAL_MM, USUAL_MM))
     return PointsOf(source.removeprefix(POINTS_OF)) if source.startswith(POINTS_OF) else Auto()
+
+
+def around(source: str, low: Place, high: Place) -> Region:
+    """The sphere or the box of part coordinates that reaches round a box."""
+    if source == BOX:
+        return InBox(low, high)
+    (x, y, z), radius = ((a + b) / 2 for a, b in zip(low, high, strict=True)), math.dist(low, high) / 2
+    return InSphere((round(x, 3), round(y, 3), round(z, 3)), math.ceil(1e3 * radius) / 1e3)
+
+
+def _with_sphere(spec: FeatureSpec, place: int, field: str, value: Any) -> FeatureSpec:
+    region = spec.regions[place]
+    assert isinstance(region, InSphere)
+    if field == "radius":
+        return with_region(spec, place, replace(region, radius_mm=float(value)))
+    return with_region(spec, place, replace(region, centre_mm=_place(str(value))))
+
+
+def with_box(spec: FeatureSpec, place: int, values: Mapping[str, Any]) -> FeatureSpec:
+    """The feature with a box by both its corners, as they stand in the fields; ValueError with a sentence."""
+    low, high = (_place(str(values[f"{corner} {place}"])) for corner in CORNERS)
+    if any(a >= b for a, b in zip(low, high, strict=True)):
+        raise ValueError(tr("Each of the smallest x, y and z is to be below the largest one."))
+    return with_region(spec, place, InBox(low, high))
 
 
 def _region(regions: tuple[Region, ...], place: int) -> Region:
