@@ -71,6 +71,15 @@ class AppSettings(QObject):
         self.part_frame_changed.emit()
 
     @property
+    def callouts(self) -> bool:
+        """Whether results stand at their places on the surface."""
+        return self.text("callouts", "shown") == "shown"
+
+    @callouts.setter
+    def callouts(self, wanted: bool) -> None:
+        self.keep_text("callouts", "shown" if wanted else "hidden")
+
+    @property
     def projects_folder(self) -> Path:
         """Where new projects are put."""
         return Path(str(self._store.value("projects_folder", Path.home() / "Trisect projects")))

@@ -18,6 +18,7 @@ from core.report.wording import grouped
 from workbench.language import tr
 from workbench.pages.frame_tool import FrameTool
 from workbench.pages.inspect import words
+from workbench.pages.inspect.callouts import CalloutsTool
 from workbench.pages.inspect.choices import Shape, SurfaceChoices
 from workbench.pages.inspect.clicked import Mode
 from workbench.pages.inspect.cut_panel import CutPanel
@@ -141,6 +142,7 @@ class SurfaceTab(QWidget):
         self.scene.handle_pulled.connect(presenter.cut.pull)
         presenter.cut.changed.connect(Refresh(self._show_moved_cut, self).soon)
         self.frame = FrameTool(self.scene, presenter.bench.settings)
+        self.callouts = CalloutsTool(self.scene, presenter)
         presenter.measured.connect(self._show_faces)
         presenter.comparison.made.connect(self._show_compared)
 
@@ -171,6 +173,7 @@ class SurfaceTab(QWidget):
             else:
                 self._later.start()
         self._show_feature()
+        self.callouts.refresh()
         self._show_other()
         self._show_proposal()
         self._show_picks()

@@ -1,4 +1,4 @@
-"""What a 3D view shows, as plain arrays: cloud, mesh, marks, planes, lines, labels and measures."""
+"""What a 3D view shows, as plain arrays: cloud, mesh, marks, planes, lines, labels, measures and callouts."""
 
 from __future__ import annotations
 
@@ -66,6 +66,33 @@ class Measure:
     text: str
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class Callout:
+    """Words about a place (3,) in mm.
+
+    Parameters
+    ----------
+    name
+        Tells it from the others.
+    title, value
+        Its two lines.
+    sign
+        Icon before the value, and its colour (a field of Shades), which the plate's edge has, too; None: no sign.
+    outdated
+        It is told that the value is no longer true.
+    moved
+        Pixels (right, down) of the plate's middle from the place; None: the view finds room for it.
+    """
+
+    name: str
+    place: Array
+    title: str
+    value: str
+    sign: tuple[str, str] | None = None
+    outdated: bool = False
+    moved: tuple[float, float] | None = None
+
+
 Item = Marks | Patches | Lines | Labels | Measure
 
 
@@ -114,6 +141,8 @@ class Scene:
     mesh_shown: bool = True
     items: dict[tuple[type, str], Item] = field(default_factory=dict)
     hidden: HiddenSide | None = None
+    callouts: tuple[Callout, ...] = ()
+    """Words over the scene: nothing of it is drawn or fitted for them."""
 
     @property
     def visible_cloud(self) -> SceneCloud | None:
@@ -148,6 +177,7 @@ class Scene:
         self.cloud_shown = self.mesh_shown = True
         self.items = {}
         self.hidden = None
+        self.callouts = ()
 
     @property
     def empty(self) -> bool:

@@ -35,6 +35,9 @@ the smallest window is."""
 NAME_TOP, HINT_TOP = 4.0, 38.0
 """Pixels above the name of the frame, which may be two lines, and above what the tool in hand does."""
 
+NAME_ROOM = 26.0
+"""Pixels at the top that a name of one line takes."""
+
 AXES: tuple[tuple[str, Rgb, Rgb], ...] = (
     ("x", (200, 45, 45), (255, 110, 105)),
     ("y", (30, 130, 60), (95, 205, 115)),
@@ -102,10 +105,15 @@ def bar_width(colouring: Colouring | None, font: QFont) -> int:
     """Pixels at the right that the colour bar takes."""
     if colouring is None:
         return 0
-    metrics = QFontMetricsF(_small(font))
+    metrics = QFontMetricsF(small_font(font))
     numbers = max(metrics.horizontalAdvance(text) for text in _ticks(colouring, 240)[1] or [""])
     lines = _wrapped(colouring.title, metrics)
     return round(max(BAR_WIDTH + 8 + numbers, *(metrics.horizontalAdvance(line) for line in lines)) + 2 * MARGIN)
+
+
+def corner_taken(size: tuple[int, int]) -> list[QRectF]:
+    """What the axes and the scale take of the lower left."""
+    return [QRectF(0, size[1] - MARGIN - 72, MARGIN + 70, MARGIN + 72), QRectF(84, size[1] - 44, 110, 44)]
 
 
 def text_plate(
@@ -123,7 +131,7 @@ def text_plate(
 
 def _plate(painter: QPainter, at: QPointF, text: str) -> QRectF:
     """Of a text in small letters, which the painter has then, its middle at `at`."""
-    painter.setFont(_small(painter.font()))
+    painter.setFont(small_font(painter.font()))
     box = painter.fontMetrics().boundingRect(0, 0, 1000, 1000, int(Qt.AlignmentFlag.AlignLeft), text)
     plate = QRectF(0, 0, box.width() + 10, box.height() + 4)
     plate.moveCenter(at)
@@ -132,7 +140,7 @@ def _plate(painter: QPainter, at: QPointF, text: str) -> QRectF:
 
 def paint_hint(painter: QPainter, text: str, room: float, colours: OverlayColours) -> None:
     """What the tool in hand does, below the name of the frame, in the middle of as much room as the bar leaves."""
-    painter.setFont(_small(painter.font()))
+    painter.setFont(small_font(painter.font()))
     flags = int(Qt.AlignmentFlag.AlignHCenter) | int(Qt.TextFlag.TextWordWrap)
     box = painter.boundingRect(QRectF(MARGIN, HINT_TOP, room - 2 * MARGIN, 1000), flags, text)
     painter.setPen(Qt.PenStyle.NoPen)
@@ -142,7 +150,8 @@ def paint_hint(painter: QPainter, text: str, room: float, colours: OverlayColour
     painter.drawText(box, flags, text)
 
 
-def _small(font: QFont) -> QFont:
+def small_font(font: QFont) -> QFont:
+    """The font of what is written over the scene."""
     small = QFont(font)
     small.setPixelSize(12)
     return small
@@ -194,7 +203,7 @@ def _paint_triad(
     pixels as the colour bar leaves.
     """
     centre, length = QPointF(MARGIN + 30, room[1] - MARGIN - 30), 24.0
-    painter.setFont(_small(painter.font()))
+    painter.setFont(small_font(painter.font()))
     metrics = QFontMetricsF(painter.font())
     lines = _wrapped(tr(FRAME_NAMES[frame.kind]), metrics, room[0])
     middle = MARGIN + max(map(metrics.horizontalAdvance, lines)) / 2
@@ -259,7 +268,7 @@ def _wrapped(title: str, metrics: QFontMetricsF, width: float = 92.0) -> list[st
 def _paint_bar(painter: QPainter, colouring: Colouring, size: tuple[int, int], colours: OverlayColours) -> None:
     """The colour bar at the right edge, half as high as the view; points of arrows say that values lie beyond."""
     assert colouring.limits is not None
-    font = _small(painter.font())
+    font = small_font(painter.font())
     metrics = QFontMetricsF(font)
     lines = _wrapped(colouring.title, metrics)
     width = bar_width(colouring, font)

@@ -35,11 +35,17 @@ class ViewControl(Protocol):
     def zoom(self, factor: float, at: QPointF | None = None) -> None:
         """Nearer by a factor, towards a point of the screen or its middle."""
 
-    def holds(self, at: QPointF) -> bool:
-        """Whether the handle is there."""
+    def grasp(self, at: QPointF) -> bool:
+        """Take hold of the handle or callout that is there, if one is."""
 
     def pull(self, dx: float, dy: float) -> None:
-        """Move what the handle is on, by a drag in pixels."""
+        """Move what is held, by a drag in pixels."""
+
+    def point_at(self, at: QPointF) -> None:
+        """The mouse is there, no button is down."""
+
+    def choose(self, at: QPointF) -> None:
+        """Choose the callout that is there, if one is."""
 
     def pick(self, at: QPointF) -> None:
         """Choose the point of the cloud under the cursor."""
@@ -60,7 +66,7 @@ class ViewControl(Protocol):
 class Navigate:
     """Left button turns; right button, or left with Shift, moves; wheel and middle button go nearer.
 
-    A handle that is shown is dragged with the left button.
+    A handle or callout that is shown is dragged with the left button.
     """
 
     cursor = Qt.CursorShape.ArrowCursor
@@ -77,13 +83,14 @@ class Navigate:
         """A button goes down."""
         self._last = self._start = event.position()
         self._button, self._dragged = event.button(), False
-        self._pulls = event.button() == Qt.MouseButton.LeftButton and self.view.holds(event.position())
+        self._pulls = event.button() == Qt.MouseButton.LeftButton and self.view.grasp(event.position())
 
     def move(self, event: QMouseEvent) -> None:
         """The mouse moves."""
-        if self._last is None:
-            return
         at = event.position()
+        if self._last is None:
+            self.view.point_at(at)
+            return
         if not self._dragged and (at - self._start).manhattanLength() < CLICK:
             return
         self._dragged = True
@@ -107,9 +114,10 @@ class Navigate:
 
     def click(self, at: QPointF) -> None:
         """The left button was pressed without a drag."""
+        self.view.choose(at)
 
     def double_click(self, event: QMouseEvent) -> None:
-        """Turn about what is there."""
+        """Turn about what is there; a callout goes back to where it was put first."""
         self.view.centre_on(event.position())
 
     def wheel(self, event: QWheelEvent) -> None:

@@ -8,12 +8,12 @@ with labels and colour bar written over it by Qt, and tools turn mouse and keys 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, Signal
+from PySide6.QtCore import QBuffer, QEvent, QIODevice, QPointF, QRectF, Qt, Signal
 from PySide6.QtGui import QAction, QCloseEvent, QColor, QImage, QPainter
 from PySide6.QtWidgets import QFileDialog, QWidget
 
@@ -24,6 +24,7 @@ from core.model.arrays import Array
 from workbench.language import text_of, tr
 from workbench.views.layouts import in_column
 from workbench.views.scene.buttons import SceneButtons, ViewName
+from workbench.views.scene.callouts import lay_out, paint_callouts, plate_sizes
 from workbench.views.scene.camera import SceneCamera
 from workbench.views.scene.canvas import Canvas, as_image, as_pixels
 from workbench.views.scene.chooser import Outline, nearest_point, points_inside
@@ -31,6 +32,7 @@ from workbench.views.scene.cloud import SceneCloud, as_points
 from workbench.views.scene.colours import PLAIN, Colouring, Rgb, as_colours
 from workbench.views.scene.contents import (
     GRID,
+    Callout,
     HiddenSide,
     Item,
     Labels,
@@ -46,8 +48,10 @@ from workbench.views.scene.drawing import Drawing
 from workbench.views.scene.navigator import Navigator
 from workbench.views.scene.overlay import (
     HANDLE_PX,
+    NAME_ROOM,
     OverlayColours,
     bar_width,
+    corner_taken,
     paint_handle,
     paint_marker,
     paint_overlay,
@@ -121,6 +125,12 @@ class SceneView(QWidget):
     handle_pulled = Signal(float)
     """The handle was dragged by so many mm along its direction."""
 
+    callout_moved = Signal(str, object)
+    """Name of a callout whose plate was dragged, and how far (right, down) in pixels from its place; None: put back."""
+
+    callout_chosen = Signal(str)
+    """Name of a callout that was clicked."""
+
     drawing_cancelled = Signal()
     """Picking or drawing was ended by Esc or `stop_drawing`, without a result."""
 
@@ -133,6 +143,7 @@ class SceneView(QWidget):
         self._grid_mm = 0.0
         self._marked: Array | None = None
         self._handle: tuple[Array, Array] | None = None
+        self._held = ""
         self._canvas = Canvas(Navigate(self), self._paint_overlay, lambda: self._margin()[0], self)
         self._canvas.setAccessibleName(tr("3D view"))
         self.setFocusProxy(self._canvas)
@@ -299,6 +310,29 @@ class SceneView(QWidget):
         self._handle = None if handle is None else (np.asarray(handle[0], float), np.asarray(handle[1], float))
         self._canvas.update()
 
+    def set_callouts(self, callouts: Sequence[Callout]) -> None:
+        """Show plates of words with lines to their places, instead of those before; see `callout_moved`."""
+        self._scene.callouts = tuple(callouts)
+        self._canvas.update()
+
+    def callouts_seen(self) -> list[tuple[Callout, QPointF, QRectF]]:
+        """Those in sight, each with its place and its plate on the screen, in logical pixels of the canvas."""
+        callouts, hidden, size = self._scene.callouts, self._scene.hidden, self._canvas.logical_size
+        if not callouts:
+            return []
+        places = np.array([one.place for one in callouts], float)
+        screen, depth = self._camera.project(places, size)
+        room = QRectF(4, NAME_ROOM, size[0] - self._margin()[0] - 8, size[1] - NAME_ROOM - 4)
+        sizes = plate_sizes(callouts, self.font())
+        with np.errstate(invalid="ignore"):
+            seen = (depth > 0) & ((screen >= 0) & (screen <= size)).all(axis=1)
+        seen &= (sizes <= [room.width(), room.height()]).all(axis=1)
+        seen &= True if hidden is None else ~hidden.hides(places)
+        shown = np.flatnonzero(seen)
+        moved = [callouts[k].moved for k in shown]
+        plates = lay_out(screen[shown], sizes[shown], moved, room, corner_taken(size) if self._axes else [])
+        return [(callouts[k], QPointF(*screen[k]), plate) for k, plate in zip(shown, plates, strict=True)]
+
     def hide_side(self, side: tuple[ArrayLike, ArrayLike] | None) -> None:
         """Hide what lies beyond a place (3,) in mm, along a unit vector (3,); None: nothing. Lines and planes stay."""
         if side is None and self._scene.hidden is None:
@@ -442,21 +476,32 @@ class SceneView(QWidget):
         """Nearer by a factor, towards a point of the screen or its middle."""
         self._navigator.zoom(factor, at)
 
-    def holds(self, at: QPointF) -> bool:
-        """Whether the handle is under the cursor."""
-        if self._handle is None:
-            return False
-        x, y = self.screen_positions(self._handle[0][None])[0]
-        return float(np.hypot(at.x() - x, at.y() - y)) <= HANDLE_REACH * HANDLE_PX
+    def grasp(self, at: QPointF) -> bool:
+        """Take hold of the handle or the callout under the cursor; whether there is one."""
+        callout = None if self._handle_under(at) else self._callout_under(at)
+        self._held = "" if callout is None else callout.name
+        return callout is not None or self._handle_under(at)
 
     def pull(self, dx: float, dy: float) -> None:
-        """Tell how far along its direction the handle goes, so that it follows a drag in pixels."""
-        if self._handle is None:
-            return
-        along = self._handle_on_screen()
-        squared = float(along @ along)
-        if squared > LEAST_PX_PER_MM**2:
-            self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
+        """Move the callout that is held, or tell how far along its direction the handle goes to follow the mouse."""
+        if self._held:
+            self._pull_callout(dx, dy)
+        elif self._handle is not None:
+            along = self._handle_on_screen()
+            squared = float(along @ along)
+            if squared > LEAST_PX_PER_MM**2:
+                self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
+
+    def point_at(self, at: QPointF) -> None:
+        """Show by the cursor what can be dragged."""
+        held = self._handle_under(at) or self._callout_under(at) is not None
+        self._canvas.setCursor(Qt.CursorShape.OpenHandCursor if held else self._canvas.tool.cursor)
+
+    def choose(self, at: QPointF) -> None:
+        """Tell that the callout under the cursor was clicked."""
+        callout = self._callout_under(at)
+        if callout is not None:
+            self.callout_chosen.emit(callout.name)
 
     def pick(self, at: QPointF) -> None:
         """Choose and mark the point of the cloud under the cursor."""
@@ -473,7 +518,11 @@ class SceneView(QWidget):
         self.taken.emit()
 
     def centre_on(self, at: QPointF) -> None:
-        """Turn about the point under the cursor from now on."""
+        """Turn about the point under the cursor from now on; a callout there goes back to where it was put first."""
+        callout = self._callout_under(at)
+        if callout is not None:
+            self._move_callout(callout.name, None)
+            return
         number = self._under(at)
         if number is not None:
             self._navigator.centre_on(self._points_seen()[number])
@@ -505,6 +554,25 @@ class SceneView(QWidget):
         super().closeEvent(event)
 
     # ---- inside
+
+    def _handle_under(self, at: QPointF) -> bool:
+        if self._handle is None:
+            return False
+        x, y = self.screen_positions(self._handle[0][None])[0]
+        return float(np.hypot(at.x() - x, at.y() - y)) <= HANDLE_REACH * HANDLE_PX
+
+    def _callout_under(self, at: QPointF) -> Callout | None:
+        return next((one for one, _, plate in reversed(self.callouts_seen()) if plate.contains(at)), None)
+
+    def _pull_callout(self, dx: float, dy: float) -> None:
+        for one, place, plate in self.callouts_seen():
+            if one.name == self._held:
+                to = plate.center() - place + QPointF(dx, dy)
+                self._move_callout(one.name, (to.x(), to.y()))
+
+    def _move_callout(self, name: str, to: tuple[float, float] | None) -> None:
+        self.set_callouts([replace(one, moved=to) if one.name == name else one for one in self._scene.callouts])
+        self.callout_moved.emit(name, to)
 
     def _handle_on_screen(self) -> Array:
         """How the handle goes over the screen: (2,) in pixels for one mm."""
@@ -610,6 +678,7 @@ class SceneView(QWidget):
         painter.setFont(self.font())
         axes = self._frame if self._axes else None
         paint_overlay(painter, self._scene, self._camera, size, colours, axes=axes, grid_mm=self._grid_mm)
+        paint_callouts(painter, self.callouts_seen(), colours)
         if self._handle is not None:
             at, along = self.screen_positions(self._handle[0][None])[0], self._handle_on_screen()
             length = float(np.hypot(*along))

@@ -88,6 +88,8 @@ class InspectFeatures(QObject):
         self._shown_for: tuple[InspectionPlan, object] | None = None
         self.problem = ""
         self.chosen = ""
+        self.callouts_moved: dict[str, tuple[float, float]] = {}
+        """How far (right, down) in pixels the callout of a feature was dragged from its place."""
 
     # ---- the plan
 
@@ -116,6 +118,8 @@ class InspectFeatures(QObject):
         plan = self._with(spec, instead_of)
         label = tr("change {name}", name=spec.name) if instead_of else tr("add {name}", name=spec.name)
         self.chosen = spec.name
+        if instead_of in self.callouts_moved:
+            self.callouts_moved[spec.name] = self.callouts_moved.pop(instead_of)
         self.put_plan(plan, label)
 
     def add(self, specs: Sequence[FeatureSpec]) -> None:
@@ -286,8 +290,15 @@ class InspectFeatures(QObject):
             self.chosen = name
             self.changed.emit()
 
+    def move_callout(self, name: str, moved: tuple[float, float] | None) -> None:
+        """Keep where a feature's callout was dragged, as long as the project is open; None: where there is room."""
+        self.callouts_moved.pop(name, None)
+        if moved is not None:
+            self.callouts_moved[name] = moved
+
     def forget(self) -> None:
         """Another project is open: nothing of it has been measured here."""
+        self.callouts_moved = {}
         self._shown, self._shown_for = None, None
         self.problem = self.chosen = ""
 
