@@ -2,7 +2,7 @@
 
 QIF states a standard uncertainty with a value (`combinedUncertainty`, in the unit of the value); k, U and the decision
 rule are attributes of the measurement. What is "not proven" is neither PASS nor FAIL: its status is INDETERMINATE.
-Features (the points a characteristic rests on) are not handed over.
+Features (the points a characteristic rests on) and datums are not handed over.
 
 References
 ----------
@@ -39,8 +39,23 @@ LINEAR = {
 }
 """QIF's names of kinds of lengths; any other is a Length (its DistanceBetween asks for features, too)."""
 
-FORM = {"flatness": "Flatness", "sphericity": "Sphericity", "cylindricity": "Cylindricity"}
+ZONE = {
+    "flatness": "Flatness",
+    "sphericity": "Sphericity",
+    "cylindricity": "Cylindricity",
+    "parallelism": "Parallelism",
+    "perpendicularity": "Perpendicularity",
+    "position": "Position",
+    "profile": "SurfaceProfile",
+}
 """Those with a tolerance zone; without a tolerance QIF has no such characteristic, and it is a Length."""
+
+ZONE_SHAPES = {
+    "Parallelism": {"⌀": "DiametricalZone", "": "PlanarZone"},
+    "Perpendicularity": {"⌀": "DiametricalZone", "": "PlanarZone"},
+    "Position": {"S⌀": "SphericalZone", "⌀": "DiametricalZone", "": "NonDiametricalZone"},
+}
+"""Of those of which QIF wants it said, by the sign in the feature control frame."""
 
 STATUS = {"conforming": "PASS", "not conforming": "FAIL", "not proven": "INDETERMINATE", "none": "NOT_ANALYZED"}
 
@@ -75,7 +90,7 @@ def qif_document(content: ReportContent) -> Element:
     if rows:
         asked = put(root, "Characteristics")
         put(asked, "FormalStandardId", f"{standard}")
-        _characteristics(asked, rows, device)
+        _characteristics(asked, content, rows, device)
     _results(put(root, "Results"), content, rows, component, results)
     return root
 
@@ -95,12 +110,14 @@ def _units(root: Element) -> None:
 def _kind(one: Characteristic) -> str:
     if one.quantity == "angle":
         return "Angle"
-    if one.kind in FORM and one.limits is not None and math.isfinite(one.limits.upper):
-        return FORM[one.kind]
+    if one.kind in ZONE and one.limits is not None and math.isfinite(one.limits.upper):
+        return ZONE[one.kind]
     return LINEAR.get(one.kind, "Length")
 
 
-def _characteristics(parent: Element, rows: list[tuple[Characteristic, list[int]]], device: int) -> None:
+def _characteristics(
+    parent: Element, content: ReportContent, rows: list[tuple[Characteristic, list[int]]], device: int
+) -> None:
     """Three elements for each: its requirement (definition), its nominal value, and its place on this part (item)."""
     definitions = put(parent, "CharacteristicDefinitions", n=f"{len(rows)}")
     nominals = put(parent, "CharacteristicNominals", n=f"{len(rows)}")
@@ -111,19 +128,30 @@ def _characteristics(parent: Element, rows: list[tuple[Characteristic, list[int]
         if row["rule"]:
             put(definition, "Description", one_line(row["rule"]))
         put(definition, "Name", one_line(one.name))
-        if kind in FORM.values():
+        if kind in ZONE.values():
             put(definition, "ToleranceValue", decimal(row["upper_limit"]))
+            frame = content.control_frames.get(one.name)
+            _zone_shape(definition, kind, "" if frame is None else frame.round)
         else:
             _tolerance(definition, row)
         nominal = put(nominals, f"{kind}CharacteristicNominal", id=f"{nominal_id}")
         put(nominal, "CharacteristicDefinitionId", f"{definition_id}")
         put(nominal, "Name", one_line(one.name))
-        if kind not in FORM.values() and row["nominal"] is not None:
+        if kind not in ZONE.values() and row["nominal"] is not None:
             put(nominal, "TargetValue", decimal(row["nominal"]))
+        if kind == "Position":
+            put(put(nominal, "CoordinateMethod"), "Method", "RECTANGULAR")
         item = put(items, f"{kind}CharacteristicItem", id=f"{item_id}")
         put(item, "Name", one_line(one.name))
         put(put(item, "MeasurementDeviceIds", n="1"), "Id", f"{device}")
         put(item, "CharacteristicNominalId", f"{nominal_id}")
+
+
+def _zone_shape(definition: Element, kind: str, sign: str) -> None:
+    """How a zone of orientation or position is bounded, whatever the size of the feature (ISO 8015)."""
+    if kind in ZONE_SHAPES:
+        put(definition, "MaterialCondition", "REGARDLESS")
+        put(put(definition, "ZoneShape"), ZONE_SHAPES[kind].get(sign, ZONE_SHAPES[kind][""]))
 
 
 def _tolerance(definition: Element, row: Mapping[str, Any]) -> None:

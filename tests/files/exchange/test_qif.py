@@ -1,9 +1,12 @@
+import math
 from dataclasses import replace
 
 import pytest
 from lxml import etree
 
 from core.files.exchange.qif import NAMESPACE, write_qif
+from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.plan.control_frame import ControlFrame
 
 Q = {"q": NAMESPACE}
 
@@ -66,6 +69,36 @@ def test_a_measurement_leads_to_what_was_asked(document):
     assert flat.findtext("q:ToleranceValue", namespaces=Q) == "0.05"
     free = document.find(".//q:LengthCharacteristicDefinition", Q)
     assert free.findtext("q:NonTolerance", namespaces=Q) == "MEASURED"
+
+
+@pytest.mark.parametrize(
+    ("kind", "called", "sign", "shape"),
+    [
+        ("flatness", "Flatness", "", None),
+        ("parallelism", "Parallelism", "", "PlanarZone"),
+        ("parallelism", "Parallelism", "⌀", "DiametricalZone"),
+        ("perpendicularity", "Perpendicularity", "⌀", "DiametricalZone"),
+        ("position", "Position", "S⌀", "SphericalZone"),
+        ("position", "Position", "⌀", "DiametricalZone"),
+        ("profile", "SurfaceProfile", "", None),
+    ],
+)
+def test_a_tolerance_zone_has_qifs_own_kind_in_the_order_of_its_schema(tmp_path, content, kind, called, sign, shape):
+    asked = Characteristic(f"top {kind}", kind, 0.03, 0.004, limits=Limits(0.0, -math.inf, 0.1))
+    free = Characteristic(f"side {kind}", kind, 0.03, 0.004)
+    frames = {asked.name: ControlFrame(kind, 0.1, sign)}
+    write_qif(tmp_path / "r.qif", replace(content, gauge=None, inspected=(asked, free), control_frames=frames))
+    document = etree.parse(tmp_path / "r.qif").getroot()
+    definitions, nominals = (document.find(f".//q:Characteristic{what}", Q) for what in ("Definitions", "Nominals"))
+    names = [etree.QName(one).localname for one in definitions]
+    assert names == [f"{called}CharacteristicDefinition", "LengthCharacteristicDefinition"]
+    said = [etree.QName(one).localname for one in definitions[0]]
+    assert said == ["Name", "ToleranceValue", *(["MaterialCondition", "ZoneShape"] if shape else [])]
+    assert definitions[0].findtext("q:ToleranceValue", namespaces=Q) == "0.1"
+    if shape:
+        assert etree.QName(definitions[0].find("q:ZoneShape", Q)[0]).localname == shape
+    assert nominals[0].find("q:TargetValue", Q) is None
+    assert (nominals[0].find("q:CoordinateMethod", Q) is not None) == (kind == "position")
 
 
 def test_one_that_fails_fails_the_part(document):
