@@ -80,6 +80,15 @@ class AppSettings(QObject):
         self.keep_text("callouts", "shown" if wanted else "hidden")
 
     @property
+    def nominal_shown(self) -> bool:
+        """Whether the nominal surface lies over the part where a deviation from it is chosen."""
+        return self.text("nominal", "hidden") == "shown"
+
+    @nominal_shown.setter
+    def nominal_shown(self, wanted: bool) -> None:
+        self.keep_text("nominal", "shown" if wanted else "hidden")
+
+    @property
     def projects_folder(self) -> Path:
         """Where new projects are put."""
         return Path(str(self._store.value("projects_folder", Path.home() / "Trisect projects")))

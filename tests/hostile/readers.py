@@ -217,7 +217,7 @@ SHOWN = ShownInspection(
             ShownProfile(np.zeros(4), np.zeros(4), np.zeros(4), np.zeros(4), np.zeros(4, np.int64)),
             ShownDeviations(
                 (ShownClass("good", 0, -1.0, 1.0, 1.0, np.zeros((2, 3), np.float32)),),
-                np.arange(3.0), np.arange(2), 0.1,
+                np.arange(3.0), np.arange(2), 0.1, np.zeros((1, 3, 3), np.float32),
             ),
         ),
     ),

@@ -57,6 +57,9 @@ DATUM = "#A8703F"
 PROPOSED = "#FF6D00"
 """Points of a face that was clicked and is not taken yet; no scale of values has this colour."""
 
+NOMINAL_SURFACE = "#2FA7A0"
+"""The nominal surface over the part, seen through; no class of deviations is of this colour."""
+
 OTHER_SURFACE = "#9A7BD0"
 """Points of the surface that the scan is compared with, beside it."""
 

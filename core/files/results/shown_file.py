@@ -78,6 +78,7 @@ _MEMBERS = {
     **{f"{name}_*": whole(None) for name in (_PROFILE[-1], "classes", "drawn")},
     "shares_*": real(None),
     "deviating_*": real(None, 3),
+    "nominal_*": real(None, 3, 3),
     "edges_*": real(None),
     "counts_*": Member("if", (None,)),
 }
@@ -170,6 +171,7 @@ def _deviation_arrays(number: int, found: ShownDeviations) -> dict[str, NDArray[
         f"deviating_{number}": np.concatenate([one.places for one in found.classes]),
         f"edges_{number}": found.edges,
         f"counts_{number}": found.counts,
+        f"nominal_{number}": found.nominal,
     }
 
 
@@ -182,4 +184,5 @@ def _deviations(number: int, tolerance_mm: float, arrays: Arrays) -> ShownDeviat
         ShownClass(mark(one), one, *bounds(one, tolerance_mm), share, mine)
         for one, share, mine in zip(numbers, shares, places, strict=True)
     )
-    return ShownDeviations(classes, arrays[f"edges_{number}"], arrays[f"counts_{number}"], tolerance_mm)
+    edges, counts, nominal = (arrays[f"{name}_{number}"] for name in ("edges", "counts", "nominal"))
+    return ShownDeviations(classes, edges, counts, tolerance_mm, nominal)

@@ -190,10 +190,11 @@ def _map(
     points: tuple[NDArray[np.int64], Cloud, Array, Array],
 ) -> DeviationMap:
     """Over the mesh's measured vertices, or over the points where there is no mesh."""
+    nominal = query.surface.moved(pose.rotation, pose.translation).corners
     if scene.mesh is None or not len(scene.mesh.vertices):
         used, cloud, deviation, normals = points
         sigma = cloud.sigma * _slant(cloud.points, normals)
-        return DeviationMap(cloud.points, used, deviation, sigma, asked.tolerance_mm, pose)
+        return DeviationMap(cloud.points, used, deviation, sigma, asked.tolerance_mm, pose, nominal)
     mesh = scene.mesh
     mine = np.flatnonzero(mesh.measured & _above_table(mesh.vertices, query.surface, scene))
     near = query.nearest(pose.inverse().apply(mesh.vertices[mine]), asked.reach_mm)
@@ -201,7 +202,7 @@ def _map(
     kept = mine[close]
     normals = near.normal[close] @ pose.rotation.T
     sigma = mesh.sigma[kept] * _slant(mesh.vertices[kept], normals)
-    return DeviationMap(mesh.vertices[kept], kept, near.distance[close], sigma, asked.tolerance_mm, pose)
+    return DeviationMap(mesh.vertices[kept], kept, near.distance[close], sigma, asked.tolerance_mm, pose, nominal)
 
 
 def _slant(points: Array, normals: Array) -> Array:

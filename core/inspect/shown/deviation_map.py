@@ -35,6 +35,8 @@ class DeviationMap:
         What the classes are shares of.
     pose_camera_nominal
         The nominal surface's coordinates into the camera frame: how it was aligned.
+    nominal
+        (T, 3, 3) in mm in the camera frame: corners of the nominal surface's triangles, as it was aligned.
     """
 
     points: Array
@@ -43,6 +45,7 @@ class DeviationMap:
     sigma: Array
     tolerance_mm: float
     pose_camera_nominal: Pose
+    nominal: Array
 
     @property
     def classes(self) -> NDArray[np.int8]:

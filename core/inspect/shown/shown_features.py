@@ -78,12 +78,15 @@ class ShownDeviations:
         (B + 1,) in mm and (B,): the histogram.
     tolerance_mm
         What the classes are quarters of.
+    nominal
+        (T, 3, 3) in mm in the camera frame: triangles of the nominal surface, or as many of them as can be drawn.
     """
 
     classes: tuple[ShownClass, ...]
     edges: Array
     counts: NDArray[np.int64]
     tolerance_mm: float
+    nominal: NDArray[np.float32]
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -29,6 +29,9 @@ from core.scan.surface.cloud import Cloud
 MOST_DRAWN = 20_000
 """So many of the points that a feature used are drawn."""
 
+MOST_TRIANGLES = 20_000
+"""So many of a nominal surface's triangles: it is seen through anyway, and more would be slow to turn."""
+
 Memory: TypeAlias = MutableMapping[str, Inspection]
 LAST = "last inspection"
 """Its name in the memory: only of the last one, which knows by its keys what is still true."""
@@ -120,4 +123,5 @@ def _deviations(found: DeviationMap) -> ShownDeviations:
         low, high = bounds(number, found.tolerance_mm)
         places = found.points[mine[:: max(1, most)]].astype(np.float32)
         classes.append(ShownClass(mark(number), number, low, high, len(mine) / max(1, len(numbers)), places))
-    return ShownDeviations(tuple(classes), *found.histogram(), found.tolerance_mm)
+    nominal = found.nominal[:: max(1, -(-len(found.nominal) // MOST_TRIANGLES))].astype(np.float32)
+    return ShownDeviations(tuple(classes), *found.histogram(), found.tolerance_mm, nominal)

@@ -33,6 +33,7 @@ from workbench.views.colours import (
     FACE_LOWER,
     FACE_UPPER,
     FEATURE,
+    NOMINAL_SURFACE,
     OTHER_SURFACE,
     PROPOSED,
     to_rgba,
@@ -66,6 +67,12 @@ DATUMS = "datums"
 OTHER = "other surface"
 """Name of its points."""
 
+NOMINAL = "nominal surface"
+"""Name of its triangles."""
+
+NOMINAL_OPACITY = 0.3
+"""The part below it stays to be seen."""
+
 CUT_OPACITY = 0.15
 """The surface behind it stays to be seen."""
 
@@ -98,6 +105,7 @@ class SurfaceTab(QWidget):
         self._cut: tuple[object, ...] = ()
         self._proposal: ClickedFaces | None = None
         self._other: ShownComparison | None = None
+        self._nominal: ShownFeature | None = None
         self._picking = ""
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -143,6 +151,10 @@ class SurfaceTab(QWidget):
         presenter.cut.changed.connect(Refresh(self._show_moved_cut, self).soon)
         self.frame = FrameTool(self.scene, presenter.bench.settings)
         self.callouts = CalloutsTool(self.scene, presenter)
+        self.nominal = self.scene.add_tool(tr("The nominal surface over the part"), "N", "mdi6.layers-outline")
+        self._nominal_tip = self.nominal.toolTip()
+        self.nominal.setChecked(presenter.bench.settings.nominal_shown)
+        self.nominal.triggered.connect(self._choose_nominal)
         presenter.measured.connect(self._show_faces)
         presenter.comparison.made.connect(self._show_compared)
 
@@ -175,6 +187,7 @@ class SurfaceTab(QWidget):
         self._show_feature()
         self.callouts.refresh()
         self._show_other()
+        self._show_nominal()
         self._show_proposal()
         self._show_picks()
         self._show_tool()
@@ -227,7 +240,7 @@ class SurfaceTab(QWidget):
         self.scene.set_handle(None)
         self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], [], []
-        self._proposal = self._other = None
+        self._proposal = self._other = self._nominal = None
         self.frame.show(None)
         self.scene.clear(p.scan.problem or tr("Reading the scan …"))
         self.line.setText("")
@@ -380,6 +393,24 @@ class SurfaceTab(QWidget):
             self.scene.remove_highlight(OTHER)
         else:
             self.scene.set_highlight(OTHER, shown.other_points, OTHER_SURFACE)
+
+    def _choose_nominal(self, wanted: bool) -> None:
+        self._presenter.bench.settings.nominal_shown = wanted
+        self._show_nominal()
+
+    def _show_nominal(self) -> None:
+        """The surface that the chosen feature was compared with, as it was aligned, over the part."""
+        found = self._deviating()
+        why_not = tr("Choose a deviation from a nominal surface in the list of features.") if found is None else ""
+        enable(self.nominal, why_not, self._nominal_tip)
+        shown = found if self._presenter.bench.settings.nominal_shown else None
+        if shown is self._nominal:
+            return
+        self._nominal = shown
+        if shown is None or shown.deviations is None:
+            self.scene.remove(NOMINAL)
+        else:
+            self.scene.set_surface(NOMINAL, shown.deviations.nominal, NOMINAL_SURFACE, NOMINAL_OPACITY)
 
     def _show_proposal(self) -> None:
         """The faces that were clicked and are not taken yet."""

@@ -276,6 +276,12 @@ class SceneView(QWidget):
         kept = [k for k, patch in enumerate(patches) if np.isfinite(patch).all()]
         self._put(name, Patches(tuple(patches[k] for k in kept), tuple(shades[k] for k in kept), opacity))
 
+    def set_surface(self, name: str, triangles: ArrayLike, colour: ColourLike, opacity: float = 0.25) -> None:
+        """Show a transparent surface of triangles (T, 3, 3) in mm, over whatever there is."""
+        corners = np.asarray(triangles, dtype=np.float64).reshape(-1, 3, 3)
+        patches = np.concatenate([corners, corners[:, 2:]], axis=1)  # the last corner twice
+        self._put(name, Patches(tuple(patches), each([_rgb(colour)], len(patches)), opacity))
+
     def set_polylines(
         self, name: str, lines: Sequence[ArrayLike], colour: ColourLike | Sequence[ColourLike], width: float = 2.0
     ) -> None:

@@ -30,13 +30,14 @@ from workbench.views import ask
 from workbench.views.colours import DEVIATIONS, to_rgba
 from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesIcon
 from workbench.views.scene.colours import table
-from workbench.views.scene.contents import Labels, Marks
+from workbench.views.scene.contents import Labels, Marks, Patches
 from workbench.work import jobs
 
 __all__ = ["toy"]
 
 ELEMENTS = ("plane", "sphere", "cylinder", "point")
 """Kinds that others are made of."""
+NOMINAL = np.array([[[0, 0, 500], [9, 0, 500], [0, 9, 500]]], np.float32)
 CORNERS = [(10.0, 10.0), (30.0, 10.0), (20.0, 30.0)]
 
 
@@ -642,7 +643,7 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(presenter, page
         ShownClass(mark(number), number, *bounds(number, 0.1), 0.125 * (number > -4), np.ones((int(number > -4), 3)))
         for number in range(-4, 5)
     )
-    found = ShownDeviations(classes, np.linspace(-1, 1, 5), np.arange(4), 0.1)
+    found = ShownDeviations(classes, np.linspace(-1, 1, 5), np.arange(4), 0.1, NOMINAL)
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
     presenter.feature.add("deviation", tmp_path / "part.stl")
     measured(features, qtbot)
@@ -668,7 +669,7 @@ def test_deviations_are_drawn_by_class_and_their_shares_are_told(presenter, page
 
 def test_a_chosen_deviation_is_what_the_colour_bar_says(presenter, page, features, measuring, qtbot, tmp_path):
     found = ShownDeviations(
-        (ShownClass("++", 2, 0.05, 0.075, 1.0, np.ones((1, 3))),), np.linspace(-1, 1, 5), np.arange(4), 0.1
+        (ShownClass("++", 2, 0.05, 0.075, 1.0, np.ones((1, 3))),), np.linspace(-1, 1, 5), np.arange(4), 0.1, NOMINAL
     )
     measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
     page.surface.choices.choose_colour("sigma")
@@ -699,6 +700,34 @@ def test_a_chosen_deviation_is_what_the_colour_bar_says(presenter, page, feature
     place = surface.choices.colours.findData("nominal")
     assert not surface.choices.colours.model().item(place).isEnabled()
     assert "in the list" in surface.choices.colours.itemData(place, Qt.ItemDataRole.ToolTipRole)
+
+
+def test_the_nominal_surface_lies_over_the_part_by_a_button(presenter, page, features, measuring, qtbot, tmp_path):
+    found = ShownDeviations(
+        (ShownClass("++", 2, 0.05, 0.075, 1.0, np.ones((1, 3))),), np.linspace(-1, 1, 5), np.arange(4), 0.1, NOMINAL
+    )
+    measuring.answers[jobs.MEASURE_FEATURES] = lambda folder, project: with_drawn(project, deviations=found)
+    surface = page.surface
+
+    def over():
+        page.refreshing.at_once()
+        return [item for (kind, _), item in surface.scene._scene.items.items() if kind is Patches]
+
+    over()
+    assert not surface.nominal.isEnabled() and "deviation from a nominal" in surface.nominal.toolTip()
+    presenter.feature.add("deviation", tmp_path / "part.stl")
+    measured(features, qtbot)
+    assert over() == [] and surface.nominal.isEnabled()
+    surface.nominal.trigger()
+    (drawn,) = over()
+    np.testing.assert_array_equal(drawn.corners[0][:3], NOMINAL[0])
+    assert drawn.opacity < 0.5 and presenter.bench.settings.nominal_shown
+    features.choose("")
+    assert over() == []
+    features.choose(features.plan.names[0])
+    assert len(over()) == 1
+    surface.nominal.trigger()
+    assert over() == []
 
 
 @pytest.mark.parametrize("kind", [kind.name for kind in KINDS])
