@@ -61,6 +61,8 @@ class TargetPanel(QWidget):
         if values["kind"] != self._kind:
             self._build(values["kind"])
         self.form.set_values(values)
+        asked = tr("How was it made? Until you say, a print of an office printer is assumed, in every uncertainty.")
+        self.form.ask("made", "" if values["made"] else asked)
 
     def _build(self, kind: str) -> None:
         """The fields of another kind of target."""
@@ -98,7 +100,7 @@ class TargetPanel(QWidget):
             ("laser printer", tr("Printed here")),
             ("print shop", tr("By a print shop")),
             ("chrome on glass", tr("Chrome on glass")),
-            ("stated", tr("As stated below")),
+            ("stated", tr("By its certificate: values below")),
         ]
         form.add_choice(
             "made", tr("How it was made"), made,

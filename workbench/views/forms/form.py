@@ -35,6 +35,7 @@ class SettingsForm(QWidget):
         self._helps: dict[str, tuple[QLabel, str]] = {}
         self._tips: dict[str, str] = {}
         self._complaints: dict[str, str] = {}
+        self._questions: dict[str, str] = {}
         self._grid = QGridLayout(self)
         self._grid.setContentsMargins(0, 0, 0, 0)
         self._grid.setHorizontalSpacing(10)
@@ -101,6 +102,12 @@ class SettingsForm(QWidget):
             self._complaints[key] = sentence
             self._show_help(key)
 
+    def ask(self, key: str, sentence: str) -> None:
+        """Ask in place of the help for a value that is not set yet; "" brings the help back."""
+        if self._questions.get(key, "") != sentence:
+            self._questions[key] = sentence
+            self._show_help(key)
+
     def editor(self, key: str) -> QWidget:
         """The editor of a setting.
 
@@ -116,8 +123,8 @@ class SettingsForm(QWidget):
         return tuple(self._editors.values())
 
     def help_of(self, key: str) -> str:
-        """What stands under a setting: its help, or the complaint."""
-        return self._complaints.get(key) or self._helps[key][1]
+        """What stands under a setting: its help, or the complaint, or the question."""
+        return self._complaints.get(key) or self._questions.get(key) or self._helps[key][1]
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -151,7 +158,7 @@ class SettingsForm(QWidget):
         self._show_help(key)
 
     def _show_help(self, key: str) -> None:
-        label, help = self._helps[key]
-        complaint, s = self._complaints.get(key, ""), shades()
-        label.setText(complaint or help)
-        dress(label, f"font-size: 11px; color: {s.bad if complaint else s.muted};")
+        label, s = self._helps[key][0], shades()
+        label.setText(self.help_of(key))
+        colour = s.bad if self._complaints.get(key) else s.warn if self._questions.get(key) else s.muted
+        dress(label, f"font-size: 11px; color: {colour};")

@@ -165,6 +165,18 @@ def test_the_target_form_edits_the_project(page, qtbot):
     qtbot.waitUntil(lambda: page.presenter.project.rig.camera_target.columns == 11)
 
 
+def test_how_the_target_was_made_is_asked_until_it_is_said_and_keeps_nobody_from_going_on(page, qtbot):
+    form = page.target.form
+    assert "How was it made?" in form.help_of("made")
+    assert form.editor("made").findText("By its certificate: values below") >= 0
+    blocked = page.presenter.blocker
+    form.edited.emit("made", "print shop")
+    qtbot.waitUntil(lambda: "How was it made?" not in page.target.form.help_of("made"))
+    assert page.presenter.blocker == blocked
+    page.target.form.edited.emit("kind", "charuco")
+    qtbot.waitUntil(lambda: "How was it made?" in page.target.form.help_of("made"))
+
+
 def test_another_kind_of_target_shows_its_own_fields(page, qtbot):
     page.target.form.edited.emit("kind", "charuco")
     qtbot.waitUntil(lambda: "marker_mm" in page.target.form.values())
