@@ -131,7 +131,7 @@ class StepPage(QWidget):
         self.side.addStretch(1)
         inside = holding(self.side)
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
-        self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE)
+        self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE, steady=True)
         scroll.setAccessibleName(tr("Settings and quality"))
         return holding(in_column(self.pinned, (scroll, 1), spacing=0))
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from typing import Final, TypeVar
 
 from PySide6.QtCore import QEvent, QObject, QSize, Qt
-from PySide6.QtGui import QAction, QResizeEvent
+from PySide6.QtGui import QAction, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
     QBoxLayout,
@@ -15,6 +15,7 @@ from PySide6.QtWidgets import (
     QLabel,
     QLayout,
     QScrollArea,
+    QScrollBar,
     QStyle,
     QTabBar,
     QTabWidget,
@@ -64,11 +65,29 @@ def holding(layout: QLayout) -> QWidget:
     return widget
 
 
-class UpAndDown(QScrollArea):
-    """Scrolls a widget up and down only: it is never narrower than what is in it, else that would be cut off."""
+class _QuietBar(QScrollBar):
+    """Where there is nothing to scroll, nothing is seen of it but its room."""
 
-    def __init__(self, widget: QWidget, least_width: int = 0) -> None:
+    def __init__(self) -> None:
+        super().__init__(Qt.Orientation.Vertical)
+        self.setAttribute(Qt.WidgetAttribute.WA_OpaquePaintEvent, False)
+
+    def paintEvent(self, event: QPaintEvent) -> None:
+        if self.maximum() > self.minimum():
+            super().paintEvent(event)
+
+
+class UpAndDown(QScrollArea):
+    """Scrolls a widget up and down only: it is never narrower than what is in it, else that would be cut off.
+
+    With `steady` its bar has room even where there is nothing to scroll: as there is, no sentence is wrapped anew.
+    """
+
+    def __init__(self, widget: QWidget, least_width: int = 0, *, steady: bool = False) -> None:
         super().__init__()
+        if steady:
+            self.setVerticalScrollBar(_QuietBar())
+            self.setVerticalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOn)
         self._least_width = least_width
         self.setWidget(widget)
         self.setWidgetResizable(True)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from PySide6.QtCore import QRect, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from workbench.theme import icon
@@ -29,7 +30,7 @@ class StageCard(QFrame):
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self.title, self.words, self.sign = Sentence(), TwoLines(), IconLabel(16)
+        self.title, self.words, self.sign = _Title(), TwoLines(), IconLabel(16)
         self.sign.hide()
         self.sign.setSizePolicy(
             QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored
@@ -45,7 +46,7 @@ class StageCard(QFrame):
             button.clicked.connect(lambda _=False, do=entry.do: do())
             row.addWidget(button, 1)
             self.buttons[entry.key] = button
-        in_column(in_row(self.sign, (self.title, 1), spacing=6), self.words, row, on=self, margins=(10, 8, 10, 10))
+        in_column(self.title, in_row(self.sign, (self.words, 1), spacing=6), row, on=self, margins=(10, 8, 10, 10))
 
     def show_stage(
         self,
@@ -71,7 +72,7 @@ class StageCard(QFrame):
             A result comes or goes at this stage: the words take two lines whatever they say, as a value below them may
             be in hand.
         verdict
-            Whose sign stands before the title; "" for none.
+            Whose sign stands before the words; "" for none.
         """
         self.title.setText(title)
         self.words.say(words, steady=steady)
@@ -87,3 +88,15 @@ class StageCard(QFrame):
                 button.setProperty("primary", main)
                 button.style().unpolish(button)
                 button.style().polish(button)
+
+
+class _Title(Sentence):
+    """As high as what is to come needs it, where that is known."""
+
+    usual = ""
+    """A text of the usual length of the longest one: there is always room for it."""
+
+    def heightForWidth(self, width: int) -> int:
+        room = QRect(0, 0, width, 10_000)
+        usual = self.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, self.usual).height()
+        return max(super().heightForWidth(width), usual if self.usual else 0)

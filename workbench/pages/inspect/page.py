@@ -30,6 +30,9 @@ from workbench.views.stage_card import CardButton, StageCard
 REPEATS, PLOT = 2, 3
 """Places of these tabs."""
 
+USUAL = "50.012\N{NO-BREAK SPACE}mm ± 0.024\N{NO-BREAK SPACE}mm (k\N{NO-BREAK SPACE}=\N{NO-BREAK SPACE}2)"
+"""A thickness as the card's title tells it."""
+
 STEADY = (Stage.MEASURING, Stage.UNMEASURED, Stage.MEASURED, Stage.OUTDATED)
 """From one to another of these a thickness comes or is no longer true, while its nominal value may be in hand."""
 
@@ -61,6 +64,7 @@ class InspectPage(StepPage):
             ]
         )
         self.card.title.setObjectName("title")
+        self.card.title.usual = USUAL
         self.pin_to_side(self.card)
         self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
         self.pin_to_side(self.features)

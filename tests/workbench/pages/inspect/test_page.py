@@ -299,6 +299,20 @@ def test_the_first_thickness_and_a_new_one_push_nothing(unmeasured, measuring, q
     assert not moved(before, places(unmeasured, qtbot)), "what is said to be out of date has no room of its own"
 
 
+@pytest.mark.parametrize("side", [300, 330, 350])
+def test_a_thickness_that_takes_two_lines_on_a_narrow_card_pushes_nothing(unmeasured, quick, measuring, qtbot, side):
+    unmeasured.card.title.setStyleSheet("font-size: 18px; font-weight: 600")
+    unmeasured.splitter.setSizes([unmeasured.width() - side, side])
+    before = places(unmeasured, qtbot)
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: cases.view(cases.gauge())
+    press(qtbot, unmeasured.card.buttons["measure"])
+    measuring.finish(cases.gauge())
+    qtbot.waitUntil(lambda: unmeasured.presenter.stage is Stage.MEASURED)
+    assert not moved(before, places(unmeasured, qtbot))
+    unmeasured.faces.form.edited.emit("nominal_mm", 50.5)
+    assert not moved(before, places(unmeasured, qtbot)), "its sign is taken off"
+
+
 def test_value_and_verdict_are_seen_without_scrolling(shown, qtbot):
     places(shown, qtbot)
     card = shown.card
