@@ -95,8 +95,8 @@ def test_a_section_by_numbers_shows_its_place_and_direction_in_part_coordinates(
     for key, value in values.items():
         if not key.startswith("limits "):
             assert fields.with_value(spec, key, value) == spec, key
-    moved = fields.with_value(fields.with_value(spec, "place", "10; 20,5; 0"), "direction", "1; 1; 0")
-    assert moved.section.point_mm == (10.0, 20.5, 0.0) and moved.section.normal == (1.0, 1.0, 0.0)
+    moved = fields.with_value(fields.with_value(spec, "place", "10; 20,5; \N{MINUS SIGN}3"), "direction", "1; 1; 0")
+    assert moved.section.point_mm == (10.0, 20.5, -3.0) and moved.section.normal == (1.0, 1.0, 0.0)
     assert moved.section.line_px is None
 
 

@@ -26,6 +26,7 @@ from core.inspect.plan.feature_spec import (
 )
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import FILTERS, MOST_FACES, kind_named, kind_of, results_of
+from core.messages import MINUS
 from workbench.language import tr
 
 AUTO, DRAWN, CLICKED, SPHERE, BOX = "auto", "drawn", "clicked", "sphere", "box"
@@ -244,7 +245,7 @@ def _region(regions: tuple[Region, ...], place: int) -> Region:
 
 def _numbers(text: str) -> tuple[float, ...]:
     try:
-        numbers = tuple(float(part.replace(",", ".")) for part in text.split(";") if part.strip())
+        numbers = tuple(float(part.replace(",", ".").replace(MINUS, "-")) for part in text.split(";") if part.strip())
     except ValueError as error:
         raise ValueError(tr("Write numbers in mm with semicolons between them, as 10; 20; 30.")) from error
     if not all(math.isfinite(number) for number in numbers):
