@@ -24,6 +24,7 @@ IMPORTED = {
     "scipy": "scipy.sparse.linalg",
     "reportlab": "reportlab.pdfgen.canvas",
     "babel": "babel.messages",
+    "fonttools": "fontTools.ttLib",
     "typer": "typer",
     "rich": "rich.progress",
 }

@@ -1,7 +1,8 @@
 """Fonts for the scripts that the report's own do not have: this computer's, else those a reader's program brings.
 
-A font of this computer is embedded like the report's own. Adobe's four East Asian ones are only named in the file, so
-that whether their characters are seen hangs on the program that shows it. What no font has is printed by code point.
+A font of this computer is embedded like the report's own, its outlines converted where they are PostScript's. Adobe's
+four East Asian ones are only named in the file, so that whether their characters are seen hangs on the program that
+shows it. What no font has is printed by code point.
 """
 
 from __future__ import annotations
@@ -23,21 +24,28 @@ USUAL = ("Sans CJK SC", "CJK SC", "CJK", "Sans SC", "Sans JP", "Sans KR", "YaHei
          "WenQuanYi", "Droid Sans Fallback", "IPA", "Takao", "Nanum", "Unicode MS", "Noto Sans", "Segoe UI",
          "Tahoma")  # fmt: skip
 """In the names of fonts of many scripts: looked into before all others."""
+REGULAR = (400, "normal", "regular", "book")
+"""Weights that a text is set in, as matplotlib names them."""
 NO_LETTERS = "Last Resort"
 """A font that has a box for every character."""
 _HANGUL, _JAPANESE, _CHINESE = "HYSMyeongJo-Medium", "HeiseiKakuGo-W5", "STSong-Light"
 
 
 def system_fonts() -> Sequence[tuple[str, str]]:
-    """(family, path) of the TrueType fonts of this computer, those of many scripts first."""
+    """(family, path) of the fonts of this computer, those of many scripts first, and of a family the regular one."""
     own = str(Path(matplotlib.get_data_path()))
     found = {
-        (next((at for at, part in enumerate(USUAL) if part in font.name), len(USUAL)), font.fname, font.name)
+        (
+            next((at for at, part in enumerate(USUAL) if part in font.name), len(USUAL)),
+            font.weight not in REGULAR,
+            font.fname,
+            font.name,
+        )
         for font in font_manager.fontManager.ttflist
         if not font.fname.startswith(own) and NO_LETTERS not in font.name and font.style == "normal"
     }
     paths: dict[str, str] = {}  # of a collection the best of its families
-    for _, path, name in sorted(found):
+    for _, _, path, name in sorted(found):
         paths.setdefault(path, name)
     return tuple((name, path) for path, name in paths.items())
 
@@ -59,7 +67,7 @@ def truetype(name: str, path: str) -> TTFont:
 def drawn_family(character: str) -> str:
     """Family for matplotlib of a font of this computer that has `character`, or "".
 
-    A plot is a picture: it takes fonts whose outlines reportlab cannot embed, as those of most Chinese fonts.
+    A plot is a picture: it takes fonts that may not be embedded as well.
     """
     return next((family for family, _ in _having(character)), "")
 
@@ -80,9 +88,15 @@ def embedded_font(character: str) -> str:
 
 @cache
 def _embeddable(name: str, path: str) -> TTFont | None:
-    """A font for reportlab; None where outlines or licence forbid it, which is known once all of it has been read."""
+    """A font for reportlab; None where its licence forbids it, which is known once all of it has been read."""
     try:
         return truetype(name, path)
+    except (TTFError, OSError, ValueError):
+        pass
+    from core.report.layout.converted_font import converted_font  # its library is loaded where there is such a font
+
+    try:
+        return converted_font(name, path)
     except (TTFError, OSError, ValueError):
         return None
 

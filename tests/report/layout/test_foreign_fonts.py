@@ -2,15 +2,22 @@
 
 import io
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
+import pikepdf
 import pytest
 from fontTools.fontBuilder import FontBuilder
+from fontTools.pens.recordingPen import RecordingPen
 from fontTools.pens.t2CharStringPen import T2CharStringPen
 from fontTools.pens.ttGlyphPen import TTGlyphPen
+from fontTools.ttLib import TTFont
+from pikepdf import pdfa
 from pypdf import PdfReader
 
 from core.report.layout import foreign_fonts
+from core.report.layout.converted_font import converted_font
+from core.report.layout.foreign_fonts import is_east_asian
 from core.report.layout.style import NO_FONT, NOT_EMBEDDED, ReportLook, font_note, markup, prepare_reportlab
 from core.report.pdf import build_report
 from core.report.plots.charts import points_figure
@@ -20,10 +27,11 @@ from core.report.wording import Words
 from core.translations import language
 from tests.report.report_samples import block_content
 
+ROOT = Path(__file__).parents[3]
 CHINESE, THAI = "量块", "ก"
 
 
-def font_file(path, characters, *, truetype=True):
+def font_file(path, characters, *, truetype=True, licence=0):
     """A font with a square for each of these characters; its outlines are TrueType's, or PostScript's."""
     pen = TTGlyphPen(None) if truetype else T2CharStringPen(1000, None)
     for move, at in ((pen.moveTo, (0, 0)), (pen.lineTo, (0, 900)), (pen.lineTo, (900, 900)), (pen.lineTo, (900, 0))):
@@ -41,8 +49,9 @@ def font_file(path, characters, *, truetype=True):
         builder.setupCFF("Squares", {}, squares, {})
     builder.setupHorizontalMetrics({name: (1000, 0) for name in (".notdef", *names.values())})
     builder.setupHorizontalHeader(ascent=900, descent=-100)
-    builder.setupNameTable({"familyName": "Squares", "styleName": "Regular", "psName": "Squares"})
-    builder.setupOS2(sTypoAscender=900, sTypoDescender=-100, fsType=0)
+    ps_name = f"Squares-{path.stem}"  # reportlab takes two fonts of one name for the same
+    builder.setupNameTable({"familyName": "Squares", "styleName": "Regular", "psName": ps_name})
+    builder.setupOS2(sTypoAscender=900, sTypoDescender=-100, fsType=licence)
     builder.setupPost()
     builder.save(str(path))
 
@@ -88,11 +97,45 @@ def test_a_font_of_this_computer_is_embedded_for_its_characters_alone(computer, 
     assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
 
 
-def test_plots_take_a_font_that_no_report_can_embed(computer, tmp_path):
-    font_file(tmp_path / "postscript.otf", CHINESE, truetype=False)
-    computer(("Squares", str(tmp_path / "postscript.otf")))
+@pytest.mark.parametrize("licence", [0x2, 0x100, 0x200])
+def test_plots_take_a_font_that_no_report_may_embed(computer, tmp_path, licence):
+    font_file(tmp_path / "restricted.otf", CHINESE, truetype=False, licence=licence)
+    computer(("Squares", str(tmp_path / "restricted.otf")))
     assert font_note([CHINESE]) == NOT_EMBEDDED
     assert (drawable(CHINESE), families(CHINESE)) == (CHINESE, ["DejaVu Sans", "Squares"])
+
+
+def test_a_chinese_report_is_an_archive_where_the_only_chinese_font_has_postscript_outlines(computer, bare, tmp_path):
+    written = (ROOT / "resources" / "translations" / "zh_CN.po").read_text(encoding="utf-8")
+    chinese = sorted({one for one in f"{written} 年月日" if is_east_asian(one)})  # dates are written by babel
+    font_file(tmp_path / "all.otf", "".join(chinese), truetype=False)
+    computer(("Squares", str(tmp_path / "all.otf")))
+    content = replace(bare, part=CHINESE, language="zh_CN", attachments={"a.json": b"{}"})
+    data = build_report(content)
+    assert "测量报告" in fonts_and_text(data)[1] and str(NOT_EMBEDDED) not in fonts_and_text(data)[1]
+    assert list(pdfa.validate_written(io.BytesIO(data), "3b").findings) == []
+    with pikepdf.open(io.BytesIO(data)) as pdf:
+        assert pdf.open_metadata()["pdfaid:part"] == "3"
+        fonts = {str(one.BaseFont): one for page in pdf.pages for one in page.resources.Font.values()}
+        (squares, *_) = [one for name, one in fonts.items() if "Squares" in name]
+        program = TTFont(io.BytesIO(squares.FontDescriptor.FontFile2.read_bytes()))
+        assert len(program.getGlyphOrder()) <= 257 and set(map(float, squares.Widths)) == {1000.0}
+    forget()
+    assert build_report(content) == data, "whenever it is made"
+
+
+def test_a_converted_font_keeps_shapes_and_widths(tmp_path):
+    font_file(tmp_path / "postscript.otf", CHINESE, truetype=False)
+    font = converted_font("Converted", str(tmp_path / "postscript.otf"))
+    assert font.face.charWidths == {ord(one): 1000.0 for one in CHINESE}
+    made = TTFont(io.BytesIO(font.face.makeSubset([0, ord(CHINESE[1])])))
+    pen = RecordingPen()
+    made.getGlyphSet()[made.getGlyphOrder()[1]].draw(pen)
+    corners = {point for _, points in pen.value for point in points}
+    assert corners == {(0, 0), (0, 900), (900, 900), (900, 0)}
+    font_file(tmp_path / "truetype.ttf", CHINESE)
+    with pytest.raises(ValueError, match="no PostScript outlines"):
+        converted_font("Converted", str(tmp_path / "truetype.ttf"))
 
 
 def test_east_asian_text_without_a_font_is_left_to_the_readers_program_and_a_note_says_so(computer, bare):
