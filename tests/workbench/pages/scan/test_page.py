@@ -19,7 +19,7 @@ from core.model import LightPlane
 from core.pipeline.live.commands import Resume
 from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
 from core.scan.preview.preflight import Check
-from tests.translations import ROOT
+from tests.code import ROOT
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases as cases
 from tests.workbench.pages.places import moved, places
