@@ -100,7 +100,7 @@ class TargetPanel(QWidget):
             ("laser printer", tr("Printed here")),
             ("print shop", tr("By a print shop")),
             ("chrome on glass", tr("Chrome on glass")),
-            ("stated", tr("By its certificate: values below")),
+            ("stated", tr("By its certificate")),
         ]
         form.add_choice(
             "made", tr("How it was made"), made,

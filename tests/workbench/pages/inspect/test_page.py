@@ -206,7 +206,7 @@ def test_everything_has_a_name_for_those_who_do_not_see_it(shown):
 
 
 def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
-    assert shown.card.title.text() == "50.012\u00a0mm ± 0.024\u00a0mm (k\u00a0=\u00a02)"
+    assert shown.card.title.text() == "50.012\u00a0mm ±\u00a00.024\u00a0mm (k\u00a0=\u00a02)"
     assert shown.result.verdict.text == "Conforming"
     rows = shown.result.rows
     assert rows.text_of("Thickness") == "50.012 mm" and rows.text_of("U (k = 2)") == "± 0.024 mm"
@@ -536,7 +536,7 @@ def test_a_repeat_is_added_shown_and_refused_twice(shown, qtbot):
     assert shown.tabs.tabText(2) == "Repeats (1)"
     table = shown.series.table
     shown.refreshing.at_once()
-    assert table.rows()[0][:4] == ("scan-1", "50.012", "± 0.024", "cal-1")
+    assert table.rows()[0][:4] == ("scan-1", "50.012", "±\u00a00.024", "cal-1")
     assert shown.series.rows.text_of("Mean") == "50.0120 mm"
     assert shown.series.rows.text_of("STD") == "needs two repeats"
     again = shown.card.buttons["repeat"]
