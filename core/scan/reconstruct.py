@@ -113,6 +113,8 @@ def reconstruct(
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
+    if not np.any(cloud.sweep >= 0) and too_bright is not None:
+        raise InputError(too_bright, where="scan", todo=ADVICE)
     if not np.any(cloud.sweep >= 0):
         raise InputError(
             _no_points(options.sigma_cut_mm, sweeps.notes),
@@ -227,7 +229,7 @@ def _solve(
         + of_hand
         + sweeps.notes
         + (() if explained else sweeps.judged)
-        + (datum.note,),
+        + (() if datum is None else (datum.note,)),
         datum,
         read_out,
         bool(watched.first_after or part.movements),

@@ -94,13 +94,16 @@ class Datum:
         )
 
 
-def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum:
-    """Compute the datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S).
+def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum | None:
+    """Compute the datum of sweeps `pis` (S, 3) with their `covariance` (3S, 3S); None where none was located.
 
-    `crossings` are numbered by sweep.
+    `crossings` are numbered by sweep. A sweep with too few of them to be located stays where it began, at infinity.
     """
     rays = camera.rays(crossings.uv)
     inverse_depths = np.einsum("mi,mi->m", rays, pis[crossings.a])
+    located = inverse_depths > 0
+    if not located.any():
+        return None
     unit = float(np.abs(pis).mean())  # brings s and c to one size
     gauge = np.concatenate([pis[:, :, None] / unit, np.tile(np.eye(3), (len(pis), 1, 1))], axis=2)
     blocks = np.array([covariance[i : i + 3, i : i + 3] for i in range(0, len(covariance), 3)])
@@ -114,13 +117,13 @@ def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Ca
     normal += _RIDGE * np.trace(normal) * np.eye(4)
     fit = np.linalg.solve(normal, pulled.transpose(2, 0, 1).reshape(4, -1))
     of_gauge = fit @ covariance @ fit.T
-    depth, ray = 1 / float(np.median(inverse_depths)), np.median(rays, axis=0)
+    depth, ray = 1 / float(np.median(inverse_depths[located])), np.median(rays[located], axis=0)
     heights = np.concatenate([[1 / unit], 2 * depth * ray])
     place = np.concatenate([[depth / unit], depth**2 * ray])
     return Datum(
         float(np.sqrt(max(heights @ of_gauge @ heights, 0.0))),
         float(np.sqrt(max(place @ of_gauge @ place, 0.0))),
-        _relief(rays, inverse_depths),
+        _relief(rays[located], inverse_depths[located]),
     )
 
 

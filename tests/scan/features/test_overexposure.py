@@ -26,12 +26,15 @@ def features_of(scenario):
 
 
 @cache
-def features_far_too_bright():
-    return features_of(FAR_TOO_BRIGHT)
+def features_far_too_bright(scale=FAR_TOO_BRIGHT.scale):
+    return features_of(replace(FAR_TOO_BRIGHT, scale=scale))
 
 
-def test_a_scan_that_is_far_too_bright_is_refused_for_that():
-    rig, bright = scenario_rig(FAR_TOO_BRIGHT), features_far_too_bright()
+@pytest.mark.parametrize(
+    "scale", [FAR_TOO_BRIGHT.scale, 0.12], ids=["no crossing", "three crossings that locate nothing"]
+)
+def test_a_scan_that_is_far_too_bright_is_refused_for_that(scale):
+    rig, bright = scenario_rig(replace(FAR_TOO_BRIGHT, scale=scale)), features_far_too_bright(scale)
     with pytest.raises(InputError) as refused:
         reconstruct(bright, rig.camera, rig.fan)
     assert refused.value.code == "scan.overexposed"
