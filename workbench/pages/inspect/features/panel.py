@@ -81,7 +81,7 @@ class FeaturesPanel(QWidget):
         self.kinds: dict[str, QAction] = {}
         self._make_list()
         self._make_menu()
-        column = in_column(self.list, on=self, spacing=4)
+        column = in_column(self.list, on=self, spacing=3)
         for button in (self.remove, self.up, self.down):
             button.setAutoRaise(True)
         column.addLayout(in_row((self.measure, 1), self.remove, self.up, self.down))
