@@ -34,11 +34,11 @@ def test_a_picture_of_a_widget_has_the_pixels_of_its_scale(qtbot: Any) -> None:
 
 
 @pytest.mark.accuracy  # a proof: it may take minutes
-@pytest.mark.parametrize("held", HELD)
-def test_words_have_room_and_the_mouse_hits_what_it_is_over_at_twice_the_scale(held: str) -> None:
+@pytest.mark.parametrize(("scale", "held"), [*(("2", one) for one in HELD), ("1.25", HELD[0]), ("1.5", HELD[0])])
+def test_words_have_room_and_the_mouse_hits_what_it_is_over_at_other_scales(scale: str, held: str) -> None:
     scaled = f"{__file__}::{test_a_picture_of_a_widget_has_the_pixels_of_its_scale.__name__}"
     every = ("-m", "accuracy or not accuracy")  # in all languages
     command = [sys.executable, "-m", "pytest", "-q", "-x", *every, "-p", "no:cacheprovider", scaled, held]
-    environment = os.environ | {SCALE: "2", "QT_QPA_PLATFORM": "offscreen"}
+    environment = os.environ | {SCALE: scale, "QT_QPA_PLATFORM": "offscreen"}
     done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-4000:]
