@@ -48,6 +48,15 @@ class WhichTarget(str, Enum):  # noqa: UP042
     plane = "plane"
 
 
+class RecordedPart(str, Enum):  # noqa: UP042
+    """A part of a recording set, as its folder is called."""
+
+    camera = "camera"
+    planes = "planes"
+    scan = "scan"
+    check = "check"
+
+
 class OrderBy(str, Enum):  # noqa: UP042
     """What puts imported pictures in a row."""
 

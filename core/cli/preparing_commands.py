@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
-from core.cli.options import Json, OrderBy, Panel, SigmaCut, WhichTarget
+from core.cli.options import Json, OrderBy, Panel, RecordedPart, SigmaCut, WhichTarget
 
 commands = typer.Typer()
 
@@ -138,3 +138,50 @@ def import_(
     }
     plan = importing.understood(parts, reference, order.value)
     importing.show(plan, folder, rig, dry_run=dry_run, as_json=json)
+
+
+@commands.command(rich_help_panel=Panel.PREPARE)
+def record(
+    folder: Annotated[Path, typer.Argument(metavar="SET", help="The recording set, with rig.toml.")],
+    step: Annotated[RecordedPart, typer.Argument(metavar="PART", help="camera, planes, scan or check.")],
+    source: Annotated[str, typer.Option(metavar="KIND", help="As trisect sources lists them.")],
+    device: Annotated[str, typer.Option(metavar="ID", help="Which of that kind; else the first one.")] = "",
+    calibrations: Annotated[
+        Path | None, typer.Option(metavar="DIR", help="Folder of camera.json and planes.json, to judge by.")
+    ] = None,
+    pictures: Annotated[
+        int | None, typer.Option(metavar="N", min=1, help="End after N pictures; else when no view or pose is missing.")
+    ] = None,
+    seconds: Annotated[
+        float | None, typer.Option(metavar="S", min=0.1, help="End after S seconds of a scan; else by Ctrl-C.")
+    ] = None,
+    exposure: Annotated[float | None, typer.Option(metavar="MS", help="Exposure time in ms.")] = None,
+    gain: Annotated[float | None, typer.Option(metavar="DB", help="Gain in dB.")] = None,
+    rate: Annotated[float | None, typer.Option(metavar="HZ", help="Frames a second.")] = None,
+    pgm: Annotated[
+        bool, typer.Option("--pgm", help="Frames of a scan as PGM: twice the room, a tenth of the time.")
+    ] = False,
+    yes: Annotated[
+        bool, typer.Option("--yes", help="What you are asked to do counts as done: no key is waited for.")
+    ] = False,
+    json: Json = False,
+) -> None:
+    """Record a part of a recording set from a camera; Enter answers or takes a picture, Ctrl-C ends it in order."""
+    from core.acquire.settings import SourceSettings
+    from core.acquire.source import SourceChoice
+    from core.cli import recording
+
+    settings = SourceSettings(exposure_ms=exposure, gain_db=gain, rate_hz=rate)
+    wanted = recording.request(
+        folder, step.value, SourceChoice(source, device), calibrations, settings, ".pgm" if pgm else ".png"
+    )
+    ended = recording.Recording(step.value, pictures, seconds, by_itself=yes).run(wanted)
+    recording.show(ended, as_json=json)
+
+
+@commands.command(rich_help_panel=Panel.PREPARE)
+def sources(json: Json = False) -> None:
+    """List the cameras and other sources that can be recorded from."""
+    from core.cli import recording
+
+    recording.show_sources(as_json=json)

@@ -274,6 +274,7 @@ def run_live(
     by then is kept.
     """
     try:
+        source = make_source(request.source, request.rig)
         folder = make_folder(request.folder)
         if any(folder.iterdir()):
             raise InputError(
@@ -281,7 +282,6 @@ def run_live(
                 where=folder,
                 todo=Message("advice.name_new_folder", "name a new one"),
             )
-        source = make_source(request.source, request.rig)
     except InputError as refused:
         return LiveEnded(request.folder, 0, 0, refused.message)
     context = LiveContext(request, source, emit)
