@@ -97,7 +97,7 @@ def options(
     )
 
 
-def camera_options(skew: bool | None, k3: bool) -> CameraOptions:
+def camera_options(skew: bool | None, k3: bool | None) -> CameraOptions:
     """The camera model as the command line states it."""
     return CameraOptions(skew=skew, k3=k3)
 

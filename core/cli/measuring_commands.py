@@ -48,7 +48,7 @@ def run(
     contrast: Contrast = 0.0,
     channel: ChannelOption = None,
     skew: Skew = None,
-    k3: K3 = False,
+    k3: K3 = None,
     adjust_camera: AdjustCamera = False,
     accept_few_poses: AcceptFewPoses = False,
     part: Part = "",
@@ -106,7 +106,7 @@ def batch(
 
 @commands.command(rich_help_panel=Panel.CALIBRATE)
 def camera(
-    folder: Set, out: Out, skew: Skew = None, k3: K3 = False, exclude: Exclude = None, json: Json = False
+    folder: Set, out: Out, skew: Skew = None, k3: K3 = None, exclude: Exclude = None, json: Json = False
 ) -> None:
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import measuring

@@ -98,7 +98,15 @@ Skew = Annotated[
     ),
 ]
 Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the report; else the name of SET.")]
-K3 = Annotated[bool, typer.Option("--k3", help="Free the third radial coefficient, for wide lenses.")]
+K3 = Annotated[
+    bool | None,
+    typer.Option(
+        "--k3/--no-k3",
+        help="Solve for the third radial coefficient, or fix it to 0. Without either it is solved for only where that "
+        "predicts views left out better.",
+        show_default=False,
+    ),
+]
 
 
 AdjustCamera = Annotated[

@@ -56,7 +56,7 @@ def plan_camera(design: Design, seed: int, progress: Progress = silent) -> Camer
     camera, target = design.camera(), design.camera_target
     noise = generator(seed, "corner noise")
     views = [_view(f"view{i:02d}", camera, pose, target, noise) for i, pose in enumerate(view_poses(design, seed))]
-    return calibrate_camera(views, camera.image_size, CameraOptions(skew=True), progress)
+    return calibrate_camera(views, camera.image_size, CameraOptions(skew=True, k3=False), progress)
 
 
 def view_poses(design: Design, seed: int) -> list[Pose]:

@@ -196,7 +196,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),
     "camera's target larger": ("target.sizes_disagree",),
     "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
-    "lens with k3": LENS,
+    "lens with k3": (*LENS, "camera.third_radial"),
     "lasers that are no Gaussian across": ("gauge.unsure_and_no_faces", "inspection.light_is_skewed"),
     "coma": (*LENS, "inspection.light_is_skewed"),
     "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),

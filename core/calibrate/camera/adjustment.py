@@ -38,7 +38,7 @@ class CameraOptions:
     fixed
         Those of k1, k2, p1, p2 that are fixed to 0.
     k3
-        Whether k3 is free; else it is 0.
+        Whether k3 is free; else it is 0. None: it is free only where that predicts views left out better.
     outliers
         "keep": every corner of every view counts. "gross": views out of line with the others are left out, and
         corners that stand out against the plain standard deviation of their view, which they raise themselves. "all":
@@ -52,7 +52,7 @@ class CameraOptions:
 
     skew: bool | None = None
     fixed: frozenset[str] = frozenset()
-    k3: bool = False
+    k3: bool | None = None
     outliers: Outliers = "gross"
 
     def __post_init__(self) -> None:

@@ -35,6 +35,7 @@ from core.calibrate.camera.coverage import coverage, tilt_range
 from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.camera.screening import screen
 from core.calibrate.camera.skew import SKEW, skew_helps
+from core.calibrate.camera.third_radial import third_radial
 from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
 from core.errors import InputError
@@ -72,7 +73,7 @@ def calibrate_camera(
 ) -> CameraCalibration:
     """Calibrate the camera that took `views` of a flat target, in pictures of `image_size` (width, height).
 
-    Whether the skew is worth solving for is decided here if the options leave it open.
+    Whether skew and k3 are worth solving for is decided here if the options leave it open.
 
     Corners are weighted by their `sigma` relative to each other; its true size is estimated from the residuals. Views
     whose name is in `excluded` have no part in the solution; they are returned with their residuals under it. The
@@ -143,6 +144,13 @@ def _calibrated(
         if not skew_helps(bundle.of_views(used), counted, options.free):
             return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress, skew_left_out=True)
     fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
+    if options.k3 is None and not options.fixed & {"k1", "k2"}:
+        used, counted = counted_observations(observed, verdicts)
+        found = third_radial(bundle.of_views(used), fit.shaped(counted), options.free)
+        if found is not None:  # the skew is judged again with it
+            again = replace(options, skew=None if skew_left_out else options.skew, k3=True)
+            calibration = _calibrated(views, image_size, again, tolerance, progress)
+            return replace(calibration, notes=(found.note, *calibration.notes))
     reasons |= {index: v.reason for index, v in zip(usable, verdicts, strict=True) if v.reason is not None}
     _require_views(views, [index for index in usable if index not in reasons], reasons)
 

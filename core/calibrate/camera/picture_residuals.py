@@ -85,8 +85,8 @@ def _on_rings(calibration: CameraCalibration, outwards: Judgement) -> Message:
     return Message(
         "camera.pattern_outwards",
         "In all views corners lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm) "
-        "at {share:.0%} of the way from the picture's centre to its farthest corner: the lens is not fully described, "
-        "see whether k3 helps. The standard deviations contain it.",
+        "at {share:.0%} of the way from the picture's centre to its farthest corner: the lens is not fully described. "
+        "The standard deviations contain it.",
         direction=_INWARDS if px < 0 else _OUTWARDS,
         px=abs(px),
         **_at_the_target(calibration, abs(px)),

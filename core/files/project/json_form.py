@@ -48,7 +48,7 @@ class CameraOptionsTable(Table):
     fixed: frozenset[Literal["k1", "k2", "p1", "p2"]] = Field(
         default=frozenset(), description="a list of those of k1, k2, p1, p2 that are fixed to 0"
     )
-    k3: bool = False
+    k3: bool | None = None
     outliers: Literal["keep", "gross", "all"] = Field(default="gross", description='"keep", "gross" or "all"')
 
 
@@ -95,7 +95,7 @@ class ProjectTables(Table):
     results: dict[str, Done] = Field(default_factory=dict)
 
 
-SCHEMA = 8
+SCHEMA = 9
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -108,6 +108,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     7: lambda tables: (
         tables
     ),  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
+    8: lambda tables: tables,  # k3 of the camera, which was free or zero: it stays as the camera was calibrated
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 

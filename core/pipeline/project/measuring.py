@@ -22,7 +22,7 @@ from core.inspect.results import GaugeResult
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
-from core.pipeline.steps.camera_step import solved_for_skew
+from core.pipeline.steps.camera_step import solved_for
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import FILES, Workspace, made_beside, put_results
@@ -112,7 +112,7 @@ def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | Non
 def record_calibrations(work: Workspace, folder: Path, project: Project) -> None:
     """Write into run.json how the calibrations came about, as if they had been made with the scan."""
     calibration, record = work.calibration(), work.record()
-    solved = {"camera": {"skew": solved_for_skew(calibration.camera)}}
+    solved = {"camera": solved_for(calibration.camera)}
     steps = (
         ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
         ("planes", read_stored(folder, "fan", project.accepted.fan), calibration.fan.notes),

@@ -132,7 +132,7 @@ def _lines(
     if "camera" in there and IMPORTED not in settings.get("camera", {IMPORTED: ""}):
         told = settings["camera"]
         skew = () if told.get("skew") is None else ("--skew",) if told["skew"] else ("--no-skew",)
-        k3 = ("--k3",) if told.get("k3") else ()
+        k3 = () if told.get("k3") is None else ("--k3",) if told["k3"] else ("--no-k3",)
         yield _Line(("camera", *at, *skew, *k3, *_excluded(told)), _unsaid(words, _camera_unsaid(told)))
     if "planes" in there and "planes" in settings:
         told = settings["planes"]

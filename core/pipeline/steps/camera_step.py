@@ -9,7 +9,9 @@ from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.camera.skew import SKEW
+from core.calibrate.camera.third_radial import K3
 from core.calibrate.camera.views import SeenView, SeenViews
 from core.calibrate.results import CameraCalibration, ViewQuality
 from core.errors import InputError
@@ -45,15 +47,16 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
         calibration = solve_camera(see_views(work.found, progress), options, progress, work.found.rig.camera_board)
-        log.settings["skew"] = solved_for_skew(calibration)
+        log.settings.update(solved_for(calibration))
         log.notes.extend(calibration.notes)
         write_camera(log.path("camera"), calibration)
     return read_camera(work.path("camera"))
 
 
-def solved_for_skew(calibration: CameraCalibration) -> bool:
-    """Whether the skew was solved for, asked for or by itself."""
-    return bool(calibration.covariance[SKEW, SKEW] > 0)
+def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
+    """Whether skew and k3 were solved for, asked for or by themselves."""
+    found = (parameters_of(calibration.camera) != 0) & (np.diag(calibration.covariance) > 0)
+    return {"skew": bool(found[SKEW]), "k3": bool(found[K3])}  # a skew left at 0 is uncertain all the same
 
 
 def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:

@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.results import CameraCalibration
 from tests.calibrate.camera_views import TRUTH, changed, synthetic_views
@@ -10,7 +11,9 @@ from tests.calibrate.camera_views import TRUTH, changed, synthetic_views
 CODES = ("camera.pattern_outwards", "camera.pattern_in_region", "camera.bad_fit")
 
 
-def calibrated(seed: int, fifth_px: float = 0.0, noise_px: float = 0.03, count: int = 14) -> CameraCalibration:
+def calibrated(
+    seed: int, fifth_px: float = 0.0, noise_px: float = 0.03, count: int = 14, options: CameraOptions | None = None
+) -> CameraCalibration:
     """From views by a lens with a ring that k1 and k2 do not have, of `fifth_px` at its height."""
     centre, far = TRUTH.matrix[:2, 2], np.linalg.norm(TRUTH.image_size) / 2
     views = []
@@ -19,7 +22,7 @@ def calibrated(seed: int, fifth_px: float = 0.0, noise_px: float = 0.03, count: 
         share = np.linalg.norm(off, axis=1) / far
         ring = fifth_px * np.exp(-0.5 * ((share - 0.45) / 0.1) ** 2)
         views.append(changed(view, view.uv + ring[:, None] * off / np.linalg.norm(off, axis=1)[:, None]))
-    return calibrate_camera(views, TRUTH.image_size)
+    return calibrate_camera(views, TRUTH.image_size, options)
 
 
 def told(calibration: CameraCalibration) -> list:
@@ -27,13 +30,22 @@ def told(calibration: CameraCalibration) -> list:
 
 
 def test_a_ring_that_the_lens_model_lacks_is_told_with_direction_and_place():
-    (note,) = told(calibrated(1, 0.25))
+    (note,) = told(calibrated(1, 0.25, options=CameraOptions(k3=False)))
     assert note.code == "camera.pattern_outwards"
     assert 0.02 < note.values["px"] < 0.3
     assert "outwards" in str(note) or "inwards" in str(note)
     at = note.values["depth_mm"]
     assert note.values["mm"] == pytest.approx(note.values["px"] * at / TRUTH.matrix[0, 0], rel=0.02)
     assert f"px ({note.values['mm']:.3f} mm at a distance of {at:.0f} mm)" in str(note)
+
+
+@pytest.mark.accuracy
+def test_k3_takes_most_of_such_a_ring_and_what_is_left_is_told():
+    without, found = calibrated(1, 0.25, options=CameraOptions(k3=False)), calibrated(1, 0.25)
+    assert found.notes[0].code == "camera.third_radial"
+    (before,), (left,) = told(without), told(found)
+    assert left.values["px"] < 0.6 * before.values["px"]
+    assert found.rms_px < without.rms_px
 
 
 def test_a_part_of_the_picture_that_is_off_is_told_in_mm_too():

@@ -6,7 +6,7 @@ from core.files.recording.options import Options
 
 
 def test_usual_options_say_in_run_json_what_they_always_said():
-    assert Options().camera_settings == {"skew": None, "k3": False, "fixed": [], "outliers": "gross"}
+    assert Options().camera_settings == {"skew": None, "k3": None, "fixed": [], "outliers": "gross"}
     assert Options().scan_settings == {"method": "network", "sigma_cut_mm": 0.05, "stripe": "automatic"}
     assert Options().excluded_settings("planes") == {}
 

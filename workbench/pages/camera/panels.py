@@ -78,13 +78,15 @@ class CameraModelForm(SettingsForm):
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        skews = [
+        where = [
             (None, tr("free where it helps")),
             (True, tr("free")),
             (False, tr("zero")),
         ]
-        self.add_choice("skew", tr("Skew γ"), skews, tr("Whether the pixel's axes may be out of square."))
-        self.add_check("k3", tr("k₃ is free"), tr("For strongly distorting lenses; else it makes the rest less sure."))
+        self.add_choice("skew", tr("Skew γ"), where, tr("Whether the pixel's axes may be out of square."))
+        self.add_choice(
+            "k3", tr("Radial k₃"), where, tr("For strongly distorting lenses; else it makes the rest less sure.")
+        )
         choices = [
             ("gross", tr("leave out gross ones")),
             ("all", tr("leave out all that stand out")),
