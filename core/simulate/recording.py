@@ -115,14 +115,14 @@ def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Pr
     def shoot(name: str) -> Iterator[tuple[str, Picture]]:
         if name == "reference":
             yield "scan/reference.png", stage.reference()
-            if scenario.sensor.second_exposure:
-                yield "scan/reference@2.png", stage.second_reference()
+            for number, picture in stage.further_references().items():
+                yield f"scan/reference@{number}.png", picture
         elif scenario.hand_laser:
             index = shots[name][0]
             seen = stage if later is None or index < scenario.moved_frame else later
             yield f"scan/{name}.png", seen.frame(index, *moving[index])
-            if scenario.sensor.second_exposure:
-                yield f"scan/{name}@2.png", seen.second_frame(index, *moving[index])
+            for number, picture in seen.further_frames(index, *moving[index]).items():
+                yield f"scan/{name}@{number}.png", picture
         else:
             yield f"scan/{name}.png", profile_picture(scenario, shots[name][0], rig)
 

@@ -107,21 +107,22 @@ class ScanStage:
         rng = generator(self.seed, "frame", index)
         return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor)
 
-    def second_reference(self) -> Picture:
-        """As `reference`, exposed shorter; ValueError if the sensor takes no second pictures."""
-        return self._taken(self._still, -1, generator(self.seed, "second reference"), self._second)
+    def further_references(self) -> dict[int, Picture]:
+        """As `reference`, in the sensor's further exposures, by their number."""
+        return {
+            number: self._taken(self._still, -1, generator(self.seed, f"reference@{number}"), sensor)
+            for number, sensor in self.sensor.further.items()
+        }
 
-    def second_frame(self, index: int, *sheets: Sheet) -> Picture:
-        """As `frame`, of the same light but exposed shorter; ValueError if the sensor takes no second pictures."""
+    def further_frames(self, index: int, *sheets: Sheet) -> dict[int, Picture]:
+        """As `frame`, of the same light in the sensor's further exposures, by their number."""
+        if not self.sensor.further:
+            return {}
         light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))
-        return self._taken(light, index, generator(self.seed, "second frame", index), self._second)
-
-    @property
-    def _second(self) -> Sensor:
-        sensor = self.sensor.second
-        if sensor is None:
-            raise ValueError("the sensor takes no second pictures")
-        return sensor
+        return {
+            number: self._taken(light, index, generator(self.seed, f"frame@{number}", index), sensor)
+            for number, sensor in self.sensor.further.items()
+        }
 
     def _taken(self, light: Map, index: int, rng: np.random.Generator, sensor: Sensor) -> Picture:
         """The picture of frame `index` (−1: the reference) of the `light` (h, w) before anything has changed."""

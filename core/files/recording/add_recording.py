@@ -7,7 +7,7 @@ from pathlib import Path
 
 from core.files.atomic import cannot_write
 from core.files.linking import link
-from core.files.recording.set_listing import pictures_in, second_exposures
+from core.files.recording.set_listing import further_exposures, pictures_in
 from core.progress import Progress, silent
 
 _OFF = "_off"
@@ -31,9 +31,9 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
         new = _renamed(pictures_in(recorded), taken)
         for path, name in new.items():
             path.rename(path.with_name(name))
-        seconds = second_exposures(before)
+        further = further_exposures(before)
         for number, path in enumerate(old, start=1):
-            for one in filter(None, (path, seconds.get(path))):
+            for one in (path, *further.get(path, {}).values()):
                 link(one, recorded / one.name)
             progress("adding pictures", number, len(old))
     except OSError as error:

@@ -9,7 +9,8 @@ The layout is fixed, so that any program can write one::
     SET/scan/*              frames, in the order of their names
     SET/check/NAME.png      as planes, but taken on the day of the scan (optional)
 
-Of pictures in planes, scan and check NAME@2.png is a second exposure, shorter: it shows what is saturated in the first.
+Of pictures in planes, scan and check NAME@2.png and NAME@3.png are further exposures, shorter or longer: of a stripe
+they show what is saturated, or too dark, in the first.
 
 A project measures from folders that may lie anywhere; they are gathered into the same set, with the same names.
 """
@@ -34,10 +35,10 @@ from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
     PlanePair,
     check_sizes,
+    further_exposures,
     pictures_in,
     plane_pairs,
     scan_frames,
-    second_exposures,
 )
 from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
 from core.messages import Message
@@ -49,7 +50,9 @@ CHECK = "check"
 """The folder of the interim check, beside the parts: a set need not have one."""
 RIG = "rig.toml"
 _BRACKETED = ("planes", "scan", CHECK)
-"""Folders whose pictures may have second exposures."""
+"""Folders whose pictures may have further exposures."""
+FURTHER = (2, 3)
+"""Numbers of further exposures: NAME@2.png, NAME@3.png."""
 
 _LOOKED_AT = 3
 """Pictures that decide on the channel of a part."""
@@ -65,8 +68,8 @@ class RecordingSet:
         What the set is called; its part is called so, too, if nobody says otherwise.
     folders
         By part: the folder it lies in, whatever that is called. A part that is not there may have none.
-    seconds
-        The second exposure of each picture that has one.
+    further
+        The further exposures, by their number (2, 3), of each picture that has any.
     hashes
         Fills up with the SHA-256 of every file as it is read, by its name within the set.
     chosen
@@ -81,7 +84,7 @@ class RecordingSet:
     reference: Path | None
     frames: tuple[Path, ...]
     check: tuple[PlanePair, ...] = ()
-    seconds: Mapping[Path, Path] = field(default_factory=dict)
+    further: Mapping[Path, Mapping[int, Path]] = field(default_factory=dict)
     hashes: dict[str, str] = field(default_factory=dict)
     chosen: dict[str, LaserChannel] = field(default_factory=dict)
 
@@ -105,14 +108,14 @@ class RecordingSet:
             raise InputError(Message("set.no_such_picture", "there is no such picture in the set"), where=name)
         return self.folders[part] / file
 
-    def with_seconds(self, paths: Iterable[Path]) -> list[Path]:
-        """Each of some pictures and, behind it, its second exposure if it has one."""
-        return [one for path in paths for one in (path, self.seconds.get(path)) if one is not None]
+    def with_further(self, paths: Iterable[Path]) -> list[Path]:
+        """Each of some pictures and, behind it, its further exposures."""
+        return [one for path in paths for one in (path, *self.further.get(path, {}).values())]
 
-    def read_second(self, path: Path) -> Picture | None:
-        """As `read` the second exposure of a picture; None if there is none."""
-        second = self.seconds.get(path)
-        return None if second is None else self.read(second)
+    def read_further(self, path: Path, number: int) -> Picture | None:
+        """As `read` the further exposure of this number of a picture; None if there is none."""
+        other = self.further.get(path, {}).get(number)
+        return None if other is None else self.read(other)
 
     def where(self, part: str) -> Path | str:
         """The folder of a part, or its name if it has none: what a complaint about it begins with."""
@@ -373,8 +376,8 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
     reference, frames = scan_frames(folders.get("scan"))
     check = plane_pairs(folders.get(CHECK))
-    seconds = {first: second for part in _BRACKETED for first, second in second_exposures(folders.get(part)).items()}
-    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, seconds, {RIG: rig_hash})
+    further = {first: others for part in _BRACKETED for first, others in further_exposures(folders.get(part)).items()}
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, {RIG: rig_hash})
 
 
 def _paths(found: RecordingSet, part: str) -> list[Path]:
@@ -382,9 +385,9 @@ def _paths(found: RecordingSet, part: str) -> list[Path]:
     if part == "camera":
         return list(found.camera)
     if part == "scan":
-        return found.with_seconds([*([found.reference] if found.reference else []), *found.frames])
+        return found.with_further([*([found.reference] if found.reference else []), *found.frames])
     pairs = found.check if part == CHECK else found.planes
-    return found.with_seconds(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
+    return found.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
 
 def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:

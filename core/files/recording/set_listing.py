@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import re
 import struct
 from collections import Counter
 from collections.abc import Sequence
@@ -19,7 +20,7 @@ from core.files.pictures import is_picture
 from core.messages import Message
 
 _OFF = "_off"
-_SECOND = "@2"
+_FURTHER = re.compile(r"(.+)@([23])")
 _REFERENCE = "reference"
 
 
@@ -32,35 +33,36 @@ class PlanePair:
     off: Path | None
 
 
-def is_second(path: Path) -> bool:
-    """Whether a picture's name is that of a second, shorter exposure of another one: NAME@2.png of NAME.png."""
-    return path.stem.endswith(_SECOND)
+def is_further(path: Path) -> bool:
+    """Whether a picture's name is that of another one's further exposure: NAME@2.png or NAME@3.png of NAME.png."""
+    return _FURTHER.fullmatch(path.stem) is not None
 
 
 def pictures_in(folder: Path | None) -> tuple[Path, ...]:
-    """The pictures in a folder but for second exposures, in the order of their names.
+    """The pictures in a folder but for further exposures, in the order of their names.
 
     Nothing if there is no such folder, InputError if it cannot be listed.
     """
-    return tuple(path for path in _all_in(folder) if not is_second(path))
+    return tuple(path for path in _all_in(folder) if not is_further(path))
 
 
-def second_exposures(folder: Path | None) -> dict[Path, Path]:
-    """Pictures in a folder, each with its second exposure; one without its first is an error."""
+def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:
+    """Pictures in a folder that have further exposures, with these by their number; one without a first is an error."""
     every = _all_in(folder)
-    firsts = {path.stem: path for path in every if not is_second(path)}
-    found = {}
+    firsts = {path.stem: path for path in every if not is_further(path)}
+    found: dict[Path, dict[int, Path]] = {}
     for path in every:
-        if not is_second(path):
+        named = _FURTHER.fullmatch(path.stem)
+        if named is None:
             continue
-        name = path.stem.removesuffix(_SECOND)
+        name, number = named.groups()
         if name not in firsts:
             raise InputError(
                 Message("set.no_first_exposure", "there is no picture {wanted} beside it", wanted=name + path.suffix),
                 where=path,
-                todo=Message("advice.add_first_exposure", "add it: NAME@2 is a second, shorter exposure of NAME"),
+                todo=Message("advice.add_first_exposure", "add it: NAME@2 and NAME@3 are further exposures of NAME"),
             )
-        found[firsts[name]] = path
+        found.setdefault(firsts[name], {})[int(number)] = path
     return found
 
 

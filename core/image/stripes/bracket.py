@@ -1,9 +1,14 @@
-"""Stripes seen in two exposures: where the long one is saturated, cross-sections of the short one stand in their place.
+"""Stripes seen in several exposures: where one is saturated, cross-sections of the next shorter one stand in its place.
 
 Each picture's cross-sections are fitted by themselves, with that picture's own noise, so nothing depends on how a
 camera's grey values go together from one exposure to the next, and no grey value is made up. A point is taken from the
-picture that is not saturated there; where neither is, the long one has the smaller noise. The two see the same light
-only if nothing moved between them, and that is looked at first.
+longest picture that is not saturated there: that has the smallest noise. The pictures see the same light only if
+nothing moved between them, and that is looked at first. Which one is longer is told by the whole picture's brightness,
+and by how much, by the stripes' heights.
+
+Of a sensor that blooms, a full pixel fills its neighbours, mostly those behind it in its column. That needs no mask of
+its own: points whose sections have saturated pixels do not count, and those beside them were as sure as they say on
+simulated stripes of a part that shines, up to 90 % of the overflow passed on (tests/scan/features/test_blooming.py).
 """
 
 from __future__ import annotations
@@ -38,11 +43,20 @@ _NEW_WIDTHS = 4.0
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Exposures:
-    """How two exposures of the same stripes go together.
+class Exposure:
+    """The stripes that a picture shows, (H, W) where it is saturated, and its mean `light` as a share of full scale."""
 
-    The long one was `factor` times longer, nan where nothing tells; the stripes of the two are `shift_px` apart, and
-    `points` were taken from the short one. None are if something `moved` between the two.
+    lines: Sequence[Centreline]
+    saturated: NDArray[np.bool_]
+    light: float
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Exposures:
+    """How another exposure of the same stripes goes with the first one.
+
+    It is `factor` times shorter, below 1 if it is longer, nan where nothing tells; the stripes of the two are
+    `shift_px` apart, and `points` were taken from it. None are if something `moved` between the two.
     """
 
     factor: float = float("nan")
@@ -51,12 +65,37 @@ class Exposures:
     moved: bool = False
 
 
+def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline, ...], tuple[Exposures, ...]]:
+    """The centrelines of several exposures as one, longest first, and how each of the others goes with the first.
+
+    Heights are in grey levels of the first exposure. What moved against that, or against what is longer, is left out.
+    """
+    longest, *shorter = sorted((first, *others), key=lambda one: -one.light)
+    lines, saturated = tuple(longest.lines), longest.saturated
+    told = {longest: Exposures(1.0)}  # how many times shorter than the longest one in use
+    for short in shorter:
+        joined, both = bracketed(lines, short.lines, saturated)
+        if both.moved and short is first:
+            told = {one: Exposures(seen.factor / both.factor, both.shift_px, 0, True) for one, seen in told.items()}
+            lines, told[short], longest = tuple(short.lines), Exposures(1.0), short
+        else:
+            lines, told[short] = joined, both
+        if short is first or not both.moved:
+            saturated = short.saturated
+    of_longest = sum(map(len, lines)) - sum(told[one].points for one in shorter)
+    told[longest] = replace(told[longest], points=max(of_longest, 0))
+    unit = told[first].factor
+    if np.isfinite(unit) and unit != 1:
+        lines = tuple(replace(line, strength=line.strength / unit) for line in lines)
+    return lines, tuple(replace(told[one], factor=told[one].factor / unit) for one in others)
+
+
 def bracketed(
     long: Sequence[Centreline], short: Sequence[Centreline], saturated: NDArray[np.bool_]
 ) -> tuple[tuple[Centreline, ...], Exposures]:
     """The centrelines with the short exposure's points where the long one is saturated, longest first.
 
-    Heights are in grey levels of the long exposure.
+    Heights are in grey levels of the long exposure, against which the short one is told.
 
     Parameters
     ----------
@@ -67,6 +106,8 @@ def bracketed(
     """
     if not short:
         return tuple(long), Exposures()
+    if not long:
+        return tuple(short), Exposures(points=sum(map(len, short)))
     both = _compared(long, short)
     scale = both.factor if np.isfinite(both.factor) else 1.0
     clear = sum(int(np.count_nonzero(~line.saturated)) for line in long)

@@ -168,7 +168,7 @@ class _OfStep(NamedTuple):
 
 def check_paths(found: RecordingSet) -> list[Path]:
     """The pictures of the check."""
-    return found.with_seconds(path for pair in found.check for path in (pair.on, pair.off) if path is not None)
+    return found.with_further(path for pair in found.check for path in (pair.on, pair.off) if path is not None)
 
 
 def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:

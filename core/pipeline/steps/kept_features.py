@@ -84,7 +84,7 @@ def take_hashes(found: RecordingSet, pictures: Sequence[Path], progress: Progres
 def _pictures(found: RecordingSet, options: Options) -> list[Path]:
     """The reference and the frames that are not left out by hand."""
     frames = [path for path in found.frames if found.name_of(path) not in options.excluded]
-    return found.with_seconds(frames if found.reference is None else [found.reference, *frames])
+    return found.with_further(frames if found.reference is None else [found.reference, *frames])
 
 
 @cache
@@ -148,7 +148,7 @@ def _poses_key(project: Project, found: RecordingSet) -> str:
 
 
 def _pose_pictures(found: RecordingSet) -> list[Path]:
-    return found.with_seconds(path for pair in found.planes for path in (pair.on, pair.off) if path is not None)
+    return found.with_further(path for pair in found.planes for path in (pair.on, pair.off) if path is not None)
 
 
 def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:

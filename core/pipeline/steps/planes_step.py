@@ -13,10 +13,10 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.pictures import compression_of
+from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.options import Options
-from core.files.recording.recording_set import RecordingSet, require_planes
+from core.files.recording.recording_set import FURTHER, RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import PlanePair
 from core.files.results.camera_file import read_camera
@@ -153,13 +153,16 @@ def _pose_features(
 def _beside(found: RecordingSet, pair: PlanePair) -> Beside:
     """What there is of a pose beside its two pictures."""
     channel = found.laser_channel(found.part_of(pair.on)).channel
-    compression, second = compression_of(pair.on, channel), found.read_second(pair.on)
-    bracket = None if second is None else (second, found.read_second(pair.off) if pair.off is not None else None)
+    compression, further = compression_of(pair.on, channel), list[tuple[Picture, Picture | None]]()
+    for number in FURTHER:
+        on = found.read_further(pair.on, number)
+        if on is not None:
+            further.append((on, None if pair.off is None else found.read_further(pair.off, number)))
     sites = found.sites(found.part_of(pair.on))
     if not is_difference(channel) and sites == ALL_SITES:
-        return Beside(None, compression, bracket)
+        return Beside(None, compression, further)
     unlit = found.read_target(pair.off) if pair.off is not None else None
-    return Beside((found.read_target(pair.on), unlit), compression, bracket, sites)
+    return Beside((found.read_target(pair.on), unlit), compression, further, sites)
 
 
 def solve_planes(

@@ -13,9 +13,9 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.recording_set import FURTHER, RecordingSet
 from core.image.mosaic import Sites
-from core.image.stripes.bracket import bracketed
+from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Message
 from core.model import Camera
@@ -26,10 +26,11 @@ from core.scan.features.extraction import (
     FeatureOptions,
     Frame,
     FrameFeatures,
+    FurtherExposures,
     ReferenceFeatures,
-    SecondExposures,
     SeenLines,
     choose_sweep_stripe,
+    exposed,
     extract_lines,
     read_reference,
     saturated_pixels,
@@ -94,17 +95,18 @@ def look_at_scan(
     sites = found.sites("scan")
     looking = at_sites(looking, sites)
     reference = read_reference(sites.of(picture), looking)
-    second = _second_exposures(found, options, looking, reference)
+    further = _further_exposures(found, options, looking, reference)
     factor = 1.0
-    if second is not None:
-        fan, exposures = bracketed(reference.fan, second.reference.fan, saturated_pixels(reference.base))
-        reference, factor = replace(reference, fan=fan), float(np.fmax(exposures.factor, 1.0))
+    if further:
+        fan, exposures = fused(_fan_seen(reference), [_fan_seen(each.reference) for each in further.values()])
+        reference = replace(reference, fan=fan)
+        factor = float(np.nanmax([1.0, *(each.factor for each in exposures)]))
     progress("reference", 1, 1)
     frames, total = stream_frames(found, options, times), len(found.frames)
     shown = of_whole(reference, sites, picture)
     show = watching(shown) if watching else None
     watch = None if show is None else lambda features: show(features.brought_back(sites))
-    lines = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, second)
+    lines = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, further)
     lines = lines.brought_back(sites, shown.image_size)
     averaged = lines.averaged(progress, times)
     of_width = told_width_notes(options.stripe, lines.stripes)
@@ -135,20 +137,34 @@ def _seen_at(sites: Sites, frames: Iterable[Frame]) -> Iterator[Frame]:
     return ((name, each if isinstance(each, Message) else sites.of(each)) for name, each in frames)
 
 
-def _second_exposures(
+def _fan_seen(reference: ReferenceFeatures) -> Exposure:
+    """The fan in a picture of it alone, as one of several exposures."""
+    return exposed(reference.base, reference.fan, saturated_pixels(reference.base))
+
+
+def _further_exposures(
     found: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures
-) -> SecondExposures | None:
-    """The second exposures of the frames; None if there are none, or no picture of the fan alone to go with them.
+) -> dict[int, FurtherExposures]:
+    """The further exposures of the frames by their number, those with a picture of the fan alone to go with them.
 
     That one is made of them where it is not there, as the first one's would be.
     """
-    shots = {found.name_of(path): path for path in taken_frames(found, options) if path in found.seconds}
+    of_number = {number: _exposures(found, options, looking, first, number) for number in FURTHER}
+    return {number: each for number, each in of_number.items() if each is not None}
+
+
+def _exposures(
+    found: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
+) -> FurtherExposures | None:
+    """Those of one number; None if there are none, or no picture of the fan alone."""
+    shots = {found.name_of(path): path for path in taken_frames(found, options)}
+    shots = {name: path for name, path in shots.items() if number in found.further.get(path, {})}
     if not shots:
         return None
-    seconds = [found.seconds[path] for path in shots.values()]
-    sample = list(found.stream([seconds[i] for i in sample_indices(len(seconds))]))
+    again = [found.further[path][number] for path in shots.values()]
+    sample = list(found.stream([again[i] for i in sample_indices(len(again))]))
     pictures = [picture for _, picture in sample if not isinstance(picture, Message)]
-    base = None if found.reference is None else found.read_second(found.reference)
+    base = None if found.reference is None else found.read_further(found.reference, number)
     if base is None:
         if len(pictures) < FEWEST_FOR_QUANTILE:
             return None
@@ -159,12 +175,12 @@ def _second_exposures(
 
     def read(name: str) -> Picture | None:
         try:
-            picture = found.read_second(shots[name]) if name in shots else None
+            picture = found.read_further(shots[name], number) if name in shots else None
         except InputError:
             return None  # damaged: the first exposure is there
         return None if picture is None else sites.of(picture)
 
-    return SecondExposures(reference, stripe, read)
+    return FurtherExposures(reference, stripe, read)
 
 
 def feature_options(options: Options) -> FeatureOptions:

@@ -5,8 +5,8 @@ Frames stream: one is decoded, subtracted, reduced to its centrelines and forgot
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import cv2
@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.mosaic import Sites
-from core.image.stripes.bracket import bracketed
+from core.image.stripes.bracket import Exposure, Exposures, fused
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.lines.smoothing import smooth
@@ -43,12 +43,13 @@ __all__ = [
     "Frame",
     "FrameFeatures",
     "FrameReader",
+    "FurtherExposures",
     "ReferenceFeatures",
     "ScanFeatures",
-    "SecondExposures",
     "SeenLines",
     "choose_sweep_stripe",
     "crossed",
+    "exposed",
     "extract_features",
     "extract_lines",
     "gather",
@@ -131,7 +132,7 @@ def extract_lines(
     progress: Progress = silent,
     watch: Callable[[FrameFeatures], None] | None = None,
     times: StageTimes | None = None,
-    second: SecondExposures | None = None,
+    further: Mapping[int, FurtherExposures] | None = None,
 ) -> SeenLines:
     """Reduce a scan to centrelines as they are.
 
@@ -147,8 +148,8 @@ def extract_lines(
         Shown the features of each frame as they come, in the order of the recording, on the calling thread.
     times
         Learns what the stages cost.
-    second
-        Second exposures of frames.
+    further
+        Further exposures of frames, by their number.
 
     Raises
     ------
@@ -166,7 +167,7 @@ def extract_lines(
         sweep_stripe: StripeSettings | None = _told_sweep_stripe(ahead, seen, options.sweep_stripe)
     else:
         sweep_stripe = choose_sweep_stripe(ahead, seen, told.within_step)
-    reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times, second)
+    reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times, further or {})
     found: list[FrameFeatures] = []
     numbered = enumerate(_handed_on(ahead, stream))
     for features in ordered_map(reader, numbered, idle=lambda: told.within_step("frames", 0, total)):
@@ -292,8 +293,8 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class SecondExposures:
-    """The second, shorter exposures of a scan.
+class FurtherExposures:
+    """The further exposures of a scan that have one number: shorter or longer than the first ones.
 
     `reference` is what the one of the fan alone shows, `stripe` the sweeps' in them, None if none shows any; `read`
     gives the one of a frame by that frame's name, None if it has none.
@@ -303,14 +304,15 @@ class SecondExposures:
     stripe: StripeSettings | None
     read: Callable[[str], Picture | None]
 
-    def lines_of(self, name: str) -> tuple[Centreline, ...] | None:
-        """The centrelines of the sweep in the second exposure of a frame; None if there is none, or not of its size."""
+    def of(self, name: str) -> Exposure | None:
+        """What the further exposure of a frame shows of the sweep; None if there is none, or not of its size."""
         picture = self.read(name)
         if picture is None or self.stripe is None or picture.shape != self.reference.base.shape:
             return None
         difference = self.reference.of_lasers(picture)[0]
         saturated = saturated_pixels(picture)
-        return extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+        lines = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
+        return exposed(picture, lines, saturated)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -321,7 +323,7 @@ class FrameReader:
     stripe: StripeSettings | None
     move_limit_px: float = FeatureOptions().move_limit_px
     times: StageTimes | None = None
-    second: SecondExposures | None = None
+    further: Mapping[int, FurtherExposures] = field(default_factory=dict)
 
     def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
         index, (name, picture) = item
@@ -345,12 +347,18 @@ class FrameReader:
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
             pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
-            shorter = None if self.second is None else self.second.lines_of(name)
-        exposures = None
-        if shorter is not None:
-            pieces, exposures = bracketed(pieces, shorter, saturated)
+            others = {number: seen for number, each in self.further.items() if (seen := each.of(name)) is not None}
+        exposures: dict[int, Exposures] = {}
+        if others:
+            pieces, told = fused(exposed(picture, pieces, saturated), list(others.values()))
+            exposures = dict(zip(others, told, strict=True))
         reason = None if pieces else NO_STRIPE
         return FrameFeatures(index, name, pieces, reason, check.shift_px, light, check.shifts_px, exposures)
+
+
+def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:
+    """The centrelines of a picture (H, W), and where that is `saturated`, as one of several exposures."""
+    return Exposure(lines, saturated, float(picture[::4, ::4].mean()) / np.iinfo(picture.dtype).max)
 
 
 def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from enum import IntEnum
 from typing import TYPE_CHECKING
@@ -44,8 +44,8 @@ class FrameFeatures:
 
     Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
     (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
-    share of it, 0 where it is too small to tell. `exposures` tells how a second exposure goes with it; None: it has
-    none.
+    share of it, 0 where it is too small to tell. `exposures` tells how each of its further exposures goes with
+    it, by their number.
     """
 
     index: int
@@ -55,7 +55,7 @@ class FrameFeatures:
     shift_px: float = 0.0
     light_change: float = 0.0
     fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
-    exposures: Exposures | None = None
+    exposures: Mapping[int, Exposures] = field(default_factory=dict)
 
     def brought_back(self, sites: Sites) -> FrameFeatures:
         """The same in px of the whole picture, where its `sites` were looked at."""
@@ -139,43 +139,48 @@ class FrameRecord:
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What all frames of a scan tell the technician: of second exposures, movements, and the room's light."""
+    """What all frames of a scan tell the technician: of further exposures, movements, and the room's light."""
     return _moved_notes(frames) + _light_notes(frames) + _exposure_notes(frames)
 
 
 def _exposure_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """How much second exposures gave, and which were of no use."""
-    twice = [(frame, frame.exposures) for frame in frames if frame.exposures is not None]
-    factors = [seen.factor for _, seen in twice if np.isfinite(seen.factor)]
-    moved = [(frame, seen) for frame, seen in twice if seen.moved]
-    notes = []
+    """How much further exposures gave, and which were of no use."""
+    numbers = sorted({number for frame in frames for number in frame.exposures})
+    return tuple(note for number in numbers for note in _notes_on_exposure(frames, number))
+
+
+def _notes_on_exposure(frames: Sequence[FrameFeatures], number: int) -> Iterator[Message]:
+    """The same of the exposures of one number."""
+    again = [(frame, frame.exposures[number]) for frame in frames if number in frame.exposures]
+    factors = [seen.factor for _, seen in again if np.isfinite(seen.factor)]
+    moved = [(frame, seen) for frame, seen in again if seen.moved]
     if factors:
-        points = sum(sum(map(len, frame.centrelines)) for frame, _ in twice)
-        notes.append(
-            Message(
-                "scan.second_exposures",
-                "{n} of {all} frames have a second exposure, {stops:.1f} f-stops shorter: {percent:.1f} % of the "
-                "points on their stripes are from it, where the first one is saturated.",
-                n=len(twice),
-                all=len(frames),
-                stops=float(np.log2(np.median(factors))),
-                percent=100 * sum(seen.points for _, seen in twice) / max(points, 1),
-            )
+        points = sum(sum(map(len, frame.centrelines)) for frame, _ in again)
+        stops = float(np.log2(np.median(factors)))
+        shorter, longer = Message("scan.shorter", "shorter"), Message("scan.longer", "longer")
+        yield Message(
+            "scan.further_exposures",
+            "{n} of {all} frames have an exposure @{number}, {stops:.1f} f-stops {which} than the first one: "
+            "{percent:.1f} % of the points on their stripes are from it.",
+            n=len(again),
+            all=len(frames),
+            number=number,
+            stops=abs(stops),
+            which=shorter if stops >= 0 else longer,
+            percent=100 * sum(seen.points for _, seen in again) / max(points, 1),
         )
     if moved:
-        notes.append(
-            Message(
-                "scan.second_exposures_moved",
-                "Between the two exposures of {n} of {all} frames, the first {name}, the hand-held laser moved: the "
-                "stripe lies {shift_px:.1f} px aside, and the second exposure is not used there. Hold the laser still "
-                "for both.",
-                n=len(moved),
-                all=len(twice),
-                name=moved[0][0].name,
-                shift_px=moved[0][1].shift_px,
-            )
+        yield Message(
+            "scan.further_exposures_moved",
+            "Between the first exposure and @{number} of {n} of {all} frames, the first {name}, the hand-held laser "
+            "moved: the stripe lies {shift_px:.1f} px aside, and that exposure is not used there. Hold the laser still "
+            "for all of them.",
+            number=number,
+            n=len(moved),
+            all=len(again),
+            name=moved[0][0].name,
+            shift_px=moved[0][1].shift_px,
         )
-    return tuple(notes)
 
 
 def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:

@@ -230,12 +230,12 @@ class ReferenceFeatures:
 def read_reference(
     picture: Picture, options: FeatureOptions | None = None, first: ReferenceFeatures | None = None
 ) -> ReferenceFeatures:
-    """The fan's centrelines in the picture with the fan alone; with what its `first` exposure shows, in a second one.
+    """The fan's centrelines in the picture with the fan alone; with what its `first` exposure shows, in a further one.
 
     Raises
     ------
     InputError
-        If it shows no fan line; a second exposure may show none, where the first one is not saturated.
+        If it shows no fan line; a further exposure may show none, where the first one is not saturated.
     """
     options = options or FeatureOptions()
     full_scale = float(np.iinfo(picture.dtype).max)

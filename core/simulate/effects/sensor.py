@@ -40,8 +40,9 @@ class SensorEffects:
         A Bayer mosaic, red at its first site, demosaiced bilinearly: pictures of three colours. The lasers are red.
     raw
         With `colour`: the mosaic as it was read, not demosaiced; rig.toml says so.
-    second_exposure
-        Every picture but those of the camera's target is taken a second time, exposed so many times shorter; 0: none.
+    second_exposure, third_exposure
+        Every picture but those of the camera's target is taken again, exposed so many times shorter, or longer if it is
+        below 1; 0: it is not.
     jpeg_quality
         Pictures are JPEG files of this quality with colours at half the size both ways (4:2:0); 0: lossless.
 
@@ -59,6 +60,7 @@ class SensorEffects:
     raw: bool = False
     jpeg_quality: int = 0
     second_exposure: float = 0.0
+    third_exposure: float = 0.0
 
     def __post_init__(self) -> None:
         require_ranges(
@@ -70,6 +72,7 @@ class SensorEffects:
                 ("hot_share", 0.0, 0.1),
                 ("jpeg_quality", 0, 100),
                 ("second_exposure", 0.0, 1000.0),
+                ("third_exposure", 0.0, 1000.0),
             ),
         )
 

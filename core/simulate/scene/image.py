@@ -106,10 +106,10 @@ class Sensor:
         return self.effects.developed(picture)
 
     @property
-    def second(self) -> Sensor | None:
-        """The same, exposed shorter for the second picture of each; None if there is none."""
-        factor = self.effects.second_exposure
-        return replace(self, exposure=self.exposure / factor) if factor else None
+    def further(self) -> dict[int, Sensor]:
+        """The same, exposed as long as the second and third picture of each, by their number."""
+        factors = {2: self.effects.second_exposure, 3: self.effects.third_exposure}
+        return {n: replace(self, exposure=self.exposure / factor) for n, factor in factors.items() if factor}
 
     def _noise(self, shape: tuple[int, ...], rng: np.random.Generator) -> Map:
         if self.noise <= 0:

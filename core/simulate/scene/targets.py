@@ -71,7 +71,7 @@ def plane_pictures(
     """The pictures of pose `index` of the plane target by the ending of their names: with the fan on, "", and "_off".
 
     The `plate` is its pattern, and by how many mm its left and right edges are bent out of its plane. A sensor that
-    takes second pictures adds those, "@2" and "_off@2".
+    takes further pictures adds those, "@2" and "_off@2" and the like.
     """
     (pattern, bow_mm), (rig, straight, sensor) = plate, context[:3]
     rays = rays_to_bowed(pattern, pose, straight, bow_mm)
@@ -85,9 +85,9 @@ def plane_pictures(
         "": sensor.expose(light + fan, generator(seed, "plane on", index), light),
         "_off": sensor.expose(light, generator(seed, "plane off", index), light),
     }
-    if (second := sensor.second) is not None:
-        pictures["@2"] = second.expose(light + fan, generator(seed, "second plane on", index), light)
-        pictures["_off@2"] = second.expose(light, generator(seed, "second plane off", index), light)
+    for number, other in sensor.further.items():
+        pictures[f"@{number}"] = other.expose(light + fan, generator(seed, f"plane on@{number}", index), light)
+        pictures[f"_off@{number}"] = other.expose(light, generator(seed, f"plane off@{number}", index), light)
     return pictures
 
 

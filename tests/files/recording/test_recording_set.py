@@ -148,34 +148,36 @@ def test_pictures_are_read_in_the_channel_of_their_step(tmp_path):
     assert [int(found.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [10, 20, 30]
 
 
-def test_second_exposures_are_no_frames_views_or_poses(folder):
+def test_further_exposures_are_no_frames_views_or_poses(folder):
     before = open_set(folder)
-    for name in ("scan/frame_002@2", "scan/reference@2", "planes/p1@2", "planes/p1_off@2"):
+    for name in ("scan/frame_002@2", "scan/reference@2", "planes/p1@2", "planes/p1_off@2", "scan/frame_002@3"):
         write_picture(folder / f"{name}.png", picture(3))
     found = open_set(folder)
     assert (found.camera, found.frames, found.reference) == (before.camera, before.frames, before.reference)
     assert [(pair.name, pair.on, pair.off) for pair in found.planes] == [
         (pair.name, pair.on, pair.off) for pair in before.planes
     ]
-    assert {one.name: two.name for one, two in found.seconds.items()} == {
-        "frame_002.png": "frame_002@2.png",
-        "reference.png": "reference@2.png",
-        "p1.png": "p1@2.png",
-        "p1_off.png": "p1_off@2.png",
+    named = {one.name: {number: path.name for number, path in more.items()} for one, more in found.further.items()}
+    assert named == {
+        "frame_002.png": {2: "frame_002@2.png", 3: "frame_002@3.png"},
+        "reference.png": {2: "reference@2.png"},
+        "p1.png": {2: "p1@2.png"},
+        "p1_off.png": {2: "p1_off@2.png"},
     }
 
 
-def test_a_second_exposure_is_read_and_hashed_beside_the_first(folder):
+def test_a_further_exposure_is_read_and_hashed_beside_the_first(folder):
     write_picture(folder / "scan" / "frame_002@2.png", picture(9))
     found = open_set(folder)
-    assert int(found.read_second(found.frames[2])[0, 0]) == 9
-    assert found.read_second(found.frames[1]) is None
+    assert int(found.read_further(found.frames[2], 2)[0, 0]) == 9
+    assert found.read_further(found.frames[2], 3) is None
+    assert found.read_further(found.frames[1], 2) is None
     assert list(found.hashes) == ["rig.toml", "scan/frame_002@2.png"]
     both = [found.frames[1], found.frames[2], folder / "scan" / "frame_002@2.png"]
-    assert found.with_seconds(found.frames[1:3]) == both
+    assert found.with_further(found.frames[1:3]) == both
 
 
-def test_a_second_exposure_without_its_first_is_refused(folder):
+def test_a_further_exposure_without_its_first_is_refused(folder):
     write_picture(folder / "scan" / "frame_099@2.png", picture(9))
     with pytest.raises(InputError) as refused:
         open_set(folder)
@@ -183,7 +185,7 @@ def test_a_second_exposure_without_its_first_is_refused(folder):
     assert "frame_099.png" in str(refused.value)
 
 
-def test_a_second_exposure_of_another_size_is_refused(folder):
+def test_a_further_exposure_of_another_size_is_refused(folder):
     write_picture(folder / "scan" / "frame_002@2.png", picture(9, size=(20, 30)))
     with pytest.raises(InputError) as refused:
         open_set(folder)

@@ -25,7 +25,7 @@ from core.calibrate.fan.poses.plate import Plate, without_clutter
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_of, usual_stripe
 from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.mosaic import ALL_SITES, Sites
-from core.image.stripes.bracket import bracketed
+from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings, choose_settings, extract_centrelines
 from core.image.stripes.noise import (
@@ -70,13 +70,13 @@ class Beside:
     """What there is of a pose beside its pictures with the fan on and off.
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
-    theirs; `compression` is that of each picture; `second` are second, shorter exposures of them, if there are any.
+    theirs; `compression` is that of each picture; `further` are further exposures of them, shorter or longer.
     `sites` are those of raw pictures that see the laser.
     """
 
     target: tuple[Picture, Picture | None] | None = None
     compression: Compression = UNCOMPRESSED
-    second: tuple[Picture, Picture | None] | None = None
+    further: Sequence[tuple[Picture, Picture | None]] = ()
     sites: Sites = ALL_SITES
 
 
@@ -148,7 +148,7 @@ def measure_plane_pose(
     level = _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
     centrelines = without_clutter(centrelines, camera)
-    if camera is not None and off is not None and beside.second is None:
+    if camera is not None and off is not None and not beside.further:
         even = EvenPlate.of(plate, view, level)
         found = _beside_marks(centrelines, light, even, camera, beside.sites)
         found = _on_even_plate(found, even.picture, level, carrier, laser_off=True, uneven=even.uneven)
@@ -199,7 +199,8 @@ def _no_stripe(on: Picture, off: Picture | None, view: TargetView, settings: Str
 class _Light:
     """The laser's light by the sites alone that see it, (H, W) each: grey levels, what is saturated, what no plate.
 
-    `full_scale` is the largest grey level there can be; `second` is the light of the second exposures.
+    `full_scale` is the largest grey level there can be, `mean` that of the picture with the laser on; `further` is the
+    light of further exposures.
     """
 
     picture: NDArray[np.float32]
@@ -207,16 +208,16 @@ class _Light:
     outside: NDArray[np.bool_]
     noise: NoiseModel
     full_scale: float
-    second: _Light | None = None
+    mean: float
+    further: tuple[_Light, ...] = ()
 
     @classmethod
     def of(
         cls, on: Picture, off: Picture | None, view: TargetView, outside: NDArray[np.bool_], beside: Beside
     ) -> _Light:
         """The difference of two pictures, or the only one."""
-        second = None
-        if beside.second is not None:
-            second = cls.of(*beside.second, view, outside, replace(beside, second=None))
+        alone = replace(beside, further=())
+        further = tuple(cls.of(*pictures, view, outside, alone) for pictures in beside.further)
         sites = beside.sites
         lit, outside = sites.of(on), sites.of(outside)
         picture, full_scale = lit.astype(np.float32), np.iinfo(lit.dtype).max
@@ -229,19 +230,21 @@ class _Light:
             one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
             noise = replace(one, compression=beside.compression).of_difference(common)
             picture -= without
-        return cls(picture, lit >= full_scale, outside, noise, float(full_scale), second)
+        return cls(picture, lit >= full_scale, outside, noise, float(full_scale), float(lit.mean()), further)
 
 
 def _stripes(
     light: _Light, view: TargetView, settings: StripeSettings | None, beside: Beside
 ) -> tuple[Centreline, ...]:
-    """Centrelines of the laser on the plate, of both exposures."""
+    """Centrelines of the laser on the plate, of all exposures."""
     sites = beside.sites
     there = _window(replace(view, uv=sites.places_of(view.uv)), light.picture.shape, margin=1.0)
     told = sites.stripe_of(settings)
-    found = _looked_for(light, there, told)
-    if light.second is not None:
-        found, _ = bracketed(found, _looked_for(light.second, there, told), light.saturated)
+    first, *others = (
+        Exposure(_looked_for(each, there, told), each.saturated, each.mean / each.full_scale)
+        for each in (light, *light.further)
+    )
+    found = fused(first, others)[0] if others else first.lines
     return sites.brought_back(found)
 
 
