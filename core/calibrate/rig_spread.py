@@ -42,17 +42,19 @@ def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Arra
     return np.array(likelihoods)
 
 
-def stability_by_pictures(deviations: Sequence[Deviation], evidence: Evidence) -> Stability:
+def stability_by_pictures(
+    deviations: Sequence[Deviation], evidence: Evidence, guess: Stability = DEFAULT_STABILITY
+) -> Stability:
     """The stability to assume of a rig of which nothing is stated and no check of the day has passed.
 
     The default is known to a factor of two only, and a rig that has changed more than most shows a little of it in each
     scan. It is the default times the root of the mean square of t, given the pictures, and no less than the default:
-    they may not see what changed. Where they say nothing it is the default.
+    they may not see what changed. Where they say nothing it is the default. Another `guess` grows by the same.
     """
     if not evidence.information.any():
-        return DEFAULT_STABILITY
+        return guess
     weight = _weights(log_likelihoods(deviations, evidence), 1.0)
-    return DEFAULT_STABILITY.times(*[max(1.0, float(np.sqrt(weight @ FACTORS**2)))] * 4)
+    return guess.times(*[max(1.0, float(np.sqrt(weight @ FACTORS**2)))] * 4)
 
 
 def most_likely_factor(likelihoods: Array, about: float = 1.0) -> float:

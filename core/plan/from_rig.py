@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from core.calibrate.change import Stability
+from core.calibrate.drift import NO_DRIFT, USUAL_KELVINS, Air, apart, stability_after
 from core.errors import InputError, WrongValue
 from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
 from core.image.targets import Target
@@ -35,11 +36,16 @@ def read_design(path: Path) -> Design:
 def read_stated(path: Path) -> tuple[Part, Stability | None]:
     """What the rig.toml at `path`, or in that folder, states of the part, and of how far the rig may change.
 
-    InputError as `read_design`.
+    That is as far as its temperatures have it, and within the hour: nobody knows when it will be used. InputError as
+    `read_design`.
     """
     tables = read_rig_tables(path / "rig.toml" if path.is_dir() else path)
     part = Part() if tables.part is None else tables.part.part()
-    return part, None if tables.stability is None else tables.stability.stability()
+    stated, drift = (
+        (None, NO_DRIFT) if tables.stability is None else (tables.stability.stability(), tables.stability.drift())
+    )
+    air = Air() if tables.air is None else tables.air.air()
+    return part, stability_after(stated, drift, apart(air.calibrated, air.scanned, 0.0, USUAL_KELVINS))
 
 
 def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:

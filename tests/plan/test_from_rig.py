@@ -1,10 +1,13 @@
+import math
+
 import pytest
 
+from core.calibrate.change import DEFAULT_STABILITY
 from core.errors import InputError
 from core.files.recording.rig import read_rig
 from core.image.targets import Charuco
 from core.plan.design import Design
-from core.plan.from_rig import read_design
+from core.plan.from_rig import read_design, read_stated
 from core.simulate.calibration import rig_toml
 from core.simulate.scenario import Scenario
 
@@ -80,3 +83,11 @@ def test_a_wrong_key_or_value_is_told_in_one_sentence_with_file_and_field(write,
 def test_a_missing_file_is_told(tmp_path):
     with pytest.raises(InputError, match="missing"):
         read_design(tmp_path / "rig.toml")
+
+
+def test_a_rig_that_is_planned_warmer_than_it_is_calibrated_may_change_more(write):
+    stated = "[stability.per_kelvin]\nturn_urad = 40.0\n[air]\ncalibrated_celsius = 20.0\n"
+    usual, warm = (read_stated(write(stated + more))[1] for more in ("", "scanned_celsius = 30.0\n"))
+    assert usual is not None and warm is not None
+    assert usual.turn == pytest.approx(math.hypot(DEFAULT_STABILITY.turn, 200e-6)), "five kelvins where none are stated"
+    assert warm.turn == pytest.approx(math.hypot(DEFAULT_STABILITY.turn, 400e-6))

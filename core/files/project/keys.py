@@ -184,6 +184,7 @@ def _check(project: Project) -> dict[str, str]:
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast]) if stripe else "",
         label("stability of the rig"): _digest(tables.get("stability")),
+        **_air(project),
     }
 
 
@@ -195,6 +196,7 @@ def _scan(project: Project) -> dict[str, str]:
     stated = {label("stability of the rig"): _digest(stability)} if stability else {}
     stated |= {label("validity of calibration and check"): _digest(validity)} if validity else {}
     stated |= {label("row time of the camera"): _digest(camera)} if camera else {}
+    stated |= _air(project)
     if project.sources.check:
         stated[label("pictures of the interim check")] = project.sources.check
     return {
@@ -206,6 +208,14 @@ def _scan(project: Project) -> dict[str, str]:
         label("scan settings"): _digest(settings),
         **stated,
     }
+
+
+def _air(project: Project) -> dict[str, str]:
+    """How warm it was, where that says how far the rig may have changed."""
+    tables = rig_tables(project.rig)
+    stability, air = tables.get("stability", {}), tables.get("air", {})
+    matters = "per_kelvin" in stability or "per_hour" in stability or "calibrated_celsius" in air
+    return {label("temperature of the air"): _digest([air, project.info.air_celsius])} if matters else {}
 
 
 def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:

@@ -86,7 +86,11 @@ def _renewed(folder: Path, file: ProjectFile, serial: str, operator: str, name: 
     after = replace(
         before,
         info=info,
-        rig=replace(before.rig, part=replace(before.rig.part, celsius=None, u_celsius=None)),
+        rig=replace(
+            before.rig,
+            part=replace(before.rig.part, celsius=None, u_celsius=None),
+            air=replace(before.rig.air, scanned=None),
+        ),
         sources=replace(before.sources, scan=""),
         options=replace(before.options, excluded=kept),
         repeats=(),

@@ -13,7 +13,8 @@ from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from core.acquire.grey import Channel, PlainChannel, is_difference
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.change import Stability
+from core.calibrate.change import STABLE, Stability
+from core.calibrate.drift import NO_DRIFT, Air, Drift
 from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
@@ -206,16 +207,74 @@ class PlanTable(Table):
         return self
 
 
-class _Stability(Table):
-    """[stability]: how far the rig may have changed since its calibration, as standard uncertainties."""
+_Urad = Annotated[float, Field(ge=0, le=1e5, allow_inf_nan=False)]
+_Um = Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False)]
+_Px = Annotated[float, Field(ge=0, le=100, allow_inf_nan=False)]
+_Ppm = Annotated[float, Field(ge=0, le=1e4, allow_inf_nan=False)]
+_AN_ANGLE = label("an angle in µrad, 0 to 100000")
+_A_SHIFT = label("a length in µm, 0 to 10000")
+_PIXELS = label("a number of pixels, 0 to 100")
+_A_SHARE = label("a share in 10⁻⁶, 0 to 10000")
 
-    turn_urad: float = Field(ge=0, le=1e5, allow_inf_nan=False, description="an angle in µrad, 0 to 100000")
-    shift_um: float = Field(ge=0, le=1e4, allow_inf_nan=False, description="a length in µm, 0 to 10000")
-    centre_px: float = Field(ge=0, le=100, allow_inf_nan=False, description="a number of pixels, 0 to 100")
-    focal_ppm: float = Field(ge=0, le=1e4, allow_inf_nan=False, description="a share in 10⁻⁶, 0 to 10000")
+
+class _Rate(Table):
+    """[stability.per_kelvin] and [stability.per_hour]: what is not stated does not change so."""
+
+    turn_urad: _Urad = Field(0.0, description=_AN_ANGLE)
+    shift_um: _Um = Field(0.0, description=_A_SHIFT)
+    centre_px: _Px = Field(0.0, description=_PIXELS)
+    focal_ppm: _Ppm = Field(0.0, description=_A_SHARE)
 
     def stability(self) -> Stability:
         return Stability(self.turn_urad / 1e6, self.shift_um / 1e3, self.centre_px, self.focal_ppm / 1e6)
+
+
+class _Stability(Table):
+    """[stability]: how far the rig may have changed since its calibration, as standard uncertainties."""
+
+    turn_urad: _Urad | None = Field(None, description=_AN_ANGLE)
+    shift_um: _Um | None = Field(None, description=_A_SHIFT)
+    centre_px: _Px | None = Field(None, description=_PIXELS)
+    focal_ppm: _Ppm | None = Field(None, description=_A_SHARE)
+    per_kelvin: _Rate | None = Field(None, description="a table with turn_urad, shift_um, centre_px or focal_ppm")
+    per_hour: _Rate | None = Field(None, description="a table with turn_urad, shift_um, centre_px or focal_ppm")
+
+    @model_validator(mode="after")
+    def _all_or_none(self) -> _Stability:
+        missing = [name for name in _TOTALS if getattr(self, name) is None]
+        rates = self.per_kelvin is not None or self.per_hour is not None
+        if missing and not (rates and len(missing) == len(_TOTALS)):
+            raise Clash(
+                missing[0],
+                Message(
+                    "rig.stability_in_part", "is missing; {names} go together, give all of them", names=tuple(_TOTALS)
+                ),
+            )
+        return self
+
+    def stability(self) -> Stability | None:
+        stated = {name: value for name in _TOTALS if (value := getattr(self, name)) is not None}
+        return _Rate(**stated).stability() if stated else None
+
+    def drift(self) -> Drift:
+        rates = (STABLE if one is None else one.stability() for one in (self.per_kelvin, self.per_hour))
+        return Drift(*rates)
+
+
+_TOTALS = ("turn_urad", "shift_um", "centre_px", "focal_ppm")
+_CELSIUS = Annotated[float, Field(ge=-50, le=200, allow_inf_nan=False)]
+_A_TEMPERATURE = label("a temperature in °C from −50 to 200")
+
+
+class _Air(Table):
+    """[air]: how warm it was around the rig."""
+
+    calibrated_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
+    checked_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
+    scanned_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
+
+    def air(self) -> Air:
+        return Air(self.calibrated_celsius, self.checked_celsius, self.scanned_celsius)
 
 
 class _Camera(Table):
@@ -337,6 +396,9 @@ class RigTables(Table):
     stability: _Stability | None = Field(
         None, description="a table [stability] with turn_urad, shift_um, centre_px and focal_ppm"
     )
+    air: _Air | None = Field(
+        None, description="a table [air] with calibrated_celsius, checked_celsius or scanned_celsius"
+    )
     validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
     check: _Check | None = Field(None, description="a table [check] with readjust")
     part: _Part | None = Field(None, description="a table [part]")
@@ -419,6 +481,10 @@ class Rig:
     unstated: frozenset[str] = frozenset()
     stability: Stability | None = None
     """How far it may have changed since its calibration; None: nothing is stated."""
+    drift: Drift = NO_DRIFT
+    """How much further for each kelvin and hour."""
+    air: Air = field(default_factory=Air)
+    """How warm it was."""
     validity: Validity = field(default_factory=Validity)
     name: str = ""
     """What its history is kept by; nothing: each calibration has a history of its own."""
@@ -510,7 +576,9 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
     if tables.laser_fan is not None:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
     if tables.stability is not None:
-        stated["stability"] = tables.stability.stability()
+        stated |= {"stability": tables.stability.stability(), "drift": tables.stability.drift()}
+    if tables.air is not None:
+        stated["air"] = tables.air.air()
     if tables.validity is not None:
         stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
     if tables.check is not None:
@@ -546,7 +614,8 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         | _present({"margin_mm": rig.plane_margin_mm}),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
-        "stability": None if rig.stability is None else _stability_table(rig.stability),
+        "stability": _stability_tables(rig.stability, rig.drift) or None,
+        "air": _present({f"{name}_celsius": value for name, value in asdict(rig.air).items()}) or None,
         "validity": _present(asdict(rig.validity)) or None,
         "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
         "check": {"readjust": True} if rig.readjust else None,
@@ -619,6 +688,12 @@ def _gauge_table(gauge: GaugeSpec) -> dict[str, Any]:
             **{name: None if polygon is None else polygon.tolist() for name, polygon in polygons.items()},
         }
     )
+
+
+def _stability_tables(stability: Stability | None, drift: Drift) -> dict[str, Any]:
+    rates = {"per_kelvin": drift.per_kelvin, "per_hour": drift.per_hour}
+    stated = {name: _stability_table(rate) for name, rate in rates.items() if rate != STABLE}
+    return {**({} if stability is None else _stability_table(stability)), **stated}
 
 
 def _stability_table(stability: Stability) -> dict[str, Any]:

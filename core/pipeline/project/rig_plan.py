@@ -21,7 +21,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.pipeline.project.details import accepted_calibration
 from core.pipeline.project.results import load_results
-from core.pipeline.project.workspace import project_set
+from core.pipeline.project.workspace import project_set, rig_in_its_air
 from core.pipeline.steps.plan_step import PlanResult, plan, write_plan
 from core.pipeline.steps.plan_words import plan_rows
 from core.plan.design import RANGES
@@ -85,7 +85,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
     InputError
         If a file of the project is damaged, or the rig cannot measure a block.
     """
-    text = toml_text({**rig_tables(project.rig), "plan": _known(folder, project)})
+    text = toml_text({**rig_tables(rig_in_its_air(project)), "plan": _known(folder, project)})
     with tempfile.TemporaryDirectory() as place:
         file = Path(place) / RIG
         write_text(file, text, sync=False)

@@ -6,12 +6,15 @@ their arguments and results can be pickled. What takes long takes a `progress` l
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
+from core.calibrate.drift import NO_DRIFT
 from core.files.atomic import make_inner_folder
 from core.files.project.data import Project
 from core.files.project.folder import RESULTS, source_folder
 from core.files.recording.recording_set import RecordingSet, gather_set
+from core.files.recording.rig import Rig
 from core.pipeline.steps.workspace import Workspace
 
 
@@ -26,7 +29,17 @@ def project_set(folder: Path, project: Project) -> RecordingSet:
     sources = project.sources
     names = (sources.camera, sources.planes, sources.scan, sources.check)
     camera, planes, scan, check = (source_folder(folder, name) for name in names)
-    return gather_set(project.rig, camera, planes, scan, project.info.name, check)
+    return gather_set(rig_in_its_air(project), camera, planes, scan, project.info.name, check)
+
+
+def rig_in_its_air(project: Project) -> Rig:
+    """The project's rig, as warm as the air is stated to be, where that says how far it may have changed."""
+    rig, celsius = project.rig, project.info.air_celsius
+    air = rig.air
+    if air.calibrated is None and rig.drift == NO_DRIFT:
+        return rig
+    checked, scanned = (celsius if one is None else one for one in (air.checked, air.scanned))
+    return replace(rig, air=replace(air, checked=checked, scanned=scanned))
 
 
 def part_name(project: Project) -> str:

@@ -13,7 +13,6 @@ import numpy as np
 
 from core.calibrate.change import (
     DEFAULT_STABILITY,
-    STABLE,
     Change,
     Evidence,
     RigSpread,
@@ -25,6 +24,7 @@ from core.calibrate.change import (
     reckoned,
 )
 from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
+from core.calibrate.drift import NO_DRIFT, loosened
 from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
@@ -40,6 +40,7 @@ from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.pipeline.steps.planes_step import measure_poses
+from core.pipeline.steps.stated_change import StatedChange, change_at_check, change_at_scan, change_since_check
 from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
@@ -81,6 +82,8 @@ def check_step(
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
     found = fresh_check(found, calibration.fan)
+    if celsius is not None:
+        found = replace(found, rig=replace(found.rig, air=replace(found.rig.air, checked=celsius)))
     if not found.check:
         raise InputError(
             Message(
@@ -105,7 +108,9 @@ def check_step(
             calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
         )  # fmt: skip
+        celsius = found.rig.air.checked
         past, spread = PastCheck.of(check, celsius), charted_spread(found, calibration, check.taken_at)
+        stated = change_at_check(found, calibration.fan, check.taken_at)
         sees: _OfStep | None = None
         if check.used:
             by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
@@ -113,10 +118,8 @@ def check_step(
             likelihoods = tuple(map(float, log_likelihoods(deviations, evidence)))
             by_default = sees.told(check, DEFAULT_STABILITY).stated_mm
             # what a history says must not rest on what it has said before
-            past = PastCheck.of(
-                sees.told(check, reckoned(found.rig.stability, None)[0]), celsius, likelihoods, by_default
-            )
-            check = sees.told(check, reckoned(found.rig.stability, spread)[0])
+            past = PastCheck.of(sees.told(check, reckoned(stated.stability, None)[0]), celsius, likelihoods, by_default)
+            check = sees.told(check, reckoned(stated.stability, spread)[0])
         log.notes.append(check.sentence)
         log.notes.extend(() if sees is None else sees.notes_on_what_is_open(check))
         log.notes.extend(_kept(found, past))
@@ -223,8 +226,8 @@ def since_calibration(
     found = fresh_check(found, calibration.fan)
     apart = _days_apart(found)
     if apart <= SAME_DAY:
-        return judged(found, calibration, options, progress, of_measured, poses).change
-    change = judged(replace(found, check=()), calibration, options, progress, of_measured).change
+        return judged(found, calibration, options, progress, of_measured, poses, at_scan=True).change
+    change = judged(replace(found, check=()), calibration, options, progress, of_measured, at_scan=True).change
     other_day = Message(
         "check.another_day",
         "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
@@ -242,13 +245,15 @@ def _days_apart(found: RecordingSet) -> float:
     return abs(apart.total_seconds()) / 86_400.0
 
 
-def _stability(found: RecordingSet, calibration: Calibration) -> Stability | None:
+def _stated(found: RecordingSet, fan: FanCalibration) -> StatedChange:
     """How far the rig may have changed since its calibration, or since a re-adjustment.
 
-    On the day of its pictures a re-adjustment is what a check is: they show the rig as it was in the scan.
+    On the day of its pictures a re-adjustment is what a check is: they show the rig as it was in the scan, but for what
+    warmth and time have changed since.
     """
-    readjusted_now = not found.check and _readjusted_on_the_day(found, calibration.fan)
-    return STABLE if readjusted_now else found.rig.stability
+    if fan.readjusted is not None and not found.check and _readjusted_on_the_day(found, fan):
+        return StatedChange(change_since_check(found, fan.readjusted.taken_at), assumed=False)
+    return change_at_scan(found, fan)
 
 
 def _readjusted_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
@@ -271,7 +276,8 @@ def charted_spread(found: RecordingSet, calibration: Calibration, when: datetime
     """
     if when is None and not found.frames:
         return None
-    stated = found.rig.stability if when is not None else _stability(found, calibration)
+    fan = calibration.fan
+    stated = (_stated(found, fan) if when is None else change_at_check(found, fan, when)).stability
     try:
         history = history_of(found.rig, calibration.id)
         return history.spread(calibration.id, when or taken_at(found.frames), stated)
@@ -298,8 +304,13 @@ def judged(
     progress: Progress,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
     poses: Sequence[PoseFeatures] | None = None,
+    *,
+    at_scan: bool = False,
 ) -> Judged:
-    """What the pictures of a set, and those of its interim check if there are any, prove of the rig."""
+    """What the pictures of a set, and those of its interim check if there are any, prove of the rig.
+
+    When its check was taken, or `at_scan`.
+    """
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
@@ -310,16 +321,19 @@ def judged(
         seen = measure_check(found, camera, options, progress) if poses is None else poses
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
-        evidence += of_check
         agree = agrees(deviations, of_check)
+        if at_scan:
+            of_check = loosened(of_check, deviations, change_since_check(found, taken_at(check_paths(found))))
+        evidence += of_check
+    stated = _stated(found, fan)
     change = judge(
         camera,
         fan.fan,
         deviations,
         evidence,
-        _stability(found, calibration),
+        stated.known,
         charted_spread(found, calibration),
-        DEFAULT_STABILITY if agree else stability_by_pictures(deviations, evidence),
+        stated.guess if agree else stability_by_pictures(deviations, evidence, stated.guess),
     )
     change = replace(change, checked=agree)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
@@ -332,23 +346,11 @@ def judged(
     return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
-def assumed_stability(found: RecordingSet, change: Change) -> tuple[Message, ...]:
-    """A note on what is assumed of a rig of which nothing is stated, or taken from the history of its checks."""
+def assumed_stability(found: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
+    """Notes on what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
     if change.spread is not None:
         return (_charted(change.spread, found),)
-    if found.rig.stability is not None:
-        return ()
-    size = change.stability
-    return (
-        Message(
-            "scan.stability_assumed",
-            "How far the rig may have changed since its calibration is not stated ([stability] in rig.toml); assumed "
-            "are standard uncertainties of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:g} px.",
-            turn_urad=size.turn * 1e6,
-            shift_um=size.shift_mm * 1e3,
-            centre_px=size.centre_px,
-        ),
-    )
+    return _stated(found, fan).notes(found.rig, change.stability)
 
 
 def _charted(spread: RigSpread, found: RecordingSet) -> Message:
@@ -359,7 +361,7 @@ def _charted(spread: RigSpread, found: RecordingSet) -> Message:
         "first": spread.first.astimezone(),
         "last": spread.last.astimezone(),
     }
-    if found.rig.stability is not None:
+    if found.rig.stability is not None or found.rig.drift != NO_DRIFT:
         return Message(
             "scan.stability_more_than_stated",
             "By checks on {days} days from {first} to {last} the rig changes by {times:.2f} times what is assumed of a "

@@ -134,7 +134,7 @@ def profile_step(
             *change.notes,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
-            *assumed_stability(found, change),
+            *assumed_stability(found, change, calibration.fan),
         )
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))

@@ -24,6 +24,7 @@ from core.files.results.fan_file import write_fan
 from core.messages import Message
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import STEP_MM, charted_spread, check_paths, fresh_check, judged, measure_check
+from core.pipeline.steps.stated_change import change_at_check
 from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
 from core.progress import Progress, silent
 
@@ -89,9 +90,9 @@ def _prior(found: RecordingSet, calibration: Calibration, when: datetime) -> Sta
 
     A check that fails shows what quiet days before it have not: they make the prior no smaller.
     """
-    spread = charted_spread(found, calibration, when)
-    if spread is None or (found.rig.stability is None and spread.factor < 1):
-        return found.rig.stability
+    spread, stated = charted_spread(found, calibration, when), change_at_check(found, calibration.fan, when).stability
+    if spread is None or (stated is None and spread.factor < 1):
+        return stated
     return spread.stability
 
 

@@ -119,7 +119,7 @@ def scan_step(
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
-        notes = (*notes, *assumed_stability(found, change), *_assumed_shutter(found, scan))
+        notes = (*notes, *assumed_stability(found, change, calibration.fan), *_assumed_shutter(found, scan))
         scan = replace(scan, notes=urgent_first(notes))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)

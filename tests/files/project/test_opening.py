@@ -10,6 +10,7 @@ import pytest
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.change import Stability
+from core.calibrate.drift import Air, Drift
 from core.errors import InputError
 from core.files.project import json_form as project_json
 from core.files.project.data import (
@@ -49,7 +50,9 @@ def full_project():
         ProjectInfo("Block 50", "gauge", "S/N 7", "Ö. Ärzt", "ACME", "Lab 3", 20.5, 21, 'quotes " and\nlines — σ'),
         Rig(Charuco(9, 7, 20, 15), CircleGrid(7, 6, 37.5), 2, math.radians(4.0), GaugeSpec(50, 0.2, POLYGON, POLYGON),
             "green", BoardTolerance(0.1, 2e-4), BoardTolerance(0.05, 3e-4),
-            plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5), row_time_us=26.0,
+            plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5),
+            drift=Drift(Stability(3e-5, 0.003, 0.04, 2e-5), Stability(1e-6, 1e-3, 0.01, 1e-6)), air=Air(20.5, 21, 23.5),
+            row_time_us=26.0,
             channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True,
             mosaic="RGGB", part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5)),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),

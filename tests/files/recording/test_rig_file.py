@@ -345,3 +345,30 @@ def test_the_channel_of_one_step_changes_and_the_others_stay(tmp_path):
     rig = replace(default_rig(), channel="green").with_channel("scan", "blue-red")
     assert [rig.channel_of(part) for part in ("camera", "planes", "scan")] == ["green", "green", "blue-red"]
     assert rig.with_channel("scan", None).channel_of("scan") is None
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("turn_urad = 3.0", "stability.shift_um is missing; turn_urad, shift_um, centre_px, focal_ppm go together"),
+        ("per_kelvin = { turn_urad = -3.0 }", "stability.per_kelvin.turn_urad is -3.0, not an angle in µrad"),
+        ("per_hour = { turn_rad = 1.0 }", "stability.per_hour.turn_rad is an unknown key"),
+        ("", "stability.turn_urad is missing"),
+    ],
+)
+def test_what_is_wrong_with_a_stability_is_told_in_one_sentence(tmp_path, text, told):
+    path = tmp_path / "rig.toml"
+    path.write_text(f"[stability]\n{text}\n")
+    with pytest.raises(InputError) as error:
+        read_rig(path)
+    assert told in str(error.value) and "\n" not in str(error.value)
+
+
+def test_figures_for_each_kelvin_and_hour_may_stand_alone(tmp_path):
+    path = tmp_path / "rig.toml"
+    path.write_text("[stability.per_kelvin]\nturn_urad = 40.0\n[air]\nscanned_celsius = 24.5\n")
+    rig = read_rig(path)
+    assert rig.stability is None and rig.air.scanned == 24.5
+    assert rig.drift.per_kelvin.turn == pytest.approx(40e-6) and not rig.drift.per_hour.turn
+    path.write_text(rig_to_toml(rig))
+    assert read_rig(path) == rig

@@ -14,7 +14,7 @@ from core.scan.preview.hints import HintLimits
 from workbench.language import text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
-from workbench.pages.scan.stability import STABILITY
+from workbench.pages.scan.stability import STABILITY, drift_key, usual_per_kelvin
 from workbench.pages.scan.stage import Stage
 from workbench.pages.scan_form import add_scan_settings
 from workbench.pages.stripes import set_stripe_editable
@@ -153,6 +153,7 @@ class SettingsPanel(QWidget):
             )
             tip = tr("Standard uncertainty; empty: {usual:g} {unit}.", usual=one.usual, unit=one.unit)
             form.add_number(one.key, tr(one.name), allowed, tip)
+        self._add_drift(form)
         form.add_section(tr("How long calibration and check hold"))
         for key, label, usual in VALIDITY:
             form.add_number(
@@ -163,6 +164,32 @@ class SettingsPanel(QWidget):
             )
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)
+
+    def _add_drift(self, form: SettingsForm) -> None:
+        """What warmth and time add, and how warm it was."""
+        titles = {"per_kelvin": tr("For each kelvin since, in addition"),
+                  "per_hour": tr("For each hour since, in addition")}  # fmt: skip
+        for rate, title in titles.items():
+            form.add_section(title)
+            for one in STABILITY:
+                first = usual_per_kelvin(one) if rate == "per_kelvin" else one.usual / 100
+                allowed = NumberRange(
+                    0.0, 1000.0, decimals=one.decimals + 1, step=first, unit=one.unit, none_text=tr("not stated"),
+                    first=first,
+                )  # fmt: skip
+                tip = tr(
+                    "Standard uncertainty; empty: does not change so. Laser modules turn by 10 to 100 µrad for each "
+                    "kelvin, pictures drift by 0.1 to 0.5 px while a camera warms up."
+                )
+                form.add_number(drift_key(rate, one.key), tr(one.name), allowed, tip)
+        form.add_section(tr("Temperature"))
+        form.add_number(
+            "calibrated_celsius",
+            tr("Air at the calibration"),
+            NumberRange(-50.0, 200.0, decimals=1, step=0.5, unit="°C", none_text=tr("not stated"), first=20.0),
+            tr("That of the scan is the air on the Project page. Where one of them is empty, 5 K between them are "
+               "assumed."),
+        )  # fmt: skip
 
     def refresh(self) -> None:
         """Show the settings."""

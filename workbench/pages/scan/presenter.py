@@ -219,7 +219,7 @@ class ScanPresenter(StepPresenter):
         rig = self.project.rig
         return {
             **values_of(self.project.options, self._stripe_found),
-            **stability.shown(rig.stability),
+            **stability.rig_shown(rig),
             **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
             "row_time_us": rig.row_time_us,
             "channel": rig.channel_of("scan") or "",
@@ -227,9 +227,8 @@ class ScanPresenter(StepPresenter):
 
     def set_setting(self, field: str, value: Any) -> None:
         """Change a setting; undoable. What cannot be is refused with a sentence."""
-        if field in stability.shown(None):
-            rig = self.project.rig
-            after = replace(self.project, rig=replace(rig, stability=stability.stated(rig.stability, field, value)))
+        if field in stability.rig_shown(self.project.rig):
+            after = replace(self.project, rig=stability.rig_stated(self.project.rig, field, value))
             self.model.edit(tr("change what is known of the rig's stability"), after, f"scan {field}")
             return
         if field == "channel":

@@ -7,6 +7,8 @@ from dataclasses import replace
 from typing import Any, NamedTuple
 
 from core.calibrate.change import DEFAULT_STABILITY, Stability
+from core.calibrate.drift import USUAL_KELVINS, Drift
+from core.files.recording.rig import Rig
 from core.messages import label
 
 _PER_UNIT: Mapping[str, float] = {"turn": 1e6, "shift_mm": 1e3, "centre_px": 1.0, "focal_share": 1e6}
@@ -37,6 +39,16 @@ STABILITY: tuple[StabilityField, ...] = tuple(
 """In the order they are shown."""
 
 
+def usual_per_kelvin(one: StabilityField) -> float:
+    """What a rig of which nothing is stated is assumed to change for each kelvin, in the field's unit."""
+    return one.usual / USUAL_KELVINS
+
+
+def drift_key(rate: str, key: str) -> str:
+    """What the page calls a number of the "per_kelvin" or "per_hour" of a Drift."""
+    return f"{rate}.{key}"
+
+
 def shown(stability: Stability | None) -> dict[str, float | None]:
     """The values by key; None where nothing is stated."""
     if stability is None:
@@ -49,3 +61,32 @@ def stated(stability: Stability | None, key: str, value: Any) -> Stability | Non
     if value is None:
         return None
     return replace(stability or DEFAULT_STABILITY, **{key: value / _PER_UNIT[key]})
+
+
+def drift_shown(drift: Drift) -> dict[str, float | None]:
+    """What is stated of each kelvin and hour, by key; None for what does not change so."""
+    return {
+        drift_key(rate, key): round(getattr(getattr(drift, rate), key) * factor, 6) or None
+        for rate in ("per_kelvin", "per_hour")
+        for key, factor in _PER_UNIT.items()
+    }
+
+
+def drift_stated(drift: Drift, key: str, value: Any) -> Drift:
+    """The drift with one value changed; without a value that does not change so."""
+    rate, name = key.split(".")
+    return replace(drift, **{rate: replace(getattr(drift, rate), **{name: (value or 0.0) / _PER_UNIT[name]})})
+
+
+def rig_shown(rig: Rig) -> dict[str, float | None]:
+    """All that the page asks for of a rig's stability."""
+    return {**shown(rig.stability), **drift_shown(rig.drift), "calibrated_celsius": rig.air.calibrated}
+
+
+def rig_stated(rig: Rig, key: str, value: Any) -> Rig:
+    """The rig with one of these values changed."""
+    if key == "calibrated_celsius":
+        return replace(rig, air=replace(rig.air, calibrated=value))
+    if "." in key:
+        return replace(rig, drift=drift_stated(rig.drift, key, value))
+    return replace(rig, stability=stated(rig.stability, key, value))

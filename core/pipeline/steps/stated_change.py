@@ -1,0 +1,142 @@
+"""How far a rig may have changed when it was checked or measured with, by what rig.toml and its pictures say."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import datetime, timedelta
+from typing import NamedTuple
+
+from core.calibrate.change import DEFAULT_STABILITY, Stability
+from core.calibrate.drift import KELVINS_WITHIN_DAY, NO_DRIFT, USUAL_KELVINS, Apart, apart, stability_after
+from core.calibrate.results import FanCalibration
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.rig import Rig
+from core.files.recording.set_listing import taken_at
+from core.messages import Field, Message
+
+_HOUR = timedelta(hours=1)
+
+
+class StatedChange(NamedTuple):
+    """How far a rig may have changed since its calibration."""
+
+    stability: Stability | None
+    """None: nothing is stated, and the default will do."""
+    assumed: bool
+    """Whether a part of it rests on an assumption."""
+    since: Apart | None = None
+    """How much warmer and later than the calibration it was; None: as re-adjusted on the day."""
+
+    @property
+    def known(self) -> Stability | None:
+        """The stability, where nothing of it is assumed."""
+        return None if self.assumed else self.stability
+
+    @property
+    def guess(self) -> Stability:
+        """The stability to begin with where something is assumed."""
+        return self.stability if self.assumed and self.stability is not None else DEFAULT_STABILITY
+
+    def notes(self, rig: Rig, stability: Stability) -> tuple[Message, ...]:
+        """What is assumed of the rig, its temperatures and times, if the `stability` was reckoned with in the end."""
+        if self.since is None or (rig.drift == NO_DRIFT and rig.stability is not None):
+            return ()
+        if rig.drift == NO_DRIFT:
+            return (*_warmer(self.since), _not_stated(stability))
+        rest = () if rig.stability is not None else (_not_stated(DEFAULT_STABILITY),)
+        return (*_said(rig, self.since, stability), *rest)
+
+
+def change_at_scan(found: RecordingSet, fan: FanCalibration) -> StatedChange:
+    """Until the frames were recorded."""
+    when = taken_at(found.frames) if found.frames else None
+    return _since_calibration(found, found.rig.air.scanned, when, fan)
+
+
+def change_at_check(found: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:
+    """Until the pictures of a check were taken."""
+    return _since_calibration(found, found.rig.air.checked, when, fan)
+
+
+def change_since_check(found: RecordingSet, checked: datetime) -> Stability:
+    """Between the pictures of a check of the day and the frames; nothing where nothing is stated of warmth and time."""
+    air = found.rig.air
+    hours = 0.0 if not found.frames else (taken_at(found.frames) - checked) / _HOUR
+    return found.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
+
+
+def _since_calibration(
+    found: RecordingSet, celsius: float | None, when: datetime | None, fan: FanCalibration
+) -> StatedChange:
+    rig = found.rig
+    since = apart(rig.air.calibrated, celsius, _hours(found, when, fan), USUAL_KELVINS)
+    stability = stability_after(rig.stability, rig.drift, since)
+    guessed = stability is not None and (rig.stability is None or any(_guessed(rig, since)))
+    return StatedChange(stability, guessed, since)
+
+
+def _hours(found: RecordingSet, when: datetime | None, fan: FanCalibration) -> float | None:
+    """From the calibration to `when`: the older of camera and planes, or a re-adjustment; None where none can tell."""
+    made = [taken_at(there) for paths in (found.camera, [pair.on for pair in found.planes])
+            if (there := [path for path in paths if path.exists()])]  # fmt: skip
+    if fan.readjusted is not None:
+        made = [fan.readjusted.taken_at]
+    return None if when is None or not made else abs((when - min(made)) / _HOUR)
+
+
+def _guessed(rig: Rig, since: Apart) -> Iterator[bool]:
+    """Whether kelvins, and hours, are assumed and matter."""
+    yield since.kelvins_assumed and bool(rig.drift.per_kelvin.over_default.any())
+    yield since.hours_assumed and bool(rig.drift.per_hour.over_default.any())
+
+
+def _not_stated(size: Stability) -> Message:
+    return Message(
+        "scan.stability_assumed",
+        "How far the rig may have changed since its calibration is not stated ([stability] in rig.toml); assumed "
+        "are standard uncertainties of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:g} px.",
+        turn_urad=size.turn * 1e6,
+        shift_um=size.shift_mm * 1e3,
+        centre_px=size.centre_px,
+    )
+
+
+def _warmer(since: Apart) -> Iterator[Message]:
+    """A note where the default is not enough."""
+    if not since.kelvins_assumed and since.kelvins > USUAL_KELVINS:
+        yield Message(
+            "scan.warmer_than_usual",
+            "The rig was calibrated at a temperature {kelvins:g} K away, and how far it changes by that is not stated "
+            "({field} in rig.toml): what is assumed for {usual:g} K is reckoned with in proportion.",
+            kelvins=since.kelvins,
+            usual=USUAL_KELVINS,
+            field=Field("[stability] per_kelvin"),
+        )
+
+
+def _said(rig: Rig, since: Apart, stability: Stability) -> Iterator[Message]:
+    """What is reckoned with, and which of kelvins and hours are assumed."""
+    yield Message(
+        "scan.change_by_warmth_and_time",
+        "By {kelvins:.1f} K and {hours:.1f} h since its calibration the rig may have changed by standard uncertainties "
+        "of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:.2g} px.",
+        kelvins=since.kelvins,
+        hours=since.hours,
+        turn_urad=stability.turn * 1e6,
+        shift_um=stability.shift_mm * 1e3,
+        centre_px=stability.centre_px,
+    )
+    kelvins, hours = _guessed(rig, since)
+    if kelvins:
+        yield Message(
+            "scan.kelvins_assumed",
+            "How warm it was is not stated for both times ([air] in rig.toml): a difference of {kelvins:g} K is "
+            "assumed.",
+            kelvins=since.kelvins,
+        )
+    if hours:
+        yield Message(
+            "scan.hours_assumed",
+            "No picture of the calibration is there to tell when it was made: {hours:g} hours ago is assumed.",
+            hours=since.hours,
+        )
