@@ -326,7 +326,8 @@ def history_rows(history: RigHistory) -> Rows:
 
 def _past_check(check: PastCheck, chart: ControlChart) -> str:
     where = tr("within" if chart.holds(check.error_mm) else "outside")
-    rule = tr("by {n} checks before", n=chart.n) if chart.own else tr("by its stated stability")
+    by_itself = tr("by its uncertainty") if check.artefact else tr("by its stated stability")
+    rule = tr("by {n} checks before", n=chart.n) if chart.own else by_itself
     warm = "" if check.celsius is None else f", {spoken().number(check.celsius, 'g')} °C"
     by = tr("{px:.2f} px, {mm:.3f} mm, p = {p:.2g}", px=check.offset_px, mm=check.offset_mm, p=check.p)
     if check.artefact:

@@ -56,6 +56,7 @@ class ArtefactCheck:
     """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that.
 
     `characteristic` is the name of what was measured, as "ball diameter"; "" is the thickness of the part as a whole.
+    `outside` says of one that lies outside the limits of the rig's own history that it does.
     """
 
     artefact: Artefact
@@ -63,6 +64,7 @@ class ArtefactCheck:
     u_mm: float
     day: date
     characteristic: str = ""
+    outside: Message | None = None
 
     @property
     def error_mm(self) -> float:
@@ -91,8 +93,10 @@ class ArtefactCheck:
 
     @property
     def verdict(self) -> Literal["passed", "doubtful", "failed"]:
-        """Failed where |E_n| is above 1; else doubtful if the certificate has lapsed."""
-        return "failed" if abs(self.e_n) > 1 else "doubtful" if self.lapsed else "passed"
+        """Failed where |E_n| is above 1; else doubtful if the certificate has lapsed, or by the rig's history."""
+        if abs(self.e_n) > 1:
+            return "failed"
+        return "doubtful" if self.lapsed or self.outside is not None else "passed"
 
     @property
     def sentence(self) -> Message:
@@ -113,6 +117,8 @@ class ArtefactCheck:
                 due=str(self.artefact.due),
                 **values,
             )
+        if self.outside is not None:
+            return self.outside
         return Message(
             "artefact.passed",
             "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), as its certificate and the uncertainty allow.",

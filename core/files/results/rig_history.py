@@ -12,11 +12,11 @@ from __future__ import annotations
 
 import math
 import os
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from datetime import datetime, timedelta
 from itertools import pairwise
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Annotated, Any, NamedTuple
 
 import numpy as np
 import platformdirs
@@ -164,6 +164,13 @@ class PastCheck:
         )  # fmt: skip
 
 
+class ArtefactChart(NamedTuple):
+    """The results of one artefact in the order of time, and the limits for the last of them."""
+
+    checks: tuple[PastCheck, ...]
+    limits: ControlChart
+
+
 @dataclass(frozen=True, slots=True)
 class RigHistory:
     """The checks of the rig called `name`, in the order their pictures were taken."""
@@ -179,9 +186,17 @@ class RigHistory:
         """Of each artefact measured with these calibrations, the check nearest in time to `when`."""
         found: dict[str, ArtefactCheck] = {}
         for one in sorted(self.of_calibration(calibration_id), key=lambda one: abs(one.taken_at - when)):
-            if (measured := one.of_artefact) is not None:
-                found.setdefault(one.artefact, measured)
+            if one.artefact not in found and (measured := one.of_artefact) is not None:
+                found[one.artefact] = replace(measured, outside=self.beyond(one))
         return tuple(found[name] for name in sorted(found))
+
+    def artefact_charts(self, calibration_id: str) -> tuple[ArtefactChart, ...]:
+        """Of each artefact measured with these calibrations all results, and the limits for the last of them."""
+        by_id: dict[str, list[PastCheck]] = {}
+        for one in self.of_calibration(calibration_id):
+            if one.artefact:
+                by_id.setdefault(one.artefact, []).append(one)
+        return tuple(ArtefactChart(tuple(by_id[name]), self.chart(by_id[name][-1])) for name in sorted(by_id))
 
     def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
         """Those with the same calibrations by the same means: pictures, or one artefact."""
@@ -237,11 +252,23 @@ class RigHistory:
         return RigSpread(factor, len(of_days), taken[0], taken[-1])
 
     def beyond(self, check: PastCheck) -> Message | None:
-        """What to say of a check that lies outside its limits; None within them, or where no stripe was found."""
+        """What to say of a check that lies outside its limits; None within them, or where no stripe was found.
+
+        An artefact is held to limits of its own history alone: its certificate is what E_n is for.
+        """
         chart = self.chart(check)
-        if math.isnan(check.error_mm) or chart.holds(check.error_mm):
+        if math.isnan(check.error_mm) or chart.holds(check.error_mm) or (check.artefact and not chart.own):
             return None
         values = {"step_mm": check.step_mm, "error_mm": check.error_mm, "lower": chart.lower, "upper": chart.upper}
+        if check.artefact:
+            return Message(
+                "artefact.beyond_history",
+                "{id} is measured to {error_mm:+.3f} mm, outside {lower:+.3f} … {upper:+.3f} mm, where the {n} "
+                "measurements before had it: look for what changed.",
+                id=check.artefact,
+                n=chart.n,
+                **values,
+            )
         if chart.own:
             return Message(
                 "check.beyond_history",

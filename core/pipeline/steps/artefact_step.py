@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
@@ -17,7 +18,7 @@ from core.files.results.scan_file import read_scan
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.temperature import COMPARED
 from core.messages import Message
-from core.pipeline.steps.validity import history_name
+from core.pipeline.steps.validity import history_name, history_of
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 
@@ -36,7 +37,7 @@ def artefact_step(
 
     Of a block that is the thickness of the part, of a sphere or a step its diameter or height in inspection.json, and
     `characteristic` says which where there are several. It is at 20 °C where the part's temperature is stated;
-    `celsius` is that of the air, for the history.
+    `celsius` is that of the air, for the history, which also says whether the artefact lies where it had it before.
 
     Raises
     ------
@@ -58,8 +59,11 @@ def artefact_step(
         characteristic = length.name
     when = taken_at(found.frames)
     check = ArtefactCheck(artefact, length.value, length.u, when.astimezone().date(), characteristic)
-    past = PastCheck.of_measured(check, when, (calibration.id, frames_id(found, work.record())), celsius)
-    keep_check(history_name(found.rig, calibration.id), past)
+    celsius = found.rig.air.scanned if celsius is None else celsius
+    ids = (calibration.id, frames_id(found, work.record()))
+    outside = history_of(found.rig, calibration.id).beyond(PastCheck.of_measured(check, when, ids, celsius))
+    check = replace(check, outside=outside)
+    keep_check(history_name(found.rig, calibration.id), PastCheck.of_measured(check, when, ids, celsius))
     return check
 
 

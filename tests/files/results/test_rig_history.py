@@ -194,3 +194,40 @@ def test_the_printed_history_has_the_temperature_where_it_is_known():
     told = list(lines.values())[1:]
     assert [line.endswith(", 21.5 °C") for line in told] == [False, True]
     assert "°C" not in told[0]
+
+
+def artefact_history(errors_um):
+    """A block measured on so many days, with pictures of checks between."""
+    blocks = [measured_block(day, BLOCK.value_mm + 1e-3 * um) for day, um in enumerate(errors_um)]
+    return RigHistory("bench", tuple(sorted((*blocks, *map(later, range(9))), key=lambda one: one.taken_at)))
+
+
+STEADY_UM = (4, 5, 3, 4, 6, 4, 5, 3)
+
+
+def test_an_artefact_that_drifts_within_its_certificate_is_told_by_its_own_history():
+    history, drifted = artefact_history(STEADY_UM), measured_block(20, BLOCK.value_mm + 0.015)
+    steady = measured_block(20, BLOCK.value_mm + 0.005)
+    assert abs(drifted.e_n) < 1 and history.beyond(steady) is None
+    told = history.beyond(drifted)
+    assert told is not None and told.code == "artefact.beyond_history" and "the 8 measurements before" in str(told)
+    (found,) = history.added(drifted).artefacts(FIRST.calibration_id, drifted.taken_at)
+    assert found.verdict == "doubtful" and found.sentence == told
+    assert artefact_history(STEADY_UM[:5]).beyond(drifted) is None, "few measurements have no limits of their own"
+
+
+def test_each_artefact_is_charted_by_itself_with_limits_for_its_last_result():
+    other = measured_block(4.5, 20.002, replace(BLOCK, id="GB 20-1", value_mm=20.0))
+    history = artefact_history(STEADY_UM).added(other).added(measured_block(20, BLOCK.value_mm + 0.015))
+    one, two = history.artefact_charts(FIRST.calibration_id)
+    assert [check.artefact for check in one.checks] == ["GB 20-1"] and not one.limits.own
+    assert len(two.checks) == len(STEADY_UM) + 1 and two.limits.own and two.limits.n == len(STEADY_UM)
+    assert two.limits.holds(0.005) and not two.limits.holds(0.015)
+    assert history.artefact_charts("another") == ()
+
+
+def test_the_printed_history_says_of_an_artefact_its_error_and_by_what_it_is_held():
+    history = artefact_history(STEADY_UM)
+    told = [line for _, line in history_rows(history) if "GB 50-7" in line]
+    assert len(told) == len(STEADY_UM)
+    assert "E_n = 0.22" in told[0] and "off by +0.004 mm" in told[0] and "by its uncertainty, 20.5 °C" in told[0]

@@ -117,6 +117,7 @@ def scan_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     quick = cast(HandLane, hand_bench.quick)
     quick.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan")
     quick.answers[jobs.ARTEFACT_CHECKS] = lambda folder, project: ()
+    quick.answers[jobs.ARTEFACT_CHARTS] = lambda folder, project: ()
     quick.answers[jobs.SHOW_SCAN] = lambda folder: scan_cases.look()
     quick.answers[jobs.SHOW_FRAME] = lambda folder, project, name: scan_cases.stages(name)
     hand_bench.model.create(tmp_path / "project", replace(new_project("block"), accepted=Accepted("camera-1", "fan-1")))

@@ -9,6 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.keys import up_to_date
+from core.files.results.rig_history import ArtefactChart
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from workbench.bench import Bench
 from workbench.language import text_of, tr
@@ -22,8 +23,8 @@ class KnownArtefacts(QObject):
     """The user's and the project's artefacts, and what was measured of them with the accepted calibrations.
 
     `own` are the user's by their ids, as they were last read, `lengths` the names of what each kind can be compared
-    with. `checks` are the results, of each artefact the one nearest in time to the recording. `problem` says why the
-    last artefact was not kept, or the registers not read.
+    with. `checks` are the results, of each artefact the one nearest in time to the recording, `charts` all of them with
+    their limits. `problem` says why the last artefact was not kept, or the registers not read.
     """
 
     changed = Signal()
@@ -34,6 +35,7 @@ class KnownArtefacts(QObject):
         self.own: Mapping[str, Artefact] = {}
         self.lengths: Mapping[ArtefactKind, tuple[str, ...]] = {}
         self.checks: tuple[ArtefactCheck, ...] = ()
+        self.charts: tuple[ArtefactChart, ...] = ()
         self.problem, self._looked = "", ""
         self._task: Task | None = None
 
@@ -151,7 +153,7 @@ class KnownArtefacts(QObject):
         """Another project: stop, and read what was measured with its calibrations."""
         if self._task is not None:
             self._task.cancel()
-        self._task, self.checks, self._looked, self.lengths = None, (), "", {}
+        self._task, self.checks, self.charts, self._looked, self.lengths = None, (), (), "", {}
         self.follow()
 
     def follow(self) -> None:
@@ -161,7 +163,7 @@ class KnownArtefacts(QObject):
         wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.fan else ""
         if wanted == self._looked:
             return
-        self._looked, self.checks = wanted, ()
+        self._looked, self.checks, self.charts = wanted, (), ()
         if folder is None or not wanted:
             self.changed.emit()
             return
@@ -171,16 +173,26 @@ class KnownArtefacts(QObject):
                 self.checks = checks
                 self.changed.emit()
 
-        self._bench.quick.run(
-            self,
-            jobs.ARTEFACT_CHECKS,
-            folder,
-            project,
-            label=tr("Reading the history of the rig"),
-            on_done=read,
-            on_failed=lambda _: None,  # what is wrong is told when it is measured or compared
-            offers={},
+        def read_charts(charts: tuple[ArtefactChart, ...]) -> None:
+            if self._looked == wanted:
+                self.charts = charts
+                self.changed.emit()
+
+        asked: tuple[tuple[jobs.Job, Callable[[Any], None]], ...] = (
+            (jobs.ARTEFACT_CHECKS, read),
+            (jobs.ARTEFACT_CHARTS, read_charts),
         )
+        for job, on_done in asked:
+            self._bench.quick.run(
+                self,
+                job,
+                folder,
+                project,
+                label=tr("Reading the history of the rig"),
+                on_done=on_done,
+                on_failed=lambda _: None,  # what is wrong is told when it is measured or compared
+                offers={},
+            )
 
     def _refused(self, problem: Any) -> None:
         self.problem = text_of(problem)

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from PySide6.QtCore import QEvent
-from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QComboBox, QFrame, QLabel, QPushButton, QWidget
 
 from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
-from core.files.results.rig_history import PastCheck, RigHistory
+from core.files.results.rig_history import ArtefactChart, PastCheck, RigHistory
 from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.wording import with_uncertainty
@@ -45,7 +45,10 @@ class CheckCard(QFrame):
         self.setObjectName("card")
         self._check, self._artefacts, self._live, self._seen = check, artefacts, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
-        self.chart = ControlPlot()
+        self.chart, self.charted = ControlPlot(), QComboBox()
+        self.charted.setAccessibleName(tr("What the chart shows"))
+        self.charted.activated.connect(self._choose_chart)
+        self._wanted_chart = ""
         self.take, self.choose, self.run, self.readjust = QPushButton(), QPushButton(), QPushButton(), QPushButton()
         self.readjust.clicked.connect(check.propose_readjustment)
         self.compare = QPushButton(tr("Compare with an artefact …"))
@@ -63,7 +66,7 @@ class CheckCard(QFrame):
         buttons = in_row((self.take, 1), self.choose, (self.run, 1), spacing=6)
         title = heading(tr("Check of camera and laser"))
         in_column(
-            title, light, self.sentence, self.rows, self.chart, self.readjust, buttons, self.compare,
+            title, light, self.sentence, self.rows, self.charted, self.chart, self.readjust, buttons, self.compare,
             on=self, margins=(10, 8, 10, 10), spacing=5,
         )  # fmt: skip
 
@@ -88,7 +91,7 @@ class CheckCard(QFrame):
         past = check.past if shown is not None else None
         rows = figures(shown, limits(check.history, past)) + artefact_rows(() if taking else self._artefacts.checks)
         self.rows.set_rows(rows)
-        self._show_chart(check.history, past)
+        self._show_chart({} if taking else self._charts(check.history, past))
         self.rows.setVisible(bool(rows))
         checking = stage is CheckStage.CHECKING
         rename(self.take, tr("Stop") if taking else tr("Take pictures"))
@@ -201,22 +204,40 @@ class CheckCard(QFrame):
         sentences = " ".join((*map(text_of, found), *([check.refusal] if check.refusal else [])))
         return LEVELS[verdict], capital(tr(CHECKS[verdict])), sentences
 
-    def _show_chart(self, history: RigHistory | None, past: PastCheck | None) -> None:
-        """All checks with these calibrations, each scaled to the height of the last one's step."""
-        checks = history.like(past) if history is not None and past is not None else ()
-        self.chart.setVisible(len(checks) > 1)
-        if history is None or past is None or len(checks) < 2:
-            return
-        values = [one.error_mm / one.step_mm * past.step_mm for one in checks]
-        tips = [when(one) + (f", {number(one.celsius, '.1f')} °C" if one.celsius is not None else "") for one in checks]
-        chart = history.chart(past)
-        self.chart.set_values(
-            values,
-            [one.verdict == "passed" for one in checks],
-            tips,
-            (chart.lower, chart.centre, chart.upper),
-            axes=(tr("step off by"), tr("check")),
+    def _charts(self, history: RigHistory | None, past: PastCheck | None) -> Mapping[str, ArtefactChart]:
+        """What there are two or more of with these calibrations, by its name: pictures, and each artefact."""
+        of_pictures = (
+            {tr("Pictures of the target"): ArtefactChart(history.like(past), history.chart(past))}
+            if history is not None and past is not None
+            else {}
         )
+        charts = {**of_pictures, **{one.checks[-1].artefact: one for one in self._artefacts.charts}}
+        return {name: one for name, one in charts.items() if len(one.checks) > 1}
+
+    def _show_chart(self, charts: Mapping[str, ArtefactChart]) -> None:
+        """One chart, each value scaled to the height of the last one's step; of several one can be chosen."""
+        names = list(charts)
+        if [self.charted.itemText(row) for row in range(self.charted.count())] != names:
+            self.charted.clear()
+            self.charted.addItems(names)
+            self.charted.setCurrentIndex(max(0, self.charted.findText(self._wanted_chart)))
+        self.charted.setVisible(len(names) > 1)
+        self.chart.setVisible(bool(names))
+        if not names:
+            return
+        checks, limits = charts[self.charted.currentText()]
+        last = checks[-1]
+        self.chart.set_values(
+            [one.error_mm / one.step_mm * last.step_mm for one in checks],
+            [one.verdict == "passed" for one in checks],
+            [_tip(one) for one in checks],
+            (limits.lower, limits.centre, limits.upper),
+            axes=(tr("artefact off by") if last.artefact else tr("step off by"), tr("check")),
+        )
+
+    def _choose_chart(self) -> None:
+        self._wanted_chart = self.charted.currentText()
+        self.refresh()
 
     def _run(self) -> None:
         if self._check.stage is CheckStage.CHECKING:
@@ -236,6 +257,13 @@ class CheckCard(QFrame):
         folder = ask.choose_folder(self, tr("Folder with the pictures of the check"), start)
         if folder is not None:
             self._check.use_folder(folder)
+
+
+def _tip(check: PastCheck) -> str:
+    """When, how warm and, of an artefact, E_n."""
+    warm = [] if check.celsius is None else [f"{number(check.celsius, '.1f')} °C"]
+    normalised = [f"E_n = {number(check.e_n, '.2f')}"] if check.artefact else []
+    return joined([when(check), *warm, *normalised])
 
 
 def when(check: PastCheck | InterimCheck) -> str:

@@ -1,7 +1,7 @@
 """The Check card of the scan page: pictures of the day, run, light, figures."""
 
 from dataclasses import replace
-from datetime import date
+from datetime import date, timedelta
 from typing import cast
 
 import numpy as np
@@ -12,6 +12,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration, ProposedRe
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
+from core.files.results.rig_history import PastCheck, RigHistory
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.checks import rig_check
@@ -271,6 +272,39 @@ def test_artefacts_of_the_same_calibrations_are_shown_with_their_certificates(
     rows = {label: (tip, how) for label, _, tip, how in artefact_rows([measured])}
     assert rows["E_n; valid until"][1] == level
     assert "D-K-15070 2026-03" in rows["GB 50-7 certified"][0]
+
+
+def charted_block(page, qtbot, count):
+    """A block was measured so many times, once a day."""
+    block = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03")
+    history = RigHistory("bench")
+    for day in range(count):
+        measured = ArtefactCheck(block, 50.004 + 0.001 * (day % 3), 0.009, TAKEN.date())
+        taken = TAKEN + timedelta(days=day - count)
+        history = history.added(PastCheck.of_measured(measured, taken, ("cal", f"frames {day}"), 20.5))
+    charts = history.artefact_charts("cal")
+    cast(HandLane, page.presenter.bench.quick).answers[jobs.ARTEFACT_CHARTS] = lambda folder, project: charts
+    page.presenter.artefacts.opened()
+    qtbot.waitUntil(lambda: page.presenter.artefacts.charts == charts)
+
+
+def test_an_artefact_measured_several_times_is_charted_without_any_check_by_pictures(page, qtbot):
+    charted_block(page, qtbot, 9)
+    card = shown(page, qtbot, CheckStage.NONE)
+    assert card.chart.isVisible() and card.chart.axis_text("left") == "artefact off by [mm]"
+    assert card.charted.isHidden(), "there is nothing to choose"
+    assert "E_n = 0.26" in card.chart._tip(2, 0) and "20.5 °C" in card.chart._tip(2, 0)
+
+
+def test_of_pictures_and_artefacts_one_chart_is_chosen(chosen, measuring, qtbot):
+    charted_block(chosen, qtbot, 9)
+    card = with_history(chosen, measuring, qtbot, check(), 9)
+    assert card.charted.isVisible() and card.chart.axis_text("left") == "step off by [mm]"
+    card.charted.setCurrentIndex(1)
+    card.charted.activated.emit(1)
+    assert card.charted.currentText() == "GB 50-7" and card.chart.axis_text("left") == "artefact off by [mm]"
+    chosen.refresh()
+    assert card.charted.currentText() == "GB 50-7", "the choice stays"
 
 
 def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuring, qtbot):
