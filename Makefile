@@ -81,7 +81,7 @@ fuzz: $(READY)            ## 100,000 files of strangers, each time others: no tr
 bench: $(READY)           ## how fast it is, as ratios to OpenCV and scikit-image within one run: a few minutes
 	$(BIN)/pytest -q tests/benchmarks/bench_*.py --benchmark-timer=time.process_time --benchmark-columns=min,median,rounds
 
-screenshots: $(READY)     ## pictures of every page, three sizes, both themes, in ./screenshots
+screenshots: $(READY)     ## pictures of every page, four sizes, both themes, in ./screenshots; twice as fine by QT_SCALE_FACTOR=2
 	$(SCREEN) $(BIN)/python -m tests.workbench.screenshots screenshots
 
 pictures: $(READY)        ## the pictures of README and manual

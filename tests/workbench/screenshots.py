@@ -29,6 +29,7 @@ from core.scan.surface.fused_surface import Mesh
 from core.simulate.scene.objects import gauge_block
 from core.translations import PSEUDO, language, languages
 from tests.study.grr_tables import AIAG
+from tests.study.spc_tables import PISTON_RINGS
 from workbench.app import Application, build_window
 from workbench.bench import Bench, make_bench
 from workbench.language import choose
@@ -165,6 +166,14 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     inspect.studies.finish()
     _wait(app, lambda: inspect.studies.study is not None, PATIENCE_S)
     yield "studies"
+    inspect.studies.begin("series")
+    inspect.studies.write("\n".join(["value", *(f"{value:.3f}" for value in PISTON_RINGS.ravel())]))
+    for key, value in (("name", "bore"), ("nominal_mm", 74.0), ("tolerance_mm", 0.05), ("size", 5)):
+        inspect.studies.set_value(key, value)
+    inspect.studies.finish()
+    _wait(app, lambda: inspect.studies.draft is None, PATIENCE_S)
+    _settle(app, bench, 1.0)
+    yield "series"
     for key, value in (("primary", "table"), ("at 20 °C", True), ("with master", True), ("name", "Block 50 no. 7")):
         inspect.conditions.set_value(key, value)
     shown(page.surface)

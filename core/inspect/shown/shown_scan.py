@@ -65,6 +65,8 @@ class InspectionView:
     ----------
     points
         (N, 3) in mm, camera frame.
+    normals
+        (N, 3) unit normals, zero where unknown.
     number
         (N,) index of each in the cloud.
     uv
@@ -110,6 +112,7 @@ class InspectionView:
     """
 
     points: Array
+    normals: NDArray[np.float32]
     number: NDArray[np.int32]
     uv: NDArray[np.float32]
     sigma: Values

@@ -71,6 +71,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
     pictures, best = _pictures(folder, project, results.frames)
     view = InspectionView(
         points=shown.points,
+        normals=shown.normals.astype(np.float32),
         number=order.astype(np.int32),
         uv=shown.uv.astype(np.float32),
         sigma=shown.sigma.astype(np.float32),

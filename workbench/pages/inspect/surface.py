@@ -264,7 +264,12 @@ class SurfaceTab(QWidget):
         cloud = (p.scan.serial, count, colour, self._other_look(colour))
         if cloud != self._cloud:
             self._cloud = cloud
-            self.scene.set_cloud(view.points[:count], keep_camera=bool(before), **self._look(view, count, colour))
+            self.scene.set_cloud(
+                view.points[:count],
+                normals=view.normals[:count],
+                keep_camera=bool(before),
+                **self._look(view, count, colour),
+            )
         mesh = (p.scan.serial, p.triangles_shown(), self.colour, self._other_look(self.colour))
         if view.mesh is not None and self.shape != "points" and mesh != self._mesh:
             self._mesh = mesh

@@ -24,7 +24,7 @@ class SceneCloud:
 
     The points given first are dealt out to as many chunks as they fill, one after the other, so that each chunk is
     spread over the whole; added points fill further chunks in their order. `serial` tells clouds and recoloured
-    clouds apart.
+    clouds apart. With unit normals (N, 3), zero where unknown, the points are shaded; none can be added to these.
 
     Raises
     ------
@@ -32,8 +32,17 @@ class SceneCloud:
         If the shapes do not match.
     """
 
-    def __init__(self, points: ArrayLike, values: ArrayLike | None, colouring: Colouring) -> None:
+    def __init__(
+        self,
+        points: ArrayLike,
+        values: ArrayLike | None,
+        colouring: Colouring,
+        normals: NDArray[np.float32] | None = None,
+    ) -> None:
         self._points: Array = as_points(points)
+        if normals is not None and normals.shape != self._points.shape:
+            raise ValueError(f"normals have shape {normals.shape}, points {self._points.shape}")
+        self._normals = normals
         self._values: Array | None = None if values is None else _values(values, len(self._points))
         self.given = self._first = len(self._points)
         self._dealt = -(-self._first // CHUNK)
@@ -68,16 +77,19 @@ class SceneCloud:
         """How many points are in a chunk; only the last chunk changes, when points are added."""
         return len(range(*self.rows(chunk).indices(self.given)))
 
-    def chunk(self, number: int) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-        """Points (n, 3) in mm and colours (n, 3) of a chunk, without points that are not finite."""
+    def chunk(self, number: int) -> tuple[NDArray[np.float32], NDArray[np.uint8], NDArray[np.float32] | None]:
+        """Points (n, 3) in mm, colours and normals (n, 3) of a chunk, without points that are not finite."""
         rows = self.rows(number)
         points = self._points[rows].astype(np.float32)
         if self._values is not None:
             colours = self.colouring.of(self._values[rows])
         else:
             colours = self.colouring.plain(np.arange(*rows.indices(self.given)))
+        normals = None if self._normals is None else _towards_camera(self._normals[rows], points)
         finite = finite_rows(points)
-        return (points, colours) if finite.all() else (points[finite], colours[finite])
+        if finite.all():
+            return points, colours, normals
+        return points[finite], colours[finite], None if normals is None else normals[finite]
 
     def spread(self, chunks: int) -> list[int]:
         """So many chunks, evenly over all."""
@@ -95,11 +107,13 @@ class SceneCloud:
         Raises
         ------
         ValueError
-            If there are values for some points only.
+            If there are values for some points only, or normals.
         """
         more = as_points(points)
         if not len(more):
             return
+        if self._normals is not None:
+            raise ValueError("points of a cloud with normals are all given at once")
         if (values is None) != (self._values is None) and self.given:
             raise ValueError("points of a cloud with values need values, others must have none")
         new_values = None if values is None else _values(values, len(more))
@@ -128,6 +142,16 @@ class SceneCloud:
         if self._values is not None:
             step = max(1, self.given // MEASURED_FOR_LIMITS)
             self.colouring = self._asked.limited(self._values[: self.given : step])
+
+
+def _towards_camera(normals: NDArray[np.float32], points: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The normals; where one is unknown the direction to the camera that measured the point, which is the origin."""
+    unknown = ~normals.any(axis=1)
+    if not unknown.any():
+        return normals
+    known = normals.copy()
+    known[unknown] = -points[unknown] / np.maximum(np.linalg.norm(points[unknown], axis=1, keepdims=True), 1e-6)
+    return known
 
 
 def as_points(points: ArrayLike, what: str = "points") -> Array:

@@ -127,7 +127,7 @@ def whole_passes(scene: Scene, allowance: float, made: Made) -> list[Pass]:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Gathered:
-    """Points (n, 3) in mm with colours (n, 3); for a mesh also unit normals (n, 3) and triangles (t, 3)."""
+    """Points (n, 3) in mm with colours (n, 3); unit normals (n, 3) where they are shaded; a mesh's triangles (t, 3)."""
 
     points: NDArray[np.float32]
     colours: NDArray[np.uint8]

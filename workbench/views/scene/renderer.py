@@ -36,7 +36,7 @@ SHADE = 0.7
 """A plain mesh edge-on is darker by this part: its form is all there is to see."""
 
 VALUES_SHADE = 0.15
-"""A mesh coloured by values edge-on is darker by this part: its colours are to be read off the colour bar."""
+"""What is coloured by values is darker by this part edge-on: its colours are to be read off the colour bar."""
 
 
 class Renderer:
@@ -175,11 +175,11 @@ class Renderer:
             cells = vtkCellArray()
             cells.SetData(3, _ids(gathered.triangles.ravel()))
             data.SetPolys(cells)
-            data.GetPointData().SetNormals(_vtk(gathered.normals))
         actor = _actor(data)
-        if gathered.triangles is not None:
-            assert scene.mesh is not None
-            _light(actor, SHADE if scene.mesh.values is None else VALUES_SHADE)
+        if gathered.normals is not None:
+            data.GetPointData().SetNormals(_vtk(np.ascontiguousarray(gathered.normals)))
+            plain = gathered.triangles is not None and scene.mesh is not None and scene.mesh.values is None
+            _light(actor, SHADE if plain else VALUES_SHADE)
         self._renderer.AddActor(actor)
         self._parts[part] = made, actor
 

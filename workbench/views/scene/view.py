@@ -175,6 +175,7 @@ class SceneView(QWidget):
         values: ArrayLike | None = None,
         colouring: Colouring | None = None,
         colours: ArrayLike | ColourLike | None = None,
+        normals: NDArray[np.float32] | None = None,
         keep_camera: bool = True,
     ) -> None:
         """Show a cloud instead of the one before.
@@ -187,6 +188,8 @@ class SceneView(QWidget):
             (N,) one number a point, and how it is coloured. NaN is grey.
         colours
             Instead of values: (N, 3) uint8, or one colour for all.
+        normals
+            (N, 3) unit normals, zero where unknown, to shade the points by; None: they are not shaded.
         keep_camera
             Leave the view as it is, except when nothing was shown before.
 
@@ -202,7 +205,7 @@ class SceneView(QWidget):
             else:
                 colouring = Colouring(colours=as_colours(colours, len(np.asarray(points).reshape(-1, 3))))
         self._marked = None
-        self._scene.cloud = SceneCloud(points, values, colouring)
+        self._scene.cloud = SceneCloud(points, values, colouring, normals)
         self._changed(afresh=not keep_camera)
 
     def add_points(self, points: ArrayLike, values: ArrayLike | None = None) -> None:

@@ -355,6 +355,25 @@ def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(vie
     assert middle().max() < 0.75 * 255
 
 
+def test_points_are_shaded_by_their_normals_and_keep_the_colour_their_bar_says(view, qtbot):
+    colouring = Colouring("height", "mm", limits=(0.0, 1.0))
+    edge_on = np.tile(np.float32([np.sin(1.3), 0, -np.cos(1.3)]), (len(FLAT), 1))
+
+    def seen(normals: np.ndarray | None) -> np.ndarray:
+        view.set_cloud(FLAT, values=np.full(len(FLAT), 0.95), colouring=colouring, normals=normals)
+        view.view("top")
+        complete(view, qtbot)
+        rows, columns = view.picture().shape[:2]
+        middle = view.picture()[rows // 3 : 2 * rows // 3, columns // 3 : 2 * columns // 3].reshape(-1, 3)
+        colours, counts = np.unique(middle, axis=0, return_counts=True)
+        return colours[counts.argsort()[-2]].astype(float)  # after the background's
+
+    unlit, tilted, unknown = seen(None), seen(edge_on), seen(np.zeros_like(edge_on))
+    assert tilted.max() < 0.95 * unlit.max()
+    assert_allclose(tilted, unlit, atol=0.15 * 255)
+    assert_allclose(unknown, unlit, atol=3)
+
+
 def test_labels_and_measures_are_written_over_the_scene(view, qtbot):
     view.set_cloud(SPARSE, colours="#808080")
     complete(view, qtbot)
