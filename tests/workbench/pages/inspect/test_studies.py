@@ -140,6 +140,16 @@ def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(ta
     assert "part 26" in tab.notes.text()
 
 
+def test_the_head_over_the_ticks_has_room_beside_a_short_kind(tab, studies, qtbot):
+    studies.begin("series")
+    studies.write("value\n" + "\n".join(f"{50 + 0.001 * (k % 7):.3f}" for k in range(25)))
+    studies.finish()
+    qtbot.waitUntil(lambda: bool(studies.all))
+    qtbot.waitUntil(lambda: tab.list.topLevelItemCount() == 1)
+    header = tab.list.header()
+    assert header.sectionSize(0) >= header.sectionSizeHint(0)
+
+
 def test_a_short_series_draws_no_limits_and_says_why(tab, studies, qtbot):
     tab.window().refreshing.at_once()
     tab.buttons["series"].click()

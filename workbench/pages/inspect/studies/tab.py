@@ -144,7 +144,8 @@ class StudiesTab(QWidget):
                 if one.id == studies.chosen:
                     self.list.setCurrentItem(item)
             # Qt's own width of a column forgets the room that the style leaves beside a box to tick.
-            self.list.setColumnWidth(0, self.list.sizeHintForColumn(0) + BESIDE_PX)
+            beside = self.list.sizeHintForColumn(0) + BESIDE_PX
+            self.list.setColumnWidth(0, max(beside, self.list.header().sectionSizeHint(0)))
             self.list.blockSignals(False)
         self._fit_list()
         self.list.setVisible(bool(studies.all))
