@@ -19,7 +19,7 @@ from core.cli.options import ChannelName, ExitCode
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options, StatedTilt
-from core.files.recording.recording_set import RIG, excluded_names, open_set
+from core.files.recording.recording_set import RIG, excluded_names, open_set, require_folder
 from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
@@ -268,7 +268,9 @@ def _shown(work: Workspace, step: str, rows: output.Rows, values: Mapping[str, A
 def run_sets(
     sets: Sequence[Path], out: Path, executor: str, workers: int | None, chosen: Options, progress: Progress
 ) -> tuple[SetResult, ...]:
-    """Measure all sets."""
+    """Measure all sets; InputError before anything is begun if the folder of one is not there."""
+    for folder in sets:
+        require_folder(folder)
     with executor_of(executor, workers) as pool:
         return run_batch(sets, out, pool, chosen, progress)
 

@@ -13,6 +13,7 @@ from types import SimpleNamespace
 
 import pytest
 
+from core.cli import measuring
 from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording.options import Options
@@ -210,6 +211,16 @@ def test_absurd_executors_are_refused(quick, tmp_path, words, sentence):
     said = trisect("batch", *sets(tmp_path, "a"), "--out", tmp_path / "out", *words)
     assert said.code == 2
     assert sentence in said.sentence
+
+
+def test_nothing_is_begun_if_the_folder_of_one_set_is_not_there(tmp_path, monkeypatch):
+    monkeypatch.setattr(measuring, "executor_of", lambda *_: pytest.fail("processes were made"))
+    out = tmp_path / "out"
+    said = trisect("batch", *sets(tmp_path, "a"), tmp_path / "typing error", "--out", out)
+    assert said.code == 2 and not out.exists()
+    assert said.sentence.removeprefix("trisect: ") == (
+        f"{tmp_path / 'typing error'}: there is no such folder; name the folder of a recording set."
+    )
 
 
 def test_without_dask_one_sentence_says_what_to_install(quick, tmp_path, monkeypatch):

@@ -271,6 +271,20 @@ class RecordingSet:
             )
 
 
+def require_folder(folder: Path) -> None:
+    """InputError unless the folder of a recording set is there."""
+    if folder.is_dir():
+        return
+    what = (
+        Message("set.file_not_folder", "is a file, not a folder")
+        if folder.exists()
+        else Message("source.no_such_folder", "there is no such folder")
+    )
+    raise InputError(
+        what, where=folder, todo=Message("advice.name_recording_set", "name the folder of a recording set")
+    )
+
+
 def open_set(folder: Path) -> RecordingSet:
     """List and check a recording set without decoding its pictures.
 
@@ -279,15 +293,7 @@ def open_set(folder: Path) -> RecordingSet:
     InputError
         If the folder is missing or empty, rig.toml is wrong, or the pictures are not all of one size.
     """
-    if not folder.is_dir():
-        what = (
-            Message("set.file_not_folder", "is a file, not a folder")
-            if folder.exists()
-            else Message("source.no_such_folder", "there is no such folder")
-        )
-        raise InputError(
-            what, where=folder, todo=Message("advice.name_recording_set", "name the folder of a recording set")
-        )
+    require_folder(folder)
     if not any(folder.iterdir()):
         raise InputError(
             Message("set.empty", "the recording set is empty"),
