@@ -90,6 +90,10 @@ class Scenario:
         The camera: its picture moved by so many px to the right, and 0.6 times as far down.
     inner_share, inner_mm, gloss, gloss_deg
         What the object's surface does with the lasers' light: `core.simulate.scene.scene.Material`.
+    gloss_along_deg, lay_deg
+        Of a glossy object that is ground, rolled or brushed: σ of its lobe along the lay, `gloss_deg` then being that
+        across it, and how the lay is turned against the object's x axis, on the table. 0 along: it has no lay. Rolled
+        brass and aluminium have 1.6° to 6.5° (Ward 1992: α = √2 σ of 0.04 to 0.16), less along than across.
     mirror_share
         Share of the lasers' light that flat sides of the object mirror onto table and object
         (`core.simulate.scene.mirrors`): 0.04 to 0.1 of plastics and enamel, 0.1 to 0.5 of milled and ground metal.
@@ -147,6 +151,8 @@ class Scenario:
     inner_mm: float = 0.8
     gloss: float = 0.0
     gloss_deg: float = 6.0
+    gloss_along_deg: float = 0.0
+    lay_deg: float = 0.0
     mirror_share: float = 0.0
     stated: bool = True
     laser: LaserEffects = GAUSSIAN_LASER
@@ -207,6 +213,8 @@ class Scenario:
             ("inner_mm", 0.0, 5.0),
             ("gloss", 0.0, 1000.0),
             ("gloss_deg", 0.5, 45.0),
+            ("gloss_along_deg", 0.0, 45.0),
+            ("lay_deg", -180.0, 180.0),
             ("mirror_share", 0.0, 1.0),
         )
         require_ranges(self, ranges)

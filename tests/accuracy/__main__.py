@@ -31,13 +31,14 @@ def main() -> None:
         "what", nargs="?", choices=("accuracy", "hostile", "ideal"), default="accuracy", help="which table"
     )
     parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
+    parser.add_argument("--only", default="", metavar="WORDS", help="of the hostile table, effects called so")
     parser.add_argument("--manual", action="store_true", help="put the table into the manual")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "accuracy", help="where the figures go")
     parser.add_argument("--processes", type=int, default=PROCESSES)
     chosen = parser.parse_args()
     commit = _commit()
     if chosen.what == "hostile":
-        _hostile(chosen.out, commit, short=chosen.short)
+        _hostile(chosen.out, commit, short=chosen.short, only=chosen.only)
         return
     if chosen.what == "ideal":
         known = hostile_cases(0.25, IDEAL_SEEDS, (CHECK_POSES,))
@@ -58,9 +59,10 @@ def main() -> None:
         _into_manual(lines)
 
 
-def _hostile(out: Path, commit: str, *, short: bool) -> None:
+def _hostile(out: Path, commit: str, *, short: bool, only: str) -> None:
     """Print the hostile table, and keep it beside the figures; `short`: one seed, with a check."""
     cases = hostile_cases(0.25, SEEDS[:1], (CHECK_POSES,)) if short else hostile_cases(0.25)
+    cases = [case for case in cases if only in case.effect]
     results = hostile.run(cases, out / f"hostile-{commit}.jsonl")
     lines = [*hostile.table(cases, results), "", *hostile.summary(cases, results)]
     print("\n".join(lines))

@@ -85,6 +85,10 @@ EFFECTS = (
         [(f"{bow} mm", {"plates": PlateEffects(camera_bow_mm=bow)}) for bow in (0.2, 0.6, 1.5)],
     ),
     Effect(
+        "plane target bowed",
+        [(f"{bow} mm", {"plates": PlateEffects(plane_bow_mm=bow)}) for bow in (0.1, 0.3, 1.0)],
+    ),
+    Effect(
         "camera's target larger",
         [(f"{1000 * larger:g} ‰", {"plates": PlateEffects(camera_scale=larger)}) for larger in (0.001, 0.005, 0.02)],
     ),
@@ -120,6 +124,16 @@ EFFECTS = (
         ],
     ),
     Effect("glossy part", [(f"{gloss:g} ×", {"gloss": gloss}) for gloss in (3.0, 20.0)]),
+    Effect(
+        "glossy part with a lay",
+        [
+            (
+                f"{gloss:g} ×, {along:g}° × {across:g}°, at {lay:g}°",
+                {"gloss": gloss, "gloss_along_deg": along, "gloss_deg": across, "lay_deg": lay},
+            )
+            for gloss, along, across, lay in ((5.0, 2.0, 6.5, 45.0), (20.0, 2.0, 6.5, 0.0), (100.0, 1.6, 3.6, 90.0))
+        ],
+    ),
     Effect("fan lines that bow", [(f"{bow}", {"fan_bow": bow}) for bow in (0.003, 0.01, 0.05)]),
     Effect("speckle", [(f"contrast {contrast}", {"speckle": contrast}) for contrast in (0.35, 0.6)]),
     Effect(
@@ -194,6 +208,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "the rig warmed since its calibration": CHANGED,
     "exposed too long, blooming": ("scan.overexposed", "fan.saturated_stripes"),
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),
+    "plane target bowed": ("fan.bowed_target", "fan.bow_or_bend", "fan.bow_beyond_flatness"),
     "camera's target larger": ("target.sizes_disagree",),
     "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
     "lens with k3": (*LENS, "camera.third_radial"),
@@ -205,6 +220,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "hot pixels": ("camera.hot_pixels", "camera.misfound_corners"),
     "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
     "glossy part": ("inspection.light_is_skewed", "scan.shines"),
+    "glossy part with a lay": ("inspection.light_is_skewed", "scan.shines"),
     "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy"),
     "speckle": ("scan.speckled", "form.scatter"),
     "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll"),

@@ -7,7 +7,7 @@ Light on a surface point X at distance ρ from the emitter, d off the sheet's mi
 with θ the angle of incidence; 0 where θ ≥ 90° or something is in the way. Only pixels within 4.5 σ of the sheet are
 looked at. A laser may have another section than the Gaussian (`core.simulate.effects.laser`). Of an object whose
 material takes light in, a share is that of the points behind, down to a depth, seen through it along the pixel's ray
-(without refraction); one that is glossy adds a lobe about the mirrored light.
+(without refraction); one that is glossy adds a lobe about the mirrored light, which is narrower along a lay.
 """
 
 from __future__ import annotations
@@ -34,6 +34,8 @@ _DEPTHS, _DEPTH_SHARES = np.polynomial.legendre.leggauss(8)
 """Depths from −1 to 1, and their weights, that stand for all those from which light comes back."""
 _LEAST_COSINE = 0.1
 """Of the angle at which light leaves a surface: beyond, what comes from below is not followed further."""
+_LEAST_LAY = 0.02
+"""Share of a lay that lies in a face: with less of it, the face is cut across it."""
 BOW_SEEN_TO = 0.6
 """Angle in rad beside the camera's viewing direction to which the light of a bowed sheet is rendered."""
 
@@ -143,7 +145,25 @@ def _gloss(material: Material, points: Array, towards: Array, normals: Map) -> A
     half = -points / np.linalg.norm(points, axis=1)[:, None] - towards / np.linalg.norm(towards, axis=1)[:, None]
     cosine = np.einsum("ni,ni->n", half, normals) / np.linalg.norm(half, axis=1)
     tilt = np.arccos(np.clip(cosine, -1.0, 1.0))
-    return np.asarray(material.gloss * np.exp(-0.5 * (tilt / material.gloss_rad) ** 2))
+    if not material.along_rad:
+        return np.asarray(material.gloss * np.exp(-0.5 * (tilt / material.gloss_rad) ** 2))
+    along = _along_lay(half, normals, np.array(material.lay))
+    square = along * (tilt / material.along_rad) ** 2 + (1 - along) * (tilt / material.gloss_rad) ** 2
+    return np.asarray(material.gloss * np.exp(-0.5 * square))
+
+
+def _along_lay(half: Array, normals: Map, lay: Array) -> Array:
+    """Square (N,) of the cosine between the lay and the way a surface tilts to have the normals `half` (N, 3).
+
+    A face on which the lay stands upright is taken to have it along the direction that is left.
+    """
+    flat = lay - (normals @ lay)[:, None] * normals
+    upright = np.linalg.norm(flat, axis=1) < _LEAST_LAY
+    flat[upright] = np.cross(normals[upright], np.roll(lay, 1))
+    flat /= np.maximum(np.linalg.norm(flat, axis=1), _LEAST_LAY)[:, None]
+    along = np.einsum("ni,ni->n", half, flat) ** 2
+    across = np.einsum("ni,ni->n", half, np.cross(normals, flat)) ** 2
+    return np.asarray(along / np.maximum(along + across, np.finfo(np.float64).tiny))
 
 
 def _largest_bow(beam: Beam) -> float:

@@ -35,13 +35,20 @@ class Material:
         Light of the mirroring lobe at its crest, over what an even surface sends back at normal incidence.
     gloss_rad
         Gaussian σ of that lobe as a tilt of the surface, in rad: its roughness (Torrance and Sparrow 1967,
-        doi:10.1364/JOSA.57.001105, without masking).
+        doi:10.1364/JOSA.57.001105, without masking). Of a surface with a lay, across that.
+    along_rad
+        σ along the lay of a ground, rolled or brushed surface, where it is smoother; 0: it has none (Ward 1992,
+        doi:10.1145/133994.134078).
+    lay
+        Direction (x, y, z) of the lay in the camera's frame; on each face as its plane has it.
     """
 
     inner_share: float = 0.0
     inner_mm: float = 0.0
     gloss: float = 0.0
     gloss_rad: float = 0.1
+    along_rad: float = 0.0
+    lay: tuple[float, float, float] = (1.0, 0.0, 0.0)
 
 
 MATT = Material()

@@ -40,7 +40,7 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     pose = table_pose()
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
-    material = Material(scenario.inner_share, scenario.inner_mm, scenario.gloss, np.radians(scenario.gloss_deg))
+    material = _material(scenario, pose)
     scene = Scene.on_table(pose, *things, material=material)
     up = pose.rotation[:, 2]
     figures: dict[str, object] = {"kind": scenario.object, "table_normal": up.tolist()}
@@ -55,6 +55,20 @@ def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     elif scenario.object == "cylinder":
         figures["radius_mm"] = scenario.height_mm / 2
     return scene, figures
+
+
+def _material(scenario: Scenario, table: Pose) -> Material:
+    """What the object is made of; its lay turns with it."""
+    turned_by = np.radians(scenario.yaw_deg + scenario.lay_deg)
+    x, y, z = table.rotation @ [np.cos(turned_by), np.sin(turned_by), 0.0]
+    return Material(
+        scenario.inner_share,
+        scenario.inner_mm,
+        scenario.gloss,
+        np.radians(scenario.gloss_deg),
+        np.radians(scenario.gloss_along_deg),
+        (float(x), float(y), float(z)),
+    )
 
 
 def _thing(scenario: Scenario) -> Mesh | Sphere | None:

@@ -1,6 +1,7 @@
 """Stripes, before and after the lens, against where plane and sphere really meet the sheet."""
 
 from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -10,10 +11,11 @@ from core.model import LightPlane, Pose
 from core.simulate.blur import blurred
 from core.simulate.rays import ray_map
 from core.simulate.rig import paper_rig
+from core.simulate.scenario import Scenario
 from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
 from core.simulate.scene.objects import box
 from core.simulate.scene.scene import MATT, Material, Mesh, Scene, Sphere, surface_maps
-from core.simulate.scene.stage import WORK_POINT, table_pose
+from core.simulate.scene.stage import WORK_POINT, build_scene, table_pose
 
 RIG = paper_rig(0.5)
 CAMERA = RIG.camera
@@ -234,3 +236,35 @@ def test_a_glossy_plate_is_bright_where_it_mirrors_the_laser_into_the_camera():
     matt, glossy = section_of(MATT)[1], section_of(Material(gloss=5.0, gloss_rad=0.2))[1]
     assert glossy.sum() > 1.2 * matt.sum()
     assert section_of(Material(gloss=5.0, gloss_rad=0.01))[1].sum() == pytest.approx(matt.sum(), rel=0.01)
+
+
+def test_a_lay_as_rough_along_as_across_is_none():
+    none, same = (section_of(Material(gloss=5.0, gloss_rad=0.2, along_rad=rad))[1] for rad in (0.0, 0.2))
+    assert same == pytest.approx(none, rel=1e-6)
+
+
+def test_a_ground_plate_mirrors_across_its_lay_and_hardly_along_it():
+    def brightness(lay):
+        return section_of(Material(gloss=5.0, gloss_rad=0.2, along_rad=0.03, lay=tuple(lay)))[1].sum()
+
+    emitter = fan_sheets(RIG, WORK_POINT)[1].emitter
+    rows, light = section_of(MATT)
+    seen = CAMERA.rays(np.array([[960.0, float(rows @ light / light.sum())]]))[0] * 500.0
+    half = -seen / np.linalg.norm(seen) + (emitter - seen) / np.linalg.norm(emitter - seen)
+    tilted = np.array([half[0], half[1], 0.0]) / np.hypot(*half[:2])
+    across = np.array([-tilted[1], tilted[0], 0.0])
+    even = section_of(Material(gloss=5.0, gloss_rad=0.2))[1].sum()
+    assert brightness(across) == pytest.approx(even, rel=0.03)
+    assert brightness(tilted) == pytest.approx(light.sum(), rel=0.03)
+    assert brightness(-across) == pytest.approx(brightness(across))
+    turned = [np.cos(at) * across + np.sin(at) * tilted for at in np.radians([0, 30, 60, 90])]
+    assert all(one >= other for one, other in pairwise(map(brightness, turned)))
+
+
+def test_the_lay_turns_with_the_part():
+    found = [build_scene(Scenario(gloss=5.0, gloss_along_deg=2.0, lay_deg=lay, yaw_deg=yaw))[0].material.lay
+             for lay, yaw in ((30.0, 10.0), (10.0, 30.0), (0.0, 0.0))]  # fmt: skip
+    assert found[0] == pytest.approx(found[1])
+    table = table_pose().rotation
+    assert found[2] == pytest.approx(table[:, 0])
+    assert np.dot(found[0], table[:, 2]) == pytest.approx(0, abs=1e-12)
