@@ -131,7 +131,7 @@ EFFECTS = (
                 f"{gloss:g} ×, {along:g}° × {across:g}°, at {lay:g}°",
                 {"gloss": gloss, "gloss_along_deg": along, "gloss_deg": across, "lay_deg": lay},
             )
-            for gloss, along, across, lay in ((5.0, 2.0, 6.5, 45.0), (20.0, 2.0, 6.5, 0.0), (100.0, 1.6, 3.6, 90.0))
+            for gloss, along, across, lay in ((5.0, 2.0, 6.5, 45.0), (20.0, 2.0, 6.5, 90.0), (100.0, 1.6, 3.6, 90.0))
         ],
     ),
     Effect("fan lines that bow", [(f"{bow}", {"fan_bow": bow}) for bow in (0.003, 0.01, 0.05)]),
