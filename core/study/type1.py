@@ -122,7 +122,7 @@ class Type1Study:
             said.append(
                 Message(
                     "study.few_repeats",
-                    "{n} repeats say little about the spread: {least} or more are asked for, 50 are usual.",
+                    "{n} repeats say little about the spread: take at least {least}, better 50.",
                     n=self.n,
                     least=FEW_MEASUREMENTS,
                 )

@@ -49,7 +49,7 @@ class ComparisonPanel(QWidget):
         self.significant = QCheckBox(tr("Grey where not significant"))
         self.beside = QCheckBox(tr("Show the other surface"))
         self.rows = ValueRows()
-        self.away = QPushButton(icon("mdi6.close"), tr("Take away"))
+        self.away = QPushButton(icon("mdi6.close"), tr("Remove"))
         in_column(
             in_row((self.file, 1), (self.project, 1)),
             *(self.form, self.rows, self.significant, self.beside, in_row((self.away, 1))),
@@ -117,7 +117,7 @@ def _rows(shown: ShownComparison) -> list[ValueRow]:
             "warn" if shown.higher.share else "",
         ),
         (tr("Detectable"), tr("from {lod} mm on", lod=wording().fixed(shown.lod95_mm, 3)), detectable, ""),
-        (tr("Registration"), f"{wording().fixed(shown.registration_mm, 3)} mm", registration, ""),
+        (tr("Registration"), f"{wording().fixed(shown.registration_mm, 4)} mm", registration, ""),
         (tr("Circles"), circles, "", ""),
     ]
 

@@ -103,7 +103,7 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
         (tr("Repeats"), str(statistics.n), tr("Scans in the series"), ""),
         (tr("Mean"), f"{wording().fixed(statistics.mean_mm, 4)} mm", tr("Mean of all repeats"), ""),
         (
-            tr("Error of the mean"),
+            tr("Bias"),
             mm(statistics.error_mm, signed=True),
             tr("Mean less the nominal value")
             if nominal_mm is None

@@ -84,7 +84,7 @@ def angle_rows(calibration: FanCalibration | None) -> list[ValueRow]:
         rows.append((name, text, tip, suits))
     if not math.isnan(calibration.pencil_gap_mm):
         tip = tr("Largest distance of the free planes from those of one pencil, within the work volume")
-        rows.append((tr("Off one pencil"), mm(calibration.pencil_gap_mm), tip, suits))
+        rows.append((tr("Off one axis"), mm(calibration.pencil_gap_mm), tip, suits))
     return rows
 
 

@@ -52,7 +52,7 @@ class ProjectPage(StepPage):
         self.rows, self.next_words = ValueRows(), muted()
         self.whole = QPushButton(icon("mdi6.play-circle-outline"), tr("Measure everything"))
         self.whole.clicked.connect(presenter.do_whole)
-        self.add_panel(tr("How far the work is"), holding(in_column(self.rows, self.whole, self.next_words)))
+        self.add_panel(tr("Progress"), holding(in_column(self.rows, self.whole, self.next_words)))
         self.place = muted()
         self.folder = QPushButton(icon("mdi6.folder-open-outline"), tr("Open the project folder"))
         self.add_panel(tr("Where it is kept"), self._kept())

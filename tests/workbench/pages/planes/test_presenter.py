@@ -263,7 +263,7 @@ def test_another_laser_is_solved_at_once_from_the_same_poses(
     assert planes.measuring.ran == ran
     (angle, *_), gap = words.angle_rows(found.work.calibration)[:2], words.angle_rows(found.work.calibration)[-1]
     assert angle[1].startswith("5.000° held, 5.00")
-    assert (angle[3], gap[0]) == ("good", "Off one pencil")
+    assert (angle[3], gap[0]) == ("good", "Off one axis")
 
 
 def test_another_plate_must_be_measured_again_and_comes_back_from_memory(

@@ -39,7 +39,7 @@ class ConditionsPanel(QWidget):
         self._column = QVBoxLayout(self)
         self._column.setContentsMargins(0, 0, 0, 0)
         self._column.addWidget(muted(
-            tr("They hold for the features. Add the thickness as a feature to have it at 20 °C, or compared, too.")
+            tr("They apply to the features, to the thickness only where it is one of them.")
         ))  # fmt: skip
         self._column.addWidget(self._inside)
 
@@ -105,9 +105,9 @@ class ConditionsPanel(QWidget):
 
     def _add_frame(self, form: SettingsForm, plan: InspectionPlan) -> None:
         form.add_section(tr("Part coordinates (3-2-1)"))
-        none = {"primary": tr("the camera's"), "secondary": tr("choose"), "tertiary": tr("amid the second")}
+        none = {"primary": tr("the camera's"), "secondary": tr("choose"), "tertiary": tr("middle of the second")}
         said = {
-            "primary": (tr("z points out of"), tr("A plane: z is 0 on it. The camera's: none are needed.")),
+            "primary": (tr("z points out of"), tr("A plane: z is 0 on it. The camera's: its own coordinates.")),
             "secondary": (tr("x points out of"), tr("A second plane, or an axis to point along.")),
             "tertiary": (tr("Origin at"), tr("A third feature that fixes y.")),
         }

@@ -361,7 +361,7 @@ def _limits(result: str, kind: ResultKind) -> tuple[FormField, ...]:
         "upper": (label("Upper deviation"), label("Permitted above, as 0.1; empty: no limit.")),
     }
     if kind.one_sided:
-        asked = {"upper": (label("Tolerance"), label("It may be so large at most; empty: no verdict."))}
+        asked = {"upper": (label("Tolerance"), label("Largest permitted value; empty: no verdict."))}
     elif kind.numbered:
         del asked["nominal"]
     unit = "°" if kind.quantity == "angle" else "mm"

@@ -68,13 +68,13 @@ class PlotTab(QWidget):
 
     def _show_profile(self, result: ShownFeature, profile: ShownProfile) -> None:
         self.chart.clear()
-        self.chart.set_axes(tr("along the cut"), "mm", tr("height"), "mm")
+        self.chart.set_axes(tr("along the cut"), "mm", tr("height in the cut"), "mm")
         title = tr("points near the cut")
         self.chart.set_curve("points", profile.position, profile.height, colour=FEATURE, title=title, points=True)
         self.chart.set_curve("mean", *profile.mean_line, title=tr("their median over each step"))
         self.words.setText(
             tr(
-                "{name}: positions count from where the cut begins; measurements lie between positions.",
+                "{name}: both axes lie in the plane of the cut; heights that are measured are square to the faces.",
                 name=result.name,
             )
         )

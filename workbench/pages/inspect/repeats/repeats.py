@@ -163,7 +163,7 @@ class InspectRepeats(QObject):
         if spec.nominal_mm is None or spec.tolerance_mm is None:
             return tr("A type-1 study needs a reference part: enter its thickness and the tolerance.")
         if len(self.all) < 2:
-            return tr("A type-1 study needs two repeats or more; 25 are asked for, 50 are usual.")
+            return tr("A type-1 study needs two repeats; take at least 25, better 50.")
         return ""
 
     def study(self) -> None:

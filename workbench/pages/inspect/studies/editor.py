@@ -93,13 +93,13 @@ class StudyEditor(QWidget):
     def _help(self, draft: Draft) -> str:
         if draft.kind == "grr":
             return tr(
-                "One line a measurement: part, operator, value in mm, with semicolons, commas or tabs between them, or "
-                "pasted from a spreadsheet. Every operator measures every part as often; 10 parts, 3 operators and "
-                "2 to 3 repeats are usual."
+                "One line per measurement: part, operator, value in mm, with semicolons, commas or tabs between them, "
+                "or pasted from a spreadsheet. Every operator measures every part equally often; 10 parts, 3 operators "
+                "and 2 to 3 repeats are usual."
             )
         if draft.kind == "series":
             return tr(
-                "One line a part, in the order of measuring: part, value and its standard uncertainty u in mm, with "
+                "One line per part, in the order of measuring: part, value and its standard uncertainty u in mm, with "
                 "semicolons, commas or tabs between them; the column u may be left out. Control limits need 20 points "
                 "or more."
             )
@@ -122,7 +122,9 @@ class StudyEditor(QWidget):
             "tolerance_mm",
             tr("Tolerance ±"),
             NumberRange(0.0001, LONGEST, decimals=4, step=0.01, unit="mm", none_text=tr("none"), first=0.1),
-            tr("Of the parts; %GRR is told of its full width T. None: of the scatter of the parts alone."),
+            tr(
+                "Of the parts; %GRR is stated relative to its full width T. None: relative to the scatter of the parts."
+            ),
         )
         form.edited.connect(self._studies.set_value)
         return form
