@@ -24,7 +24,7 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import brought_kinds, kind_of
 from core.inspect.plan.plugins import NAME_TAKEN, failure, plugins, unusable
-from core.inspect.plan.temperature import COMPARED, at_reference, compared, temperature_of
+from core.inspect.plan.temperature import COMPARED, at_reference, compared, temperature_of, with_scale
 from core.inspect.uncertainty.part import TEMPERATURE_ASSUMED, Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
@@ -121,7 +121,10 @@ def evaluate(
     ordered = plan.ordered()
     scene = Scene(cloud, mesh, errors or PointErrors(), plan.k, nominals or {}, frame=plan.frame, progress=progress)
     part = scene.errors.part
-    scene.temperature = plan.temperature or (None if part is None else temperature_of(part))
+    if part is None:
+        scene.temperature = plan.temperature
+    else:
+        scene.temperature = with_scale(plan.temperature, part.target) if plan.temperature else temperature_of(part)
     known = {} if previous is None else {result.key: result for result in previous.results if result.key}
     scan_key = _digest(cloud, mesh, errors)
     nominal_keys = {name: _sum_of([surface.corners]) for name, surface in (nominals or {}).items()}

@@ -8,7 +8,7 @@ from typing import Any
 from core.calibrate.change import Stability
 from core.calibrate.drift import NO_DRIFT, USUAL_KELVINS, Air, apart, stability_after
 from core.errors import InputError, WrongValue
-from core.files.recording.rig import RigTables, TargetTable, read_rig_tables
+from core.files.recording.rig import RigTables, TargetTable, read_rig_tables, stated_part
 from core.image.targets import Target
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
@@ -40,12 +40,11 @@ def read_stated(path: Path) -> tuple[Part, Stability | None]:
     `read_design`.
     """
     tables = read_rig_tables(path / "rig.toml" if path.is_dir() else path)
-    part = Part() if tables.part is None else tables.part.part()
     stated, drift = (
         (None, NO_DRIFT) if tables.stability is None else (tables.stability.stability(), tables.stability.drift())
     )
     air = Air() if tables.air is None else tables.air.air()
-    return part, stability_after(stated, drift, apart(air.calibrated, air.scanned, 0.0, USUAL_KELVINS))
+    return stated_part(tables), stability_after(stated, drift, apart(air.calibrated, air.scanned, 0.0, USUAL_KELVINS))
 
 
 def _quantities(tables: RigTables, path: Path) -> dict[str, Any]:

@@ -13,7 +13,7 @@ from core.calibrate.change import STABLE
 from core.files.recording.rig import GaugeSpec, rig_to_toml
 from core.files.recording.rig import Rig as StatedRig
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import TARGET_AT_20, Part
 from core.model import Pose
 from core.model.arrays import Array
 from core.simulate.poses import camera_poses, plane_poses
@@ -69,7 +69,8 @@ def rig_toml(scenario: Scenario) -> str:
 
 def _part(scenario: Scenario) -> Part:
     """What a simulated object is made of, and its temperature, which nothing changes."""
-    return Part(material="plastic" if scenario.inner_share else "metal", celsius=20.0, u_celsius=0.0)
+    material = "plastic" if scenario.inner_share else "metal"
+    return Part(material=material, celsius=20.0, u_celsius=0.0, target=TARGET_AT_20)
 
 
 def calibration_sensor(scenario: Scenario, rig: Rig) -> Sensor:

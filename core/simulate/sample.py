@@ -14,13 +14,13 @@ from core.calibrate.board_shape import TRUE
 from core.errors import InputError
 from core.files.project.data import Project, new_project
 from core.files.recording.rig import GaugeSpec
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import TARGET_AT_20, Part
 from core.progress import Progress, silent
 from core.simulate.scenario import GAUGE_TOLERANCE_MM, Scenario
 
 SAMPLE = "sample.toml"
-METAL_AT_20 = Part(material="metal", celsius=20.0, u_celsius=0.0)
-"""What simulated objects are but for translucent ones."""
+METAL_AT_20 = Part(material="metal", celsius=20.0, u_celsius=0.0, target=TARGET_AT_20)
+"""What simulated objects are but for translucent ones, and the target they are measured by."""
 
 
 def sample_scenario() -> Scenario:

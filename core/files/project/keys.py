@@ -14,7 +14,7 @@ from typing import Any
 
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
-from core.files.recording.rig import part_table, rig_tables
+from core.files.recording.rig import part_table, rig_tables, without_warmth
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
@@ -163,7 +163,7 @@ def _planes(project: Project) -> dict[str, str]:
     return {
         label("camera calibration"): project.accepted.camera,
         label("pictures of the plane target"): project.sources.planes,
-        label("plane target"): _digest(tables["plane_target"]),
+        label("plane target"): _digest(without_warmth(tables["plane_target"])),
         label("laser"): _digest(tables["laser_fan"]),
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("left-out poses"): _left_out(project, "planes"),
@@ -180,7 +180,7 @@ def _check(project: Project) -> dict[str, str]:
         label("camera calibration"): project.accepted.camera,
         label("laser planes"): project.accepted.fan,
         label("pictures of the interim check"): project.sources.check,
-        label("plane target"): _digest(tables["plane_target"]),
+        label("plane target"): _digest(without_warmth(tables["plane_target"])),
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast]) if stripe else "",
         label("stability of the rig"): _digest(tables.get("stability")),
@@ -237,7 +237,7 @@ def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
 
 
 def _part(project: Project) -> dict[str, str]:
-    """What is stated of the part, if anything is."""
+    """What is stated of the part and of the target's temperature, if anything is."""
     stated = part_table(project.rig.part)
     return {label("material and temperature of the part"): _digest(stated)} if stated else {}
 

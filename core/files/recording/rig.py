@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Annotated, Any, Literal, TypeAlias
@@ -21,7 +21,7 @@ from core.files.reading import read_toml
 from core.files.toml_text import toml_text
 from core.image.mosaic import Pattern
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.inspect.uncertainty.part import MATERIALS, Part
+from core.inspect.uncertainty.part import MATERIALS, Part, TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -39,6 +39,13 @@ _A_PLAIN_CHANNEL = '"red", "green" or "blue"'
 _A_CHANNEL = label('"red", "green", "blue", or a laser\'s colour: "red-green", "green-red" or "blue-red"')
 _A_MOSAIC = label('"RGGB", "BGGR", "GRBG" or "GBRG"')
 _A_POLYGON = label("a list of three or more [u, v] in pixels")
+_Celsius = Annotated[float, Field(ge=-50, le=200, allow_inf_nan=False)]
+_UOfCelsius = Annotated[float, Field(ge=0, le=200, allow_inf_nan=False)]
+_Alpha = Annotated[float, Field(ge=-1e-4, le=1e-3, allow_inf_nan=False)]
+_UOfAlpha = Annotated[float, Field(ge=0, le=1e-3, allow_inf_nan=False)]
+_A_TEMPERATURE = label("a temperature in °C from −50 to 200")
+_A_TEMPERATURE_DIFFERENCE = label("a temperature, 0 to 200 K")
+_AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 
 
 class Table(BaseModel):
@@ -55,6 +62,39 @@ class _Printed(Table):
     )
     flatness_mm: float | None = Field(None, ge=0, le=100, allow_inf_nan=False, description="a length in mm, 0 to 100")
     margin_mm: float | None = Field(None, ge=0, le=5000, allow_inf_nan=False, description="a length in mm, 0 to 5000")
+    celsius: _Celsius | None = Field(None, description=_A_TEMPERATURE)
+    u_celsius: _UOfCelsius | None = Field(None, description=_A_TEMPERATURE_DIFFERENCE)
+    alpha_per_K: _Alpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815  (as units are written)
+    u_alpha_per_K: _UOfAlpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815
+
+    @model_validator(mode="after")
+    def _with_u(self) -> _Printed:
+        require_pairs(self, WARMTH)
+        return self
+
+    def temperature(self) -> TargetTemperature:
+        return TargetTemperature(self.celsius, self.u_celsius, self.alpha_per_K, self.u_alpha_per_K)
+
+
+WARMTH = (("celsius", "u_celsius"), ("alpha_per_K", "u_alpha_per_K"))
+"""Keys of a target that go together: how warm it was and how it expands, each with its standard uncertainty."""
+
+
+def require_pairs(table: BaseModel, pairs: Sequence[tuple[str, str]]) -> None:
+    """Clash where one of a pair is there without the other."""
+    for pair in pairs:
+        missing = [name for name in pair if getattr(table, name) is None]
+        if len(missing) == 1:
+            other = next(name for name in pair if name != missing[0])
+            raise Clash(
+                missing[0],
+                Message(
+                    "rig.go_together",
+                    "is missing; {value} and {other} go together, give both or neither",
+                    value=missing[0],
+                    other=other,
+                ),
+            )
 
 
 class _Checkerboard(_Printed):
@@ -165,7 +205,6 @@ class GaugeTable(Table):
 _Above = Annotated[float, Field(gt=0, allow_inf_nan=False)]
 _A_NUMBER = label("a number above 0")
 _NOT_NEGATIVE = label("a number not below 0")
-_AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
 _Count1 = Annotated[int, Field(ge=1)]
 _A_COUNT = label("a whole number above 0")
 
@@ -329,16 +368,10 @@ class _Part(Table):
     offset_sd_mm: _SD | None = Field(None, description=_AN_SD)
     spray_mm: float | None = Field(None, ge=-10, le=10, allow_inf_nan=False, description="a length in mm, −10 to 10")
     spray_sd_mm: _SD | None = Field(None, description=_AN_SD)
-    alpha_per_K: float | None = Field(  # noqa: N815  (as units are written)
-        None, ge=-1e-4, le=1e-3, allow_inf_nan=False, description=_AN_ALPHA
-    )
-    u_alpha_per_K: float | None = Field(  # noqa: N815
-        None, ge=0, le=1e-3, allow_inf_nan=False, description=_AN_ALPHA
-    )
-    celsius: float | None = Field(
-        None, ge=-50, le=200, allow_inf_nan=False, description="a temperature in °C from −50 to 200"
-    )
-    u_celsius: float | None = Field(None, ge=0, le=200, allow_inf_nan=False, description="a temperature, 0 to 200 K")
+    alpha_per_K: _Alpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815  (as units are written)
+    u_alpha_per_K: _UOfAlpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815
+    celsius: _Celsius | None = Field(None, description=_A_TEMPERATURE)
+    u_celsius: _UOfCelsius | None = Field(None, description=_A_TEMPERATURE_DIFFERENCE)
 
     @model_validator(mode="after")
     def _known(self) -> _Part:
@@ -347,19 +380,7 @@ class _Part(Table):
                 "material",
                 Message("rig.no_material", "is {value}, none of {known}", value=self.material, known=tuple(MATERIALS)),
             )
-        for pair in _PAIRS:
-            missing = [name for name in pair if getattr(self, name) is None]
-            if len(missing) == 1:
-                other = next(name for name in pair if name != missing[0])
-                raise Clash(
-                    missing[0],
-                    Message(
-                        "rig.go_together",
-                        "is missing; {value} and {other} go together, give both or neither",
-                        value=missing[0],
-                        other=other,
-                    ),
-                )
+        require_pairs(self, _PAIRS)
         return self
 
     def part(self) -> Part:
@@ -371,14 +392,36 @@ _PART_FIELDS = {"alpha_per_K": "alpha", "u_alpha_per_K": "u_alpha"}
 
 
 def part_table(part: Part) -> dict[str, Any]:
-    """A part as [part] has it, without what is not stated."""
+    """A part as [part] has it, without what is not stated, and under "target" what is stated of that."""
+    target = temperature_table(part.target)
+    return _of_part_alone(part) | ({"target": target} if target else {})
+
+
+def _of_part_alone(part: Part) -> dict[str, Any]:
+    return _renamed({name: value for name, value in asdict(part).items() if name != "target"})
+
+
+def temperature_table(target: TargetTemperature) -> dict[str, Any]:
+    """How warm a target was as its table has it, without what is not stated."""
+    return _renamed(asdict(target))
+
+
+def without_warmth(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A target's table without how warm it was, which lengths rest on, but no picture and no calibration."""
+    warmth = {key for pair in WARMTH for key in pair}
+    return {key: value for key, value in table.items() if key not in warmth}
+
+
+def _renamed(values: Mapping[str, Any]) -> dict[str, Any]:
     keys = {field: key for key, field in _PART_FIELDS.items()}
-    return {keys.get(name, name): value for name, value in asdict(part).items() if value is not None}
+    return {keys.get(name, name): value for name, value in values.items() if value is not None}
 
 
 def part_of(table: Mapping[str, Any], path: Path) -> Part:
-    """The part that a table as [part] describes; InputError if it is none."""
-    return checked(_Part, dict(table), path).part()
+    """The part that a table of `part_table` describes; InputError if it is none."""
+    alone = {name: value for name, value in table.items() if name != "target"}
+    target = checked(_Printed, dict(table.get("target", {})), path).temperature()
+    return replace(checked(_Part, alone, path).part(), target=target)
 
 
 class RigTables(Table):
@@ -583,8 +626,6 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
     if tables.check is not None:
         stated["readjust"] = tables.check.readjust
-    if tables.part is not None:
-        stated["part"] = tables.part.part()
     if tables.camera is not None:
         stated["row_time_us"] = tables.camera.row_time_us
     if tables.channels is not None:
@@ -595,10 +636,17 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         gauge=_gauge(tables.gauge) if tables.gauge else None,
         channel=tables.channel,
         mosaic=tables.mosaic,
+        part=stated_part(tables),
         unstated=unstated,
         name=tables.name or "",
         **stated,
     )
+
+
+def stated_part(tables: RigTables) -> Part:
+    """What is stated of the part, and of how warm the plane target was."""
+    part = Part() if tables.part is None else tables.part.part()
+    return part if tables.plane_target is None else replace(part, target=tables.plane_target.temperature())
 
 
 def rig_tables(rig: Rig) -> dict[str, Any]:
@@ -611,7 +659,8 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "camera_target": _target_table(rig.camera_target) | _tolerance_table(rig.camera_board),
         "plane_target": _target_table(rig.plane_target)
         | _tolerance_table(rig.plane_board)
-        | _present({"margin_mm": rig.plane_margin_mm}),
+        | _present({"margin_mm": rig.plane_margin_mm})
+        | temperature_table(rig.part.target),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": _stability_tables(rig.stability, rig.drift) or None,
@@ -619,7 +668,7 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "validity": _present(asdict(rig.validity)) or None,
         "camera": None if rig.row_time_us is None else {"row_time_us": rig.row_time_us},
         "check": {"readjust": True} if rig.readjust else None,
-        "part": part_table(rig.part) or None,
+        "part": _of_part_alone(rig.part) or None,
     }
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 

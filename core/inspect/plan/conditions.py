@@ -29,6 +29,10 @@ class Temperature:
     """Whether the part's temperature is not stated."""
     alpha_assumed: bool = False
     """Whether its expansion is not stated."""
+    scale_celsius_assumed: bool = False
+    """The same of the scale,"""
+    scale_alpha_assumed: bool = False
+    """and of its expansion."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -31,14 +31,17 @@ from core.inspect.uncertainty.causes import (
     CALIBRATIONS,
     CERTIFICATE,
     MASTER_MEASURED,
+    OF_TARGET,
     PART_EXPANSION,
     PART_EXPANSION_ASSUMED,
     PART_TEMPERATURE,
     PART_TEMPERATURE_ASSUMED,
     SCALE_EXPANSION,
+    SCALE_EXPANSION_ASSUMED,
     SCALE_TEMPERATURE,
+    SCALE_TEMPERATURE_ASSUMED,
 )
-from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, Part
+from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, Part, TargetTemperature
 from core.messages import Message
 
 COMPARED = "feature.compared_with_master"
@@ -82,13 +85,13 @@ def correction_to_reference(
 ) -> tuple[float, tuple[Contribution, ...], tuple[Message, ...]]:
     """What is to be added to a length for 20 °C, what that adds to its uncertainty, and what is said of it.
 
-    Nothing is said where the temperature is assumed: nothing is added then.
+    Nothing is said of a temperature that is assumed: nothing is added then.
     """
     rows = temperature_contributions(length_mm, temperature)
-    change = -length_mm * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
-    change += length_mm * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
+    by_scale = length_mm * temperature.scale_alpha * (temperature.scale_celsius - REFERENCE_C)
+    change = by_scale - length_mm * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
     if temperature.celsius_assumed:
-        return change, rows, ()
+        return change, rows, (_of_scale_alone(by_scale, temperature.scale_celsius),) if by_scale else ()
     note = Message(
         "feature.stated_at_20",
         "Stated at 20 °C: {change_um:+.2f} µm for a part at {part_celsius:g} °C.",
@@ -98,17 +101,52 @@ def correction_to_reference(
     return change, rows, (note,)
 
 
+def _of_scale_alone(change_mm: float, celsius: float) -> Message:
+    return Message(
+        "feature.scale_at_20",
+        "Corrected by {change_um:+.2f} µm for a calibration target at {celsius:g} °C.",
+        change_um=change_mm * 1000,
+        celsius=celsius,
+    )
+
+
 def temperature_of(part: Part) -> Temperature | None:
-    """The temperature and expansion of a part as stated, else as assumed; None of one that is at 20 °C for sure."""
+    """The temperature and expansion of a part and of the scale as stated, else as assumed.
+
+    None where both are at 20 °C for sure.
+    """
     alpha, u_alpha = part.expansion
-    if part.celsius is None or part.u_celsius is None:
-        return Temperature(
-            SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, alpha, u_alpha, celsius_assumed=True,
-            alpha_assumed=part.expansion_assumed,
-        )  # fmt: skip
-    if part.celsius == REFERENCE_C and not part.u_celsius:
-        return None
-    return Temperature(part.celsius, part.u_celsius, alpha, u_alpha, alpha_assumed=part.expansion_assumed)
+    assumed = part.celsius is None or part.u_celsius is None
+    known = Temperature(
+        SUSPECTED_CELSIUS if part.celsius is None or assumed else part.celsius,
+        SUSPECTED_CELSIUS_SD if part.u_celsius is None or assumed else part.u_celsius,
+        alpha,
+        u_alpha,
+        celsius_assumed=assumed,
+        alpha_assumed=part.expansion_assumed,
+    )
+    known = with_scale(known, part.target)
+    at_20 = known.part_celsius == known.scale_celsius == REFERENCE_C
+    return None if at_20 and not known.u_part_celsius and not known.u_scale_celsius else known
+
+
+def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperature:
+    """The temperature of a part with that of the scale, where it has none of its own: as stated, else as assumed."""
+    if temperature.scale_alpha or temperature.u_scale_alpha:
+        return temperature
+    alpha, u_alpha = target.expansion
+    if temperature.scale_celsius != REFERENCE_C or temperature.u_scale_celsius:
+        return replace(temperature, scale_alpha=alpha, u_scale_alpha=u_alpha, scale_alpha_assumed=target.alpha is None)
+    assumed = target.celsius is None or target.u_celsius is None
+    return replace(
+        temperature,
+        scale_celsius=SUSPECTED_CELSIUS if target.celsius is None or assumed else target.celsius,
+        u_scale_celsius=SUSPECTED_CELSIUS_SD if target.u_celsius is None or assumed else target.u_celsius,
+        scale_alpha=alpha,
+        u_scale_alpha=u_alpha,
+        scale_celsius_assumed=assumed,
+        scale_alpha_assumed=target.alpha is None,
+    )
 
 
 def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
@@ -116,11 +154,13 @@ def temperature_contributions(length_mm: float, temperature: Temperature) -> tup
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
     of_celsius = PART_TEMPERATURE_ASSUMED if temperature.celsius_assumed else PART_TEMPERATURE
     of_alpha = PART_EXPANSION_ASSUMED if temperature.alpha_assumed else PART_EXPANSION
+    of_scale = SCALE_TEMPERATURE_ASSUMED if temperature.scale_celsius_assumed else SCALE_TEMPERATURE
+    of_scale_alpha = SCALE_EXPANSION_ASSUMED if temperature.scale_alpha_assumed else SCALE_EXPANSION
     rows = (
         (of_celsius, temperature.part_celsius, temperature.u_part_celsius, temperature.alpha, "°C"),
         (of_alpha, temperature.alpha, temperature.u_alpha, part, "1/K"),
-        (SCALE_TEMPERATURE, temperature.scale_celsius, temperature.u_scale_celsius, temperature.scale_alpha, "°C"),
-        (SCALE_EXPANSION, temperature.scale_alpha, temperature.u_scale_alpha, scale, "1/K"),
+        (of_scale, temperature.scale_celsius, temperature.u_scale_celsius, temperature.scale_alpha, "°C"),
+        (of_scale_alpha, temperature.scale_alpha, temperature.u_scale_alpha, scale, "1/K"),
     )
     return tuple(
         Contribution(source, abs(length_mm * sensitivity * u), u, value=value, unit=unit)
@@ -167,7 +207,7 @@ def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contrib
     """The budget of a part's length less the master's."""
     of_master = dict(master.budget)
     rows = []
-    cancelling = tuple(CALIBRATIONS.values()) if master.same_calibration else ()
+    cancelling = (*CALIBRATIONS.values(), *OF_TARGET) if master.same_calibration else ()
     own = [u for source, u in master.budget if source not in cancelling]
     for row in budget:
         cancels = row.source in cancelling

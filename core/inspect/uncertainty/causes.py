@@ -46,6 +46,14 @@ PART_EXPANSION_ASSUMED = Message(
 )
 SCALE_TEMPERATURE = Message("inspection.cause_target_temperature", "temperature of the calibration target")
 SCALE_EXPANSION = Message("inspection.cause_target_expansion", "expansion coefficient of the calibration target")
+SCALE_TEMPERATURE_ASSUMED = Message(
+    "inspection.cause_target_temperature_assumed", "temperature of the calibration target (assumed)"
+)
+SCALE_EXPANSION_ASSUMED = Message(
+    "inspection.cause_target_expansion_assumed", "expansion coefficient of the calibration target (assumed)"
+)
+OF_TARGET = (SCALE_TEMPERATURE, SCALE_EXPANSION, SCALE_TEMPERATURE_ASSUMED, SCALE_EXPANSION_ASSUMED)
+"""What the warmth of the calibration target does: the same to all that is measured with one calibration."""
 
 CERTIFICATE = Message("inspection.cause_certificate", "certificate of the master")
 MASTER_MEASURED = Message("inspection.cause_master_measured", "measurement of the master")

@@ -23,6 +23,9 @@ SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD = 20.0, 3.0
 """Temperature of a part of which nothing is stated, and its standard uncertainty: a room that people work in."""
 SUSPECTED_ALPHA, SUSPECTED_ALPHA_SD = 11.5e-6, 2.3e-6
 """Expansion coefficient in 1/K where nothing is stated, and its standard uncertainty."""
+SUSPECTED_TARGET_ALPHA, SUSPECTED_TARGET_ALPHA_SD = 13.5e-6, 6e-6
+"""Expansion coefficient in 1/K of a calibration target where nothing is stated, and its standard uncertainty: from
+borosilicate glass (3.3·10⁻⁶/K) to sandwiches of aluminium (24·10⁻⁶/K, both by their makers)."""
 SUSPECTED_LAYER_MM = 0.01
 """What a layer of spray adds where nothing is stated of it, taken as its standard uncertainty: sprays for scanning
 leave 2 to 15 µm by their makers' data."""
@@ -52,6 +55,30 @@ MATERIALS: Mapping[str, Material] = {
 
 
 @dataclass(frozen=True, slots=True)
+class TargetTemperature:
+    """How warm the plane target was in its pictures, in °C, and how it expands, in 1/K; None: nothing is stated.
+
+    It is the scale of all lengths: one that was warm is longer than its drawing says, and all else measured too short.
+    """
+
+    celsius: float | None = None
+    u_celsius: float | None = None
+    alpha: float | None = None
+    u_alpha: float | None = None
+
+    @property
+    def expansion(self) -> tuple[float, float]:
+        """Its expansion coefficient and the u of that, stated or assumed."""
+        if self.alpha is None or self.u_alpha is None:
+            return SUSPECTED_TARGET_ALPHA, SUSPECTED_TARGET_ALPHA_SD
+        return self.alpha, self.u_alpha
+
+
+TARGET_AT_20 = TargetTemperature(20.0, 0.0)
+"""Of a target that is as warm as its drawing means, for sure."""
+
+
+@dataclass(frozen=True, slots=True)
 class Part:
     """What is stated of a part; None: nothing is.
 
@@ -68,6 +95,8 @@ class Part:
     celsius, u_celsius
         Its temperature while it was scanned.
     Each with its standard uncertainty; one is stated only with the other.
+    target
+        How warm the target was by which it is measured.
     """
 
     material: str | None = None
@@ -79,6 +108,7 @@ class Part:
     u_alpha: float | None = None
     celsius: float | None = None
     u_celsius: float | None = None
+    target: TargetTemperature = TargetTemperature()
 
     @property
     def lets_light_in(self) -> float:

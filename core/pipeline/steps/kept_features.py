@@ -26,7 +26,7 @@ from core.files.reading import file_hash
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.rig import rig_tables
+from core.files.recording.rig import rig_tables, without_warmth
 from core.files.results.scan_file import read_scan
 from core.model import Camera
 from core.progress import Progress, silent, steps
@@ -154,7 +154,7 @@ def _pose_pictures(found: RecordingSet) -> list[Path]:
 def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
         "program": program_text(_CALIBRATION_ROOMS),
-        "target": rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"],
+        "target": without_warmth(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
         "channel": found.laser_channel(step).channel,
         "mosaic": found.rig.mosaic,
         "camera": camera,

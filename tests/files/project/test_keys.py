@@ -11,6 +11,7 @@ from core.files.recording.rig import GaugeSpec
 from core.image.targets import Checkerboard
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import plain
 
 START = replace(
@@ -85,6 +86,10 @@ def test_another_camera_calibration_makes_planes_check_and_scan_out_of_date_and_
         (
             replace(START, rig=replace(START.rig, camera_target=Checkerboard(9, 6, 10.0))),
             {"camera": ("camera target",)},
+        ),
+        (
+            replace(START, rig=replace(START.rig, part=Part(target=TargetTemperature(23.0, 0.5)))),
+            dict.fromkeys(("inspect", "features"), ("material and temperature of the part",)),
         ),
     ],
 )

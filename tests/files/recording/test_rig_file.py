@@ -21,7 +21,7 @@ from core.files.recording.rig import (
     rig_to_toml,
 )
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import Part, TargetTemperature
 
 GOOD = """
 [camera_target]
@@ -121,6 +121,16 @@ def test_what_is_known_of_the_part_can_be_said(tmp_path):
     assert written(tmp_path, rig) == rig
     assert part_of(part_table(rig.part), path) == rig.part
     assert default_rig().part == Part() and part_table(Part()) == {}
+
+
+def test_the_temperature_of_the_plane_target_can_be_said(tmp_path):
+    said = "side_mm = 60.0\ncelsius = 23.0\nu_celsius = 0.5\nalpha_per_K = 24e-6\nu_alpha_per_K = 1e-6"
+    rig = read(tmp_path, GOOD.replace("side_mm = 60.0", said) + '\n[part]\nmaterial = "steel"\n')
+    assert rig.part == Part("steel", target=TargetTemperature(23.0, 0.5, 24e-6, 1e-6))
+    assert written(tmp_path, rig) == rig
+    assert part_of(part_table(rig.part), tmp_path) == rig.part
+    half = complaint(tmp_path, GOOD.replace("side_mm = 60.0", "side_mm = 60.0\ncelsius = 23.0"))
+    assert "u_celsius is missing" in half and "plane_target" in half
 
 
 @pytest.mark.parametrize(

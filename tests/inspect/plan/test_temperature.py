@@ -8,6 +8,7 @@ from core.inspect.plan.temperature import (
     at_reference,
     compared,
     temperature_contributions,
+    with_scale,
 )
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
@@ -20,7 +21,11 @@ from core.inspect.uncertainty.causes import (
     POINT_NOISE,
     SCALE,
     SCALE_EXPANSION,
+    SCALE_EXPANSION_ASSUMED,
+    SCALE_TEMPERATURE,
+    SCALE_TEMPERATURE_ASSUMED,
 )
+from core.inspect.uncertainty.part import TargetTemperature
 
 WARM = Temperature(24.0, 0.5, 11.5e-6, 1.0e-6)
 
@@ -86,6 +91,29 @@ def test_a_part_is_compared_with_a_master_of_its_size():
     assert rows[CERTIFICATE] == 0.0001
     assert row.u == pytest.approx(combined(row.budget))
     assert row.u < length().u
+
+
+def test_a_plan_that_states_nothing_of_the_scale_has_that_of_the_target():
+    stated = TargetTemperature(24.0, 0.5, 8.6e-6, 1e-6)
+    assert (
+        temperature_contributions(50.0, with_scale(WARM, TargetTemperature()))[-1].source == SCALE_TEMPERATURE_ASSUMED
+    )
+    known = with_scale(WARM, stated)
+    assert (known.scale_celsius, known.u_scale_celsius, known.scale_alpha) == (24.0, 0.5, 8.6e-6)
+    own = Temperature(24.0, 0.5, 11.5e-6, 1e-6, scale_celsius=22.0, u_scale_celsius=0.2, scale_alpha=24e-6)
+    assert with_scale(own, stated) is own
+    half = Temperature(24.0, 0.5, 11.5e-6, 1e-6, scale_celsius=22.0, u_scale_celsius=0.2)
+    causes = {row.source for row in temperature_contributions(50.0, with_scale(half, TargetTemperature()))}
+    assert {SCALE_TEMPERATURE, SCALE_EXPANSION_ASSUMED} <= causes
+
+
+def test_the_targets_warmth_is_the_same_for_part_and_master():
+    warm = at_reference(length(), with_scale(WARM, TargetTemperature()))
+    of_scale = next(row.u_mm for row in warm.budget if row.source == SCALE_TEMPERATURE_ASSUMED)
+    master = Master("M50", 50.0, 0.0001, 50.0152, (*MASTER.budget, (SCALE_TEMPERATURE_ASSUMED, of_scale)), ("block",))
+    rows = {one.source: one.u_mm for one in compared(warm, master).budget}
+    assert rows[SCALE_TEMPERATURE_ASSUMED] == 0
+    assert rows[MASTER_MEASURED] == 0.004
 
 
 def test_a_master_measured_with_another_calibration_cancels_nothing():

@@ -13,13 +13,13 @@ from core.inspect.plan.conditions import Temperature
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.temperature import temperature_of
-from core.inspect.uncertainty.part import MATERIALS, Part
+from core.inspect.uncertainty.part import MATERIALS, TARGET_AT_20, Part, TargetTemperature
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.pipeline.steps.gauge_step import of_part
 from tests.inspect.block_scan import BlockScan
 
-METAL = Part(material="metal", celsius=20.0, u_celsius=0.0)
+METAL = Part(material="metal", celsius=20.0, u_celsius=0.0, target=TARGET_AT_20)
 
 
 @pytest.fixture(scope="module")
@@ -97,6 +97,26 @@ def test_a_stated_temperature_puts_a_thickness_to_20_degrees(gauge_of):
     assert [note.code for note in cold.notes] == [*(note.code for note in plain.notes), "feature.stated_at_20"]
     sprayed = temperature_of(Part(material="sprayed", celsius=25.0, u_celsius=0.5))
     assert sprayed.alpha_assumed and not sprayed.celsius_assumed
+
+
+def test_a_target_whose_temperature_is_not_stated_is_a_row_that_says_so(gauge_of):
+    plain, unstated = gauge_of(None), of_part(gauge_of(None), replace(METAL, target=TargetTemperature()))
+    assert unstated.thickness_mm == plain.thickness_mm
+    assert rows(unstated) == pytest.approx({**rows(plain), "target_temperature_assumed": 50 * 13.5e-6 * 3}, rel=1e-3)
+    assert "(assumed)" in str(unstated.budget[-1].source)
+    assert not any(note.code.startswith("target.") for note in unstated.notes), "2 µm need no question"
+
+
+def test_a_target_that_was_warm_makes_what_is_measured_with_it_longer(gauge_of):
+    target = TargetTemperature(26.0, 0.5, 24e-6, 1e-6)
+    plain, warm = gauge_of(None), of_part(gauge_of(None), replace(METAL, target=target))
+    assert warm.thickness_mm == pytest.approx(plain.thickness_mm * (1 + 24e-6 * 6))
+    of_target = {"target_temperature": 50 * 24e-6 * 0.5, "target_expansion": 50 * 1e-6 * 6}
+    assert rows(warm) == pytest.approx({**rows(plain), **of_target}, rel=1e-3)
+    assert warm.notes[-1].code == "feature.stated_at_20"
+    alone = of_part(gauge_of(None), Part(material="metal", target=replace(target, alpha=None, u_alpha=None)))
+    assert {"target_temperature", "target_expansion_assumed", "part_temperature_assumed"} <= set(rows(alone))
+    assert "feature.scale_at_20" in {note.code for note in alone.notes}
 
 
 def test_an_inspection_reckons_with_the_part_unless_its_plan_states_a_temperature(scan):

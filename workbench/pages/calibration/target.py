@@ -12,6 +12,7 @@ from PySide6.QtCore import QObject, Signal
 from core.calibrate.board_shape import MADE, BoardTolerance
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
+from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, Part, TargetTemperature
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.work import jobs
@@ -85,6 +86,12 @@ MADE_FIELDS = ("made", "size_per_mille", "flatness_mm")
 """Fields that say how true a target is."""
 
 
+WARM_FIELDS = ("celsius", "u_celsius")
+"""Fields that say how warm the plane target was in its pictures."""
+USUAL_U = 0.5
+"""u in K of a temperature that was just entered."""
+
+
 def values_of_tolerance(tolerance: BoardTolerance) -> dict[str, Any]:
     """How true a target is, as fields of a form; "made" is "" where nothing is stated, "stated" of own values."""
     usual = next((name for name, one in MADE.items() if one == tolerance), "stated")
@@ -129,7 +136,10 @@ class TargetChoice(QObject):
         """The target as the fields of a form."""
         rig = self._model.project.rig
         values = values_of(self.target) | values_of_tolerance(getattr(rig, self._board))
-        return values | {"margin_mm": rig.plane_margin_mm} if self._which == "plane_target" else values
+        if self._which != "plane_target":
+            return values
+        warm = {name: getattr(rig.part.target, name) for name in WARM_FIELDS}
+        return values | {"margin_mm": rig.plane_margin_mm} | warm
 
     def set_target(self, field: str, value: Any) -> None:
         """Change one field; undoable. What cannot be is refused with a sentence. Another kind is another plate."""
@@ -147,13 +157,32 @@ class TargetChoice(QObject):
         """Fields of the rig that change; ValueError as `changed_target`."""
         if field == "margin_mm":
             return {"plane_margin_mm": value}
+        if field in WARM_FIELDS:
+            return {"part": self._warm(field, value)}
         if field in MADE_FIELDS:
             return {self._board: changed_tolerance(getattr(self._model.project.rig, self._board), field, value)}
         changed: dict[str, Any] = {self._which: changed_target(self.target, field, value)}
         if field == "kind" and value != self.target_values()["kind"]:
             changed[self._board] = BoardTolerance()
-            changed |= {"plane_margin_mm": None} if self._which == "plane_target" else {}
+            if self._which == "plane_target":
+                part = replace(self._model.project.rig.part, target=TargetTemperature())
+                changed |= {"plane_margin_mm": None, "part": part}
         return changed
+
+    def _warm(self, field: str, value: float | None) -> Part:
+        """The part with the target's temperature changed; that and its uncertainty come and go together."""
+        part = self._model.project.rig.part
+        warm = part.target
+        match field:
+            case _ if value is None:
+                warm = replace(warm, celsius=None, u_celsius=None)
+            case "celsius":
+                warm = replace(warm, celsius=value, u_celsius=USUAL_U if warm.u_celsius is None else warm.u_celsius)
+            case _:
+                warm = replace(
+                    warm, celsius=SUSPECTED_CELSIUS if warm.celsius is None else warm.celsius, u_celsius=value
+                )
+        return replace(part, target=warm)
 
     def print_target(self, path: Path, paper: str) -> None:
         """Write the target to scale as a PDF."""

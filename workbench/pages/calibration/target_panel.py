@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
 from workbench.language import tr
-from workbench.pages.calibration.target import DICTIONARIES, PAPERS
+from workbench.pages.calibration.target import DICTIONARIES, PAPERS, USUAL_U
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.editors import NumberRange
@@ -129,6 +129,18 @@ class TargetPanel(QWidget):
                 tr("Margin"),
                 NumberRange(0.0, 5000.0, decimals=1, step=1.0, unit="mm", none_text=tr("not known"), first=10.0),
                 tr("How far the plate goes on beyond what is printed on it: stripes are looked for on it only."),
+            )
+            form.add_number(
+                "celsius",
+                tr("Temperature"),
+                NumberRange(-50.0, 200.0, decimals=1, step=0.5, unit="°C", none_text=tr("assumed"), first=20.0),
+                tr("The target's, while its pictures were taken. Empty: 20 °C with u = 3 °C, 2 µm in 50 mm."),
+            )
+            form.add_number(
+                "u_celsius",
+                tr("{name}, u", name=tr("Temperature")),
+                NumberRange(0.0, 20.0, decimals=2, step=0.5, unit="°C", none_text=tr("assumed"), first=USUAL_U),
+                tr("Standard uncertainty of that."),
             )
 
     def _put_before_the_paper(self, old: QWidget) -> None:

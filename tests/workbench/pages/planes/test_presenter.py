@@ -224,6 +224,24 @@ def test_the_pose_shown_gets_the_numbers_of_its_lines_once_they_are_solved(
 # ---- plate and laser
 
 
+def test_the_plates_temperature_comes_and_goes_with_its_uncertainty(page: PlanesPresenter) -> None:
+    def stated() -> tuple[float | None, float | None]:
+        values = page.target.target_values()
+        return values["celsius"], values["u_celsius"]
+
+    assert stated() == (None, None)
+    page.target.set_target("celsius", 23.0)
+    assert stated() == (23.0, 0.5)
+    page.target.set_target("u_celsius", 1.0)
+    assert stated() == (23.0, 1.0)
+    page.target.set_target("u_celsius", None)
+    assert stated() == (None, None)
+    page.target.set_target("u_celsius", 1.0)
+    assert stated() == (20.0, 1.0)
+    page.target.set_target("kind", "charuco")
+    assert stated() == (None, None), "another plate"
+
+
 @pytest.mark.parametrize(
     ("change", "read"),
     [
@@ -235,6 +253,7 @@ def test_the_pose_shown_gets_the_numbers_of_its_lines_once_they_are_solved(
         (lambda p: p.set_laser("automatic", False), lambda p: p.project.options.plane_stripe),
         (lambda p: p.set_laser("width_px", 9.0), lambda p: p.project.options.plane_stripe),
         (lambda p: p.target.set_target("size_mm", 55.0), lambda p: p.project.rig.plane_target.side_mm),
+        (lambda p: p.target.set_target("celsius", 23.0), lambda p: p.project.rig.part.target.celsius),
         (lambda p: p.target.set_target("kind", "charuco"), lambda p: type(p.project.rig.plane_target)),
     ],
 )
