@@ -52,30 +52,33 @@ class TargetRatio:
         """Probability that chance sets sizes stated with this relative uncertainty together so far apart."""
         return float(2 * ndtr(-abs(self.ratio - 1) / np.hypot(self.u, scale_sd)))
 
-    def note(self, scale_sd: float) -> Message:
-        """What the pictures say of the sizes stated."""
+    def note(self, scale_sd: float, other: Message) -> Message:
+        """What the pictures say of the sizes stated; `other` is what the plane target is seen beside."""
         if self.fit_p < NOT_FIXED:
             return Message(
                 "target.not_fixed",
-                "The {n} pictures that show camera and plane target at once do not have them in one place against each "
+                "The {n} pictures that show the plane target beside {other} do not have them in one place against each "
                 "other (probability {p:.1g}): fix one to the other; they say nothing of the sizes.",
                 n=self.pictures,
+                other=other,
                 p=self.fit_p,
             )
-        values = {"percent": 100 * (self.ratio - 1), "U": 200 * self.u, "n": self.pictures, "p": self.p(scale_sd)}
+        found = {"percent": 100 * (self.ratio - 1), "U": 200 * self.u, "n": self.pictures, "p": self.p(scale_sd)}
         if self.p(scale_sd) >= P_TOLD:
             return Message(
                 "target.sizes_agree",
-                "{n} pictures show camera and plane target at once: the plane target is {percent:+.2f} % ± {U:.2f} % "
-                "larger against it than stated, as what is stated lets one expect.",
-                **values,
+                "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against "
+                "that than stated, as what is stated lets one expect.",
+                other=other,
+                **found,
             )
         return Message(
             "target.sizes_disagree",
-            "{n} pictures show camera and plane target at once: the plane target is {percent:+.2f} % ± {U:.2f} % "
-            "larger against it than stated (probability that it is chance: {p:.1g}); one of the two sizes is wrong, "
-            "and all lengths are uncertain by as much: measure both.",
-            **values,
+            "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against that "
+            "than stated (probability that it is chance: {p:.1g}); one of the two sizes is wrong, and all lengths are "
+            "uncertain by as much: measure both.",
+            other=other,
+            **found,
         )
 
 

@@ -445,6 +445,7 @@ class RigTables(Table):
     validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
     check: _Check | None = Field(None, description="a table [check] with readjust")
     part: _Part | None = Field(None, description="a table [part]")
+    reference_target: TargetTable | None = Field(None, description="a table [reference_target] with kind and sizes")
     name: str | None = Field(
         None,
         pattern=r"^[A-Za-z0-9][A-Za-z0-9_-]{0,39}$",
@@ -538,6 +539,10 @@ class Rig:
     """The colour mosaic of raw pictures; None: pictures are no raw ones."""
     part: Part = field(default_factory=Part)
     """What is measured."""
+    reference_target: Target | None = None
+    """What the plane target's size is compared with in pictures of both; None: the camera's target."""
+    reference_board: BoardTolerance = field(default_factory=BoardTolerance)
+    """How true that one is."""
     readjust: bool = False
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
 
@@ -616,6 +621,21 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["plane_target"] = _target(path, f"{within}plane_target", tables.plane_target)
         stated["plane_board"] = _tolerance(tables.plane_target)
         stated["plane_margin_mm"] = tables.plane_target.margin_mm
+    if tables.reference_target is not None:
+        stated["reference_target"] = _target(path, f"{within}reference_target", tables.reference_target)
+        stated["reference_board"] = _tolerance(tables.reference_target)
+        if stated["reference_target"] == stated.get("plane_target"):
+            raise InputError(
+                Message(
+                    "rig.targets_alike",
+                    "{name} is as the plane target is, and in one picture nothing would tell one from the other",
+                    name=f"{within}reference_target",
+                ),
+                where=path,
+                todo=Message(
+                    "advice.another_reference", "take a target of another kind, of other counts or of another size"
+                ),
+            )
     if tables.laser_fan is not None:
         stated |= {"lines": tables.laser_fan.lines, "angle": math.radians(tables.laser_fan.angle_deg or 0.0)}
     if tables.stability is not None:
@@ -661,6 +681,9 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         | _tolerance_table(rig.plane_board)
         | _present({"margin_mm": rig.plane_margin_mm})
         | temperature_table(rig.part.target),
+        "reference_target": None
+        if rig.reference_target is None
+        else _target_table(rig.reference_target) | _tolerance_table(rig.reference_board),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": _stability_tables(rig.stability, rig.drift) or None,

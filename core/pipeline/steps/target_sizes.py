@@ -1,4 +1,4 @@
-"""Pictures in SET/targets that show camera and plane target at once: do the sizes stated for both agree?"""
+"""Pictures in SET/targets that show the plane target beside another one: do the sizes stated for both agree?"""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_r
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.set_listing import pictures_in
-from core.image.targets import TargetNotFound, detect
+from core.image.targets import BlackSquare, Target, TargetNotFound, detect
 from core.image.targets.picture import Picture
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -25,10 +25,20 @@ TARGETS = "targets"
 """The folder of these pictures, taken with the lasers off, the two targets fixed to each other."""
 
 
+BESIDE_SQUARE = 0.1
+"""Share of a black square's side around it that is of it: another one may lie near."""
+_CAMERAS, _REFERENCE = (
+    Message("target.beside_cameras", "the camera's target"),
+    Message("target.beside_reference", "the reference target"),
+)
+"""What the plane target is seen beside."""
+
+
 def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
     """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
 
-    None as well where rig.toml does not say what the camera's target is.
+    The other one is the reference target if rig.toml states one, else the camera's. None as well where it does not say
+    what that is.
 
     Raises
     ------
@@ -37,7 +47,10 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     """
     rig = found.rig
     paths = pictures_in(found.rig_file.parent / TARGETS)
-    if not paths or rig.one_target or "camera_target" in rig.unstated:
+    other = rig.reference_target
+    if other is None and not rig.one_target and "camera_target" not in rig.unstated:
+        other = rig.camera_target
+    if not paths or other is None:
         return None, ()
     shown: list[tuple[TargetView, TargetView]] = []
     notes: list[Message] = []
@@ -47,8 +60,7 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
         check_size(path, picture.shape, camera)
         name = f"{TARGETS}/{path.stem}"
         try:
-            first = detect(rig.camera_target, picture, name, camera)
-            shown.append((first, detect(rig.plane_target, _without(first, picture), name, camera)))
+            shown.append(_both(other, rig.plane_target, picture, name, camera))
         except TargetNotFound as error:
             notes.append(
                 Message("target.not_both", "{picture} does not show both targets: {reason}.", picture=name,
@@ -57,11 +69,24 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     return (target_ratio(shown, camera) if shown else None), tuple(notes)
 
 
+def _both(first: Target, second: Target, picture: Picture, name: str, camera: Camera) -> tuple[TargetView, TargetView]:
+    """Two targets in one picture; TargetNotFound if one is not there.
+
+    A board, or the larger of two black squares, is found beside the other; a square only where nothing else is dark.
+    """
+    sides = [target.side_mm if isinstance(target, BlackSquare) else math.inf for target in (first, second)]
+    if sides[0] >= sides[1]:
+        found = detect(first, picture, name, camera)
+        return found, detect(second, _without(found, picture), name, camera)
+    found = detect(second, picture, name, camera)
+    return detect(first, _without(found, picture), name, camera), found
+
+
 def _without(seen: TargetView, picture: Picture) -> Picture:
     """The picture with a target covered by the grey of its light parts: its squares may look like one dark square."""
     plane = seen.points[:, :2]
     steps = np.diff(np.unique(plane[:, 0].round(3)))
-    reach = float(steps.min()) if len(steps) else 0.0
+    reach = (float(steps.min()) if len(steps) else 0.0) * (BESIDE_SQUARE if len(steps) == 1 else 1.0)
     (x0, y0), (x1, y1) = plane.min(axis=0) - reach, plane.max(axis=0) + reach
     homography = cv2.findHomography(plane, seen.uv)[0]
     corners = np.array([[[x0, y0], [x1, y0], [x1, y1], [x0, y1]]])
@@ -77,8 +102,8 @@ def with_compared_sizes(
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
     """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
 
-    A plane target of which nothing is stated has the size that its pictures beside a camera's target of a stated one
-    give: uncertain by that one, by the pictures, and by all that they find, which nothing corrects.
+    A plane target of which nothing is stated has the size that its pictures beside a target of a stated one give:
+    uncertain by that one, by the pictures, and by all that they find, which nothing corrects.
 
     Raises
     ------
@@ -88,11 +113,13 @@ def with_compared_sizes(
     ratio, notes = compare_targets(found, camera)
     if ratio is None:
         return fan, notes
-    stated = math.hypot(found.rig.camera_board.size_sd, found.rig.plane_board.size_sd)
-    said = (*notes, ratio.note(stated))
+    by_reference = found.rig.reference_target is not None
+    board = found.rig.reference_board if by_reference else found.rig.camera_board
+    stated = math.hypot(board.size_sd, found.rig.plane_board.size_sd)
+    said = (*notes, ratio.note(stated, _REFERENCE if by_reference else _CAMERAS))
     if ratio.fit_p < NOT_FIXED:
         return fan, said
-    known = found.rig.camera_board.scale_sd
+    known = board.scale_sd
     if fan.scale_assumed and known is not None:
         return with_known_size(fan, math.hypot(known, ratio.u, ratio.ratio - 1)), said
     if ratio.p(stated) < P_TOLD:

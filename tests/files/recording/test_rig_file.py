@@ -133,6 +133,14 @@ def test_the_temperature_of_the_plane_target_can_be_said(tmp_path):
     assert "u_celsius is missing" in half and "plane_target" in half
 
 
+def test_a_target_of_known_size_to_compare_the_plane_target_with_can_be_said(tmp_path):
+    reference = '[reference_target]\nkind = "black_square"\nside_mm = 36.0\nscale_sd = 1e-5\n'
+    rig = read(tmp_path, GOOD + reference)
+    assert (rig.reference_target, rig.reference_board) == (BlackSquare(36.0), BoardTolerance(scale_sd=1e-5))
+    assert written(tmp_path, rig) == rig
+    assert "as the plane target is" in complaint(tmp_path, GOOD + reference.replace("36", "60"))
+
+
 @pytest.mark.parametrize(
     ("table", "said"),
     [

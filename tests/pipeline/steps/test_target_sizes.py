@@ -45,6 +45,58 @@ def pictures():
     return rig.camera, shown
 
 
+@pytest.fixture(scope="module")
+def two_squares():
+    """A square of 60 mm and one of 36 mm beside it, in three poses."""
+    rig = paper_rig(0.25)
+    rays, sensor, shown = ray_map(rig.camera), Sensor(rig.optics, 8, 1.0), []
+    large, small = printed(BlackSquare(60.0)), printed(BlackSquare(36.0))
+    for number, (turn, z) in enumerate(((0.25, 480.0), (-0.3, 540.0), (0.4, 520.0))):
+        c, s = np.cos(turn), np.sin(turn)
+        at = Pose(np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]]), np.array([-95.0, -30.0, z]))
+        beside = at @ Pose(np.eye(3), np.array([135.0, 8.0, 2.0]))
+        points, light = draw_pattern(large, at, rays)
+        light = np.where(points[..., 2] == 0, draw_pattern(small, beside, rays)[1], light)
+        light = light * room_shade(at, CAMERA_GREY)
+        shown.append(sensor.expose(blurred(light.astype(np.float32), rig.blur_px), generator(number, "squares")))
+    return rig.camera, shown
+
+
+@pytest.mark.parametrize(
+    ("plane_mm", "stated_mm", "reference_mm"), [(60, 60, 36), (60, 61, 36), (36, 36, 60), (36, 37, 60)]
+)
+def test_two_squares_in_one_picture_tell_the_size_of_the_one_by_the_other(
+    tmp_path, simulated, two_squares, plane_mm, stated_mm, reference_mm
+):
+    """Also where camera and planes are calibrated with one target."""
+    camera, shown = two_squares
+    found, plane = opened(tmp_path, simulated, shown, 60.0), BlackSquare(float(stated_mm))
+    rig = replace(
+        found.rig, camera_target=plane, plane_target=plane, plane_board=BoardTolerance(),
+        reference_target=BlackSquare(float(reference_mm)), reference_board=BoardTolerance(scale_sd=1e-4),
+    )  # fmt: skip
+    found = replace(found, rig=rig)
+    assert found.rig.one_target
+    ratio, notes = compare_targets(found, camera)
+    assert notes == () and ratio.pictures == 3 and ratio.fit_p > 0.01
+    assert abs(ratio.ratio - plane_mm / stated_mm) < 3 * ratio.u < 0.006
+    fan, said = with_compared_sizes(UNSTATED, found, camera)
+    assert not fan.scale_assumed
+    assert fan.scale_sd == pytest.approx(np.hypot(1e-4, np.hypot(ratio.u, ratio.ratio - 1)))
+    assert "the reference target" in str(said[-1])
+
+
+def test_a_reference_target_counts_in_place_of_the_cameras(tmp_path, simulated, pictures):
+    camera, shown = pictures
+    found = opened(tmp_path, simulated, shown, 60.0)
+    rig = replace(
+        found.rig, camera_target=Checkerboard(17, 12, 10.0), camera_board=BoardTolerance(),
+        reference_target=BOARD, reference_board=BoardTolerance(scale_sd=1e-4), plane_board=BoardTolerance(),
+    )  # fmt: skip
+    fan, said = with_compared_sizes(UNSTATED, replace(found, rig=rig), camera)
+    assert not fan.scale_assumed and said[-1].code == "target.sizes_agree"
+
+
 def opened(tmp_path, simulated, shown, side_mm):
     folder = tmp_path / "set"
     for part in ("camera", "planes", "scan"):
