@@ -26,7 +26,7 @@ from core.model.arrays import Array
 
 Source = Literal[
     "camera", "fan", "assumed fan", "bend", "scale", "assumed scale",
-    "change", "assumed change", "charted change", "readjusted",
+    "change", "assumed change", "charted change", "readjusted", "skewed fan",
 ]  # fmt: skip
 FANS: tuple[Source, ...] = ("fan", "assumed fan")
 """The sources that are the fan's calibration."""
@@ -34,6 +34,8 @@ SCALES: tuple[Source, ...] = ("scale", "assumed scale")
 """The sources that are the size of the plane target, which no picture of it shows."""
 UNEXPLAINED: Source = "bend"
 """The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
+LAWLESS: tuple[Source, ...] = (UNEXPLAINED, "skewed fan")
+"""The sources of errors whose law is only a bound: a fit must not take them out."""
 
 NEGLIGIBLE = 1e-12
 """Share of the largest variance below which a direction is left out: rounding."""
@@ -46,7 +48,8 @@ class Deviation:
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),
     "scale" (the plane target is larger than stated), "change" (the rig since then, `core.calibrate.change`),
-    "readjusted" (what a re-adjustment leaves uncertain of that). Where
+    "readjusted" (what a re-adjustment leaves uncertain of that), "skewed fan" (its stripes have another section in the
+    scan, `core.scan.changed_section`). Where
     nobody has stated how large scale or change may be, or how flat the plane target is, on which the fan rests,
     their sources say that they are assumed, or that the change is by the rig's own checks ("charted change").
     """

@@ -33,6 +33,7 @@ CHANGE = Message("inspection.cause_change", "change since the calibration")
 READJUSTED = Message("inspection.cause_readjusted", "change since the calibration, re-adjusted")
 CHANGE_CHARTED = Message("inspection.cause_change_charted", "change since the calibration (control chart of the rig)")
 CHANGE_ASSUMED = Message("inspection.cause_change_assumed", "change since the calibration (assumed)")
+SKEWED_FAN = Message("inspection.cause_skewed_fan", "light of the fan, skewed otherwise than in its calibration")
 
 PART_OFFSET = Message("inspection.cause_part_offset", "how far below its surface the part's material is seen")
 SPRAY = Message("inspection.cause_spray", "layer of spray on the part")
@@ -74,6 +75,7 @@ CALIBRATIONS: Mapping[str, Message] = {
     "assumed change": CHANGE_ASSUMED,
     "charted change": CHANGE_CHARTED,
     "readjusted": READJUSTED,
+    "skewed fan": SKEWED_FAN,
 }
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 

@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.deviations import UNEXPLAINED
+from core.calibrate.deviations import LAWLESS
 from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import light_below
@@ -134,7 +134,7 @@ class Sources:
             form,
             mean(of_noise * seen.farthest_mm[part]),
             (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
-            np.array([source == UNEXPLAINED for source in errors.sources], dtype=np.bool_),
+            np.array([source in LAWLESS for source in errors.sources], dtype=np.bool_),
             LIGHT_FROM_BELOW_ASSUMED if errors.part is None or errors.part.material is None else LIGHT_FROM_BELOW,
         )
 

@@ -27,6 +27,7 @@ from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan, require_fr
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
+from core.scan import changed_section
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
 from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
@@ -111,11 +112,22 @@ def scan_step(
         shaped = _begin((scan.cloud, camera.image_size), progress, beside)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
         change = since_calibration(found, calibration, options, progress, of_scan, check)
-        common = solve_common(even, scan, camera, fan, change.deviations, options.method, progress)
+        section = section_change(work, calibration, features.fan)
+        deviations = change.deviations
+        if section is not None:
+            deviations = (*deviations, section.deviation(features.fan, camera, fan))
+        common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
         doubt = _unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
-        said = (*change.notes, *([doubt] if doubt else []), *notes_on_focus(work, calibration, features.fan))
+        of_section = () if section is None else (section.note,)
+        doubt = doubt or (changed_section.DOUBT if of_section else None)
+        said = (
+            *change.notes,
+            *of_section,
+            *([doubt] if doubt else []),
+            *notes_on_focus(work, calibration, features.fan),
+        )
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
@@ -154,6 +166,24 @@ def _unsteady(scan: ScanResult) -> Message | None:
     if scan.moved:
         return MOVED_WITHIN
     return DRIFTED_WITHIN if scan.drifted else None
+
+
+def section_change(
+    work: Workspace, calibration: Calibration, fan: Sequence[Centreline]
+) -> changed_section.ChangedSection | None:
+    """How the fan's stripes are skewed otherwise than in its calibration, if they surely are and its poses are kept.
+
+    A re-adjusted fan rests on stripes of the day.
+    """
+    of = calibration.fan
+    if of.readjusted is not None:
+        return None
+    try:
+        poses = read_poses(work.path("poses"), fan_id(of.fan))
+    except InputError:  # `notes_on_focus` tells
+        return None
+    lines = [pose.centrelines for pose in poses]
+    return changed_section.changed_section(lines, fan, calibration.camera.camera, of.fan)
 
 
 def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> tuple[Message, ...]:

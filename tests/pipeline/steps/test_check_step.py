@@ -38,7 +38,7 @@ from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
 from core.pipeline.steps.scan_pictures import look_at_scan
-from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step
+from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step, section_change
 from core.pipeline.steps.validity import doubt_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.content import thickness_characteristic
@@ -298,6 +298,30 @@ def test_stripes_much_wider_than_at_the_calibration_are_told_by_the_scan(unchang
     assert [note.code for note in notes_on_focus(work, known, seen)] != [], (
         "told, and the scan is measured all the same"
     )
+
+
+def test_stripes_that_are_skewed_otherwise_than_at_the_calibration_are_told_and_in_u(unchanged, tmp_path):
+    work = work_in(unchanged, tmp_path)
+    seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
+    assert section_change(work, known, seen) is None
+    id_, pi = fan_id(known.fan.fan), known.fan.fan.pis[1]
+    camera = known.camera.camera
+
+    def skewed(line):
+        slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(camera.rays(line.uv)), line.normal)
+        return replace(line, skewness=line.skewness - 0.3 * np.sign(slope))
+
+    poses = read_poses(work.path("poses"), id_)
+    poses = [replace(pose, centrelines=tuple(map(skewed, pose.centrelines))) for pose in poses]
+    write_poses(work.path("poses"), id_, poses)
+    notes = scan_of(unchanged, work).scan.notes
+    assert [note.code for note in notes[:2]] == ["scan.section_changed", "inspection.section_has_changed"]
+    gauge = gauge_step(work)
+    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_skewed_fan"]
+    assert row.u_mm > 1e-3
+    assert gauge.verdict != Verdict.CONFORMING
+    work.path("poses").write_bytes(b"damaged")
+    assert section_change(work, known, seen) is None
 
 
 @pytest.mark.accuracy
