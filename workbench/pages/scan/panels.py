@@ -177,17 +177,18 @@ class SettingsPanel(QWidget):
                     0.0, 1000.0, decimals=one.decimals + 1, step=first, unit=one.unit, none_text=tr("not stated"),
                     first=first,
                 )  # fmt: skip
-                tip = tr(
-                    "Standard uncertainty; empty: does not change so. Laser modules turn by 10 to 100 µrad for each "
-                    "kelvin, pictures drift by 0.1 to 0.5 px while a camera warms up."
+                tip = (
+                    tr("Standard uncertainty; empty: none. Usual are {usual:g} {unit}.", usual=first, unit=one.unit)
+                    if rate == "per_kelvin"
+                    else tr("Standard uncertainty; empty: none.")
                 )
                 form.add_number(drift_key(rate, one.key), tr(one.name), allowed, tip)
         form.add_section(tr("Temperature"))
         form.add_number(
             "calibrated_celsius",
-            tr("Air at the calibration"),
+            tr("Calibrated at"),
             NumberRange(-50.0, 200.0, decimals=1, step=0.5, unit="°C", none_text=tr("not stated"), first=20.0),
-            tr("That of the scan is the air on the Project page. Where one of them is empty, 5 K between them are "
+            tr("Of the air. That of the scan stands on the Project page; where one is empty, 5 K between them are "
                "assumed."),
         )  # fmt: skip
 
