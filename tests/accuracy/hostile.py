@@ -149,8 +149,12 @@ def calibration_in(folder: Path, case: HostileCase) -> Path:
                     shutil.rmtree(part, ignore_errors=True)
         simulate_set(scenario, place)
         work = Workspace.open(_opened(case, place), out)
-        camera_step(work)
-        planes_step(work)
+        try:
+            camera_step(work)
+            planes_step(work)
+        except InputError:
+            shutil.rmtree(place)  # or the next case would take what is there for a calibration
+            raise
     return place
 
 

@@ -4,10 +4,12 @@ from pathlib import Path
 
 import pytest
 
+from core.errors import InputError
 from core.files.recording.rig import default_rig
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.simulate.scenario import Scenario
+from tests.accuracy import hostile
 from tests.accuracy.hostile import codes_in, false_alarms, figures_of, named, row_of, state_of, summary, table
 from tests.accuracy.hostile_cases import (
     CAUSES,
@@ -123,9 +125,9 @@ def test_cases_share_calibrations_only_where_these_are_the_same():
     for case in cases:
         shares = calibration_of(case.scenario) == ideal
         own = case.effect in {
-            "camera's target bowed", "camera's target larger", "plane target larger", "lens with k3", "coma", "defocus",
-            "JPEG", "Bayer mosaic", "hot pixels", "fan lines that bow", "speckle", "exposed too long, blooming",
-            "lasers that are no Gaussian across", "three at once",
+            "camera's target bowed", "plane target bowed", "camera's target larger", "plane target larger",
+            "lens with k3", "coma", "defocus", "JPEG", "Bayer mosaic", "hot pixels", "fan lines that bow", "speckle",
+            "exposed too long, blooming", "lasers that are no Gaussian across", "three at once",
         }  # fmt: skip
         assert not (shares and own)
         assert shares or own or case.scenario.seed != 1
@@ -156,3 +158,18 @@ def test_an_unchecked_rig_that_changed_beyond_u_proves_nothing_where_the_scan_sh
     assert figures["verdict"] == "not proven" and not figures["complete"]
     assert abs(figures["error"]) < 1.3 * figures["U"]
     assert state_of(case, figures) in ("held", "told")
+
+
+def test_a_calibration_that_is_refused_is_refused_to_the_next_case_too(tmp_path, monkeypatch):
+    monkeypatch.setattr(hostile, "simulate_set", lambda scenario, place, **_: place.mkdir())
+    monkeypatch.setattr(hostile, "_opened", lambda *_: None)
+    monkeypatch.setattr(hostile.Workspace, "open", lambda *_: None)
+
+    def refuse(_):
+        raise InputError(Message("fan.bow_beyond_flatness", "bowed"))
+
+    monkeypatch.setattr(hostile, "camera_step", refuse)
+    for checks in (0, 3):
+        assert (
+            figures_of(case("plane target bowed", check_poses=checks), tmp_path)["refused"] == "fan.bow_beyond_flatness"
+        )

@@ -49,7 +49,8 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
     with staged(folder / CHECK, FILES) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(project_set(folder, project), beside, part_name(project))
-        return check_step(work, project.options, progress, project.info.air_celsius)
+        air = project.info.air_celsius if project.rig.air.checked is None else None
+        return check_step(work, project.options, progress, air)
 
 
 def show_check(folder: Path) -> InterimCheck | None:

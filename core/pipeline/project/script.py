@@ -28,7 +28,7 @@ from core.files.results.run_file import RunRecord, read_run
 from core.files.study.study_file import study_path
 from core.files.toml_text import toml_text
 from core.messages import Message, label
-from core.pipeline.project.workspace import part_name, project_set
+from core.pipeline.project.workspace import part_name, project_set, rig_in_its_air
 from core.pipeline.steps.artefact_step import frames_id
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, read_calibration
@@ -78,7 +78,7 @@ def script_text(folder: Path, words: Words) -> str:
     there = {name for name, made in FILES.items() if (results / made).exists()}
     title = words(label("What was done in the project {name}, as commands of trisect."), name=project.info.name)
     use = words(label("Run it with Python in an empty folder: python {script}"), script="session.py")
-    files = {RIG: rig_to_toml(project.rig)}
+    files = {RIG: rig_to_toml(rig_in_its_air(project))}
     if _inspects(project, there):
         files[PLAN] = toml_text(plan_tables(project.inspection))
     compared = _compared(folder, project, record)

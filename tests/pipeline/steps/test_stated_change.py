@@ -7,8 +7,11 @@ import pytest
 
 from core.calibrate.change import DEFAULT_STABILITY, STABLE, Stability
 from core.calibrate.drift import Air, Drift
+from core.files.project.data import new_project
+from core.files.project.keys import rests_on
 from core.files.recording.options import Options
 from core.files.recording.set_listing import taken_at
+from core.pipeline.project.workspace import rig_in_its_air
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from tests.pipeline.steps.test_check_step import check_of, scan_of, unchanged, work_in
@@ -112,3 +115,11 @@ def test_a_check_is_judged_at_its_own_temperature(unchanged, tmp_path):
         work = stating(work_in(unchanged, tmp_path / str(celsius)), stability=AT_REST, drift=WARMING)
         stated[celsius] = check_of(unchanged, stating(work, air=Air(20.0, celsius, 20.0))).stated_mm
     assert stated[30.0] > 3 * stated[20.0]
+
+
+def test_the_air_of_a_project_is_that_of_its_scan_where_it_matters():
+    plain = replace(new_project("block"), info=replace(new_project("block").info, air_celsius=23.5))
+    assert rig_in_its_air(plain) is plain.rig, "the set's hash stays"
+    stated = replace(plain, rig=replace(plain.rig, drift=WARMING, air=Air(20.0, 21.0)))
+    assert rig_in_its_air(stated).air == Air(20.0, 21.0, 23.5)
+    assert rests_on("scan", plain, {}).keys() < rests_on("scan", stated, {}).keys(), "and is measured anew with it"
