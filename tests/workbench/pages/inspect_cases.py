@@ -66,7 +66,7 @@ def view(measured: GaugeResult | None = None, *, mesh: bool = True) -> Inspectio
     sigma = np.linspace(0.01, 0.05, POINTS).astype(np.float32)
     return InspectionView(
         points=np.column_stack([flat, depth]),
-        normals=np.tile(np.float32([0, 0, -1]), (POINTS, 1)),
+        normals=np.tile(np.array([0, 0, -1], np.float32), (POINTS, 1)),
         number=number[::-1].astype(np.int32),
         uv=rng.uniform(5, 40, (POINTS, 2)).astype(np.float32),
         sigma=sigma,

@@ -357,7 +357,7 @@ def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(vie
 
 def test_points_are_shaded_by_their_normals_and_keep_the_colour_their_bar_says(view, qtbot):
     colouring = Colouring("height", "mm", limits=(0.0, 1.0))
-    edge_on = np.tile(np.float32([np.sin(1.3), 0, -np.cos(1.3)]), (len(FLAT), 1))
+    edge_on = np.tile(np.array([np.sin(1.3), 0, -np.cos(1.3)], np.float32), (len(FLAT), 1))
 
     def seen(normals: np.ndarray | None) -> np.ndarray:
         view.set_cloud(FLAT, values=np.full(len(FLAT), 0.95), colouring=colouring, normals=normals)
