@@ -130,6 +130,12 @@ def joined(texts: Iterable[str], how: str = "") -> str:
     return _chosen.joined(list(texts), how)
 
 
+def sentences(*texts: str) -> str:
+    """Sentences in a row, without those that are empty: after a Chinese full stop there is no space."""
+    row = " ".join(filter(None, texts))
+    return row.replace("。 ", "。")
+
+
 def sentence(text: str) -> str:
     """A text as a sentence, with the full stop of the window's language."""
     return _chosen(Message("input.what", "{what}.", what=capital(text)))

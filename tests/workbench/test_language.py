@@ -16,7 +16,7 @@ import workbench.language
 from core.translations import language
 from workbench.app import build_window, speak
 from workbench.bench import Bench
-from workbench.language import choose, joined, named, sentence, spoken
+from workbench.language import choose, joined, named, sentence, sentences, spoken
 from workbench.main_window import MainWindow
 from workbench.work import jobs
 
@@ -91,7 +91,9 @@ def test_words_are_put_together_with_the_signs_of_the_language(qapp):
     try:
         choose(language("zh_CN"), qapp)
         assert named("量具 R&R", sentence(joined(("甲", "乙")))) == "量具 R&R：甲、乙。"
+        assert sentences("合格。", "", "完成于 11月27日。") == "合格。完成于 11月27日。"
         choose(language("de"), qapp)
         assert named("Streuung", sentence(joined(("a", "b"), ";"))) == "Streuung: A; b."
+        assert sentences("Konform.", "Fertig.") == "Konform. Fertig."
     finally:
         choose(language("en"), qapp)

@@ -9,7 +9,7 @@ from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
 from core.states import DECISIONS
-from workbench.language import sentence, tr
+from workbench.language import sentence, sentences, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.comparison_panel import ComparisonPanel
 from workbench.pages.inspect.features.conditions_panel import ConditionsPanel
@@ -181,6 +181,6 @@ class InspectPage(StepPage):
             ),
             Stage.UNMEASURED: (tr("No thickness yet"), p.warning()),
             Stage.FAILED: (tr("No thickness was measured"), p.problem_of_measuring),
-            Stage.MEASURED: (value, f"{decided} {p.state.sentence}".strip()),
-            Stage.OUTDATED: (value, f"{p.state.sentence} {p.warning()}"),
+            Stage.MEASURED: (value, sentences(decided, p.state.sentence)),
+            Stage.OUTDATED: (value, sentences(p.state.sentence, p.warning())),
         }

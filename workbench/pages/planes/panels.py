@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
-from workbench.language import tr
+from workbench.language import sentences, tr
 from workbench.pages.calibration.card import CalibrationCard
 from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
@@ -52,7 +52,7 @@ class PlanesCard(CalibrationCard):
             Stage.SOLVED: tr("Look at the poses and the angles; leave out what is bad, then accept."),
             Stage.REJECTED: tr("Leave out bad poses, or take other pictures; or accept it after all."),
             Stage.OTHER: tr("Laser planes kept earlier are in use. Accept these to measure with them."),
-            Stage.OUTDATED: " ".join(part for part in (p.state.sentence, p.work.problem) if part),
+            Stage.OUTDATED: sentences(p.state.sentence, p.work.problem),
         }
 
     def _tips(self) -> dict[str, str]:

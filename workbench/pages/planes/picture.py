@@ -8,7 +8,7 @@ from typing import Any
 from PySide6.QtWidgets import QWidget
 
 from core.pipeline.live.events import PlanesDetail
-from workbench.language import text_of, tr
+from workbench.language import sentences, text_of, tr
 from workbench.pages.calibration.picture import PictureTab
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
@@ -33,7 +33,7 @@ class PoseTab(PictureTab):
     def _sentence(self) -> str:
         p = self._presenter
         features = p.look.features_of(p.current)
-        notes = " ".join(map(text_of, features.notes)) if features is not None else ""
+        notes = sentences(*map(text_of, features.notes)) if features is not None else ""
         looked_at = self._stages if self._stages is not None and self._stages.name == p.current else None
         reason = text_of((features and features.reason) or (looked_at and looked_at.reason) or "")
         said = words.pose_sentence(p.current, p.quality_of(p.current), reason)

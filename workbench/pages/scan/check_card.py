@@ -16,7 +16,7 @@ from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.wording import with_uncertainty
 from core.states import CHECKS, STEP_STATES
 from core.study.artefact_check import KINDS, ArtefactCheck
-from workbench.language import joined, number, text_of, time_of, tr
+from workbench.language import joined, number, sentences, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
 from workbench.pages.scan.artefacts import KnownArtefacts
@@ -201,8 +201,8 @@ class CheckCard(QFrame):
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:
             verdict, found = "failed" if verdict == "failed" else "doubtful", [*found, outside]
-        sentences = " ".join((*map(text_of, found), *([check.refusal] if check.refusal else [])))
-        return LEVELS[verdict], capital(tr(CHECKS[verdict])), sentences
+        said = sentences(*map(text_of, found), check.refusal)
+        return LEVELS[verdict], capital(tr(CHECKS[verdict])), said
 
     def _charts(self, history: RigHistory | None, past: PastCheck | None) -> Mapping[str, ArtefactChart]:
         """What there are two or more of with these calibrations, by its name: pictures, and each artefact."""

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 from core.messages import capital
 from core.pipeline.live.events import ScanDetail
 from core.scan.preview.hints import HintLimits
-from workbench.language import text_of, tr
+from workbench.language import sentences, text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY, drift_key, usual_per_kelvin
@@ -90,10 +90,10 @@ class ScanCard(StageCard):
             case Stage.FAILED:
                 return tr("Not measured"), p.run.problem
             case Stage.MEASURED:
-                return tr("Measured"), f"{self._how_good()} {p.state.sentence}".strip()
+                return tr("Measured"), sentences(self._how_good(), p.state.sentence)
             case Stage.OUTDATED:
                 again = tr("Measure again.") if p.changed_since() else ""
-                return tr("Measured, but out of date"), f"{p.state.sentence} {again}".strip()
+                return tr("Measured, but out of date"), sentences(p.state.sentence, again)
 
     def _how_good(self) -> str:
         look = self._presenter.work.look

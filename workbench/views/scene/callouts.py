@@ -123,15 +123,16 @@ def _paint_plate(painter: QPainter, callout: Callout, plate: QRectF, colours: Ov
     rows = [
         QRectF(inside.left(), inside.top() + k * metrics.height(), inside.width(), metrics.height()) for k in (0, 1)
     ]
-    side = Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter
+    # Chinese comes from another font, whose feet reach further down than this one's height.
+    side = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter) | int(Qt.TextFlag.TextDontClip)
     painter.setPen(colours.text)
     title = metrics.elidedText(callout.title, Qt.TextElideMode.ElideMiddle, rows[0].width() + 1)
-    painter.drawText(rows[0], int(side), title)
+    painter.drawText(rows[0], side, title)
     if symbol:
         sign = QRectF(rows[1].left(), rows[1].center().y() - ICON_PX / 2, ICON_PX, ICON_PX)
         icon(symbol, colour=colour).paint(painter, sign.toRect())
     painter.setPen(muted if callout.outdated else colours.text)
-    painter.drawText(rows[1].adjusted(_value_left(callout), 0, 1, 0), int(side), callout.value)
+    painter.drawText(rows[1].adjusted(_value_left(callout), 0, 1, 0), side, callout.value)
 
 
 def _value_left(callout: Callout) -> float:
