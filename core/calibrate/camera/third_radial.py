@@ -62,9 +62,9 @@ class ThirdRadial:
         """That k3 is solved for, and what it does."""
         return Message(
             "camera.third_radial",
-            "The lens asks for its third radial coefficient k₃, which is solved for: views left out fit better by "
-            "{gain:.1%} ± {gain_error:.1%} of their squared residuals. It moves corners by up to {px:.2f} px "
-            "({mm:.3f} mm at a distance of {depth_mm:.0f} mm).",
+            "The lens asks for its third radial coefficient k₃, which is solved for: with it, each view fits the "
+            "camera of all others better, by {gain:.1%} ± {gain_error:.1%} of its squared residuals in the mean. It "
+            "moves corners by up to {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm).",
             gain=self.gain,
             gain_error=self.gain_error,
             px=self.px,
