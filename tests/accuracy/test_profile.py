@@ -1,5 +1,7 @@
 """A thickness by the fixed lines alone against hidden truth: own calibration, a part that is moved between pictures."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -9,6 +11,7 @@ from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.workspace import Workspace
+from core.simulate.effects.laser import LaserEffects
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 
@@ -52,3 +55,22 @@ def test_thicknesses_are_as_sure_as_they_say(tmp_path, lines):
         assert not {"profile.not_straight", "form.scatter"} & {note.code for note in gauge.notes}
         relative.append(error / gauge.u_mm)
     assert 0.3 < np.sqrt(np.mean(np.square(relative))) < 1.6
+
+
+@pytest.mark.accuracy
+def test_a_laser_with_a_shoulder_that_it_had_not_is_told_and_its_error_within_u(tmp_path):
+    scenario = Scenario(
+        scale=0.5, frames=2, camera_views=10, plane_poses=8, seed=4, hand_laser=False, travel_mm=3.0, height_mm=30.0
+    )
+    told = []
+    for shoulder in (0.0, 0.3):
+        simulate_set(replace(scenario, laser=LaserEffects(shoulder=shoulder)), tmp_path / f"{shoulder}")
+        work = Workspace.open(open_set(tmp_path / f"{shoulder}"), tmp_path / "out")
+        if not shoulder:
+            camera_step(work)
+            planes_step(work)
+        gauge = profile_step(work).gauge
+        print(f"shoulder {shoulder}: error {gauge.thickness_mm - 30.0:+.4f} mm, U {gauge.U_mm:.4f} mm")
+        assert abs(gauge.thickness_mm - 30.0) < gauge.U_mm
+        told.append("scan.section_changed" in {note.code for note in gauge.notes})
+    assert told == [False, True]

@@ -25,9 +25,11 @@ from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
+from core.pipeline.steps.scan_step import section_change
 from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import OF_CLOUD, Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
+from core.scan import changed_section
 from core.scan.common_errors import CommonErrors
 from core.scan.features.frames import FrameRecord
 from core.scan.profiles import Profiles, read_profiles
@@ -93,7 +95,7 @@ def profile_step(
         log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
         change = since_calibration(found, calibration, options, progress)
-        common = CommonErrors.of_fan(camera, fan, change.deviations)
+        common, section = CommonErrors.of_fan(camera, fan, change.deviations), None
         seen, steps, pictures = [], [], []
         stream = found.stream(paths)
         for index, (name, picture) in enumerate(stream):
@@ -107,6 +109,11 @@ def profile_step(
             except InputError as error:
                 pictures.append(PictureStep.none(index, name, error.what))
                 continue
+            if not seen:  # pictures of one place have one speckle: together they tell no more than the first
+                section = section_change(work, calibration, profiles.pieces)
+            if not seen and section is not None:
+                aside = section.deviation(profiles.pieces, camera, fan)
+                common = CommonErrors.of_fan(camera, fan, (*change.deviations, aside))
             seen.append(profiles)
             step = step_of(
                 _within(profiles.cloud, spec), replace(PointErrors.of_fan(profiles.pieces, common), part=part), known
@@ -124,7 +131,8 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        doubt = change.doubt or doubt_of_the_day(work, calibration)
+        of_section = () if section is None else (section.note,)
+        doubt = change.doubt or doubt_of_the_day(work, calibration) or (changed_section.DOUBT if of_section else None)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
         if doubt is not None:
@@ -132,6 +140,7 @@ def profile_step(
         notes = (
             *channel.notes("scan"),
             *change.notes,
+            *of_section,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
             *assumed_stability(found, change, calibration.fan),
