@@ -40,7 +40,13 @@ from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.pipeline.steps.planes_step import measure_poses
-from core.pipeline.steps.stated_change import StatedChange, change_at_check, change_at_scan, change_since_check
+from core.pipeline.steps.stated_change import (
+    StatedChange,
+    change_at_check,
+    change_at_scan,
+    change_since_check,
+    notes_since_check,
+)
 from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
@@ -350,7 +356,8 @@ def assumed_stability(found: RecordingSet, change: Change, fan: FanCalibration) 
     """Notes on what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
     if change.spread is not None:
         return (_charted(change.spread, found),)
-    return _stated(found, fan).notes(found.rig, change.stability)
+    since_check = notes_since_check(found.rig) if checked_on_the_day(found, fan) else ()
+    return (*_stated(found, fan).notes(found.rig, change.stability), *since_check)
 
 
 def _charted(spread: RigSpread, found: RecordingSet) -> Message:

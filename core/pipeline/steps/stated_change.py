@@ -65,6 +65,21 @@ def change_since_check(found: RecordingSet, checked: datetime) -> Stability:
     return found.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
 
 
+def notes_since_check(rig: Rig) -> tuple[Message, ...]:
+    """A note if it is assumed how much warmer it has become between a check of the day and the scan, and matters."""
+    known = rig.air.checked is not None and rig.air.scanned is not None
+    if known or not rig.drift.per_kelvin.over_default.any():
+        return ()
+    return (
+        Message(
+            "scan.kelvins_since_check_assumed",
+            "How warm it was at the check and at the scan is not stated for both ([air] in rig.toml): a difference of "
+            "{kelvins:g} K between them is assumed.",
+            kelvins=KELVINS_WITHIN_DAY,
+        ),
+    )
+
+
 def _since_calibration(
     found: RecordingSet, celsius: float | None, when: datetime | None, fan: FanCalibration
 ) -> StatedChange:

@@ -106,6 +106,8 @@ def test_a_check_says_less_of_a_scan_the_warmer_it_has_become_since(unchanged, t
     cold, warm = (change_of(stating(work, air=Air(20.0, 20.0, celsius))) for celsius in (20.0, 26.0))
     without = change_of(replace(work, found=replace(stating(work, air=Air(20.0, None, 26.0)).found, check=())))
     assert cold.checked and warm.checked
+    assert "scan.kelvins_since_check_assumed" not in codes(stating(work, air=Air(20.0, 20.0, 26.0)))
+    assert "scan.kelvins_since_check_assumed" in codes(stating(work, air=Air(20.0, None, 26.0)))
     assert 2 * size(cold) < size(warm) < size(without)
 
 
