@@ -21,7 +21,17 @@ from PySide6.QtCore import (
     Qt,
     Signal,
 )
-from PySide6.QtGui import QColor, QFontMetrics, QImage, QKeyEvent, QMouseEvent, QPainter, QPalette, QPixmap
+from PySide6.QtGui import (
+    QColor,
+    QFontMetrics,
+    QImage,
+    QKeyEvent,
+    QMouseEvent,
+    QPainter,
+    QPalette,
+    QPixmap,
+    QResizeEvent,
+)
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -308,10 +318,29 @@ def row_height(metrics: QFontMetrics) -> int:
 
 
 class CheckingTable(QTableView):
-    """A table that says when check boxes are meant; clicking one leaves the selection alone."""
+    """A table that says when check boxes are meant; clicking one leaves the selection alone.
+
+    Its current row stays in sight in a lower table, until it is scrolled away.
+    """
 
     toggle_wanted = Signal()
     check_clicked = Signal(int)
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._follows = False
+        self.verticalScrollBar().valueChanged.connect(self._scrolled)
+
+    def currentChanged(self, current: _Index, previous: _Index) -> None:
+        super().currentChanged(current, previous)
+        self._follows = True
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        follows = self._follows  # a lower table is scrolled by Qt, too
+        super().resizeEvent(event)
+        self._follows = follows
+        if follows:
+            self.scrollTo(self.currentIndex())
 
     def mousePressEvent(self, event: QMouseEvent) -> None:
         row = self._check_at(event)
@@ -332,6 +361,9 @@ class CheckingTable(QTableView):
             self.toggle_wanted.emit()
         else:
             super().keyPressEvent(event)
+
+    def _scrolled(self) -> None:
+        self._follows = self.viewport().rect().intersects(self.visualRect(self.currentIndex()))
 
     def _check_at(self, event: QMouseEvent) -> int:
         index = self.indexAt(event.position().toPoint())

@@ -104,6 +104,33 @@ def test_new_rows_keep_current_chosen_and_scroll(qtbot, view_list):
     assert view_list.table.verticalScrollBar().value() == 700
 
 
+def test_the_current_row_stays_in_sight_in_a_lower_list_unless_it_was_scrolled_away(qtbot, view_list):
+    view_list.resize(350, 900)
+    view_list.set_rows(rows(60))
+    view_list.set_current("view14.png")
+    view_list.resize(350, 300)
+    qtbot.waitUntil(lambda: in_sight(view_list))
+    view_list.table.verticalScrollBar().setValue(0)
+    view_list.resize(350, 250)
+    qtbot.wait(20)
+    assert view_list.table.verticalScrollBar().value() == 0 and not in_sight(view_list)
+
+
+def test_a_row_gone_to_before_the_list_has_its_height_is_in_sight_then(qtbot):
+    view_list = ViewList()
+    qtbot.addWidget(view_list)
+    view_list.set_rows(rows(60))
+    view_list.set_current("view35.png")
+    view_list.resize(350, 300)
+    view_list.show()
+    qtbot.waitUntil(lambda: in_sight(view_list))
+
+
+def in_sight(view_list):
+    table = view_list.table
+    return table.viewport().rect().contains(table.visualRect(table.currentIndex()))
+
+
 def test_losing_the_current_row_is_told(qtbot, view_list):
     view_list.set_current("view4.png")
     with qtbot.waitSignal(view_list.current_changed) as said:
