@@ -151,6 +151,13 @@ class DataTable(QWidget):
         rows = min(self._model.rowCount(), most) * table.verticalHeader().defaultSectionSize()
         table.setMinimumHeight(table.horizontalHeader().sizeHint().height() + rows + 2 * table.frameWidth())
 
+    def whole_width(self) -> int:
+        """So wide, all columns are seen whole, beside a bar to scroll the rows with."""
+        table, header = self.table, self.table.horizontalHeader()
+        columns = range(len(self._model.titles))
+        wanted = sum(max(table.sizeHintForColumn(one), header.sectionSizeHint(one)) for one in columns)
+        return wanted + 2 * table.frameWidth() + table.verticalScrollBar().sizeHint().width()
+
     def set_headers(self, headers: Sequence[Header]) -> None:
         """The columns; rows shown before are gone."""
         titles = [f"{title} [{unit}]" if unit else title for title, unit, *_ in headers]

@@ -7,7 +7,7 @@ from typing import cast
 import numpy as np
 import pytest
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QStyle
+from PySide6.QtWidgets import QScrollArea, QStyle
 
 from core.errors import InputError
 from core.files.study.study_file import study_path
@@ -322,6 +322,36 @@ def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_p
         assert tip == tr("s over that of the whole scatter")
     finally:
         choose(language("en"), qapp)
+        qapp.setStyleSheet(sheet)
+
+
+def test_the_table_of_a_study_is_cut_for_no_numbers_beside_it_but_for_the_edge_of_the_tab(
+    presenter, show_page, qapp, qtbot
+):
+    sheet = qapp.styleSheet()
+    try:
+        apply_theme(qapp, "light")
+        page = show_page(presenter, 1280 - RAIL, 700)
+        page.tabs.setCurrentIndex(STUDIES)
+        studies = presenter.studies
+        studies.begin("grr")
+        studies.write("part;operator;value\n" + ROWS)
+        studies.finish()
+        made(studies, qtbot)
+        page.refreshing.at_once()
+        tab = page.studies
+        bar, outer = tab.table.table.horizontalScrollBar(), tab.findChild(QScrollArea).horizontalScrollBar()
+        qtbot.waitUntil(lambda: tab.table.isVisible() and len(tab.table.rows()) == 7)
+        tab.table.set_headers([("a column of some width", "")] * 3)
+        tab.table.set_rows([("1", "2", "3")])
+        tab.rows.setMinimumWidth(320)
+        page.resize(1070, 700)
+        qtbot.waitUntil(lambda: page.width() == 1070 and bar.maximum() == 0 and outer.maximum() == 0)
+        tab.table.set_headers([("a column of a title that is wider than the tab by a word " * 2, ""), ("s", "mm")])
+        tab.table.set_rows([("1", "2")])
+        page.resize(990, 700)
+        qtbot.waitUntil(lambda: page.width() == 990 and bar.maximum() > 0 and outer.maximum() == 0)
+    finally:
         qapp.setStyleSheet(sheet)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import Qt
+from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFrame,
     QHBoxLayout,
@@ -32,8 +33,10 @@ MOST_ROWS = 5
 """Of the list of studies; what does not fit is scrolled to."""
 MOST_IN_SIGHT = 8
 """Rows of a study's table that are seen without scrolling within it."""
-LEAST_TABLE_PX, ROWS_PX = 300, 250
-"""Widths; where there is less than both the numbers stand below the table."""
+ROWS_PX = 250
+"""Least width of the numbers, which stand below the table where both are not seen whole side by side."""
+MARGIN_PX = 6
+"""Left and right of all."""
 BESIDE_PX = 24
 """Left and right of a study's kind and the box before it."""
 
@@ -60,7 +63,8 @@ class StudiesTab(QWidget):
         scroll.setWidget(self.stack)
         scroll.setWidgetResizable(True)
         scroll.setFrameShape(QFrame.Shape.NoFrame)
-        in_column(scroll, on=self, margins=(6, 6, 6, 4))
+        self._bar = scroll.verticalScrollBar()
+        in_column(scroll, on=self, margins=(MARGIN_PX, 6, MARGIN_PX, 4))
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -72,6 +76,10 @@ class StudiesTab(QWidget):
         self._show_list()
         self._show_buttons()
         self._show_study()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self._fit_table()
 
     # ---- making it
 
@@ -106,7 +114,6 @@ class StudiesTab(QWidget):
         column.addWidget(self.title)
         for chart in self.charts:
             column.addWidget(chart)
-        self.table.setMinimumWidth(LEAST_TABLE_PX)
         column.addWidget(Folding(in_row(self.table), in_column(self.rows, STRETCH), spacing=14, share=2), 1)
         column.addWidget(self.notes)
         return inside
@@ -200,7 +207,13 @@ class StudiesTab(QWidget):
         self.table.set_headers(headers)
         self.table.set_rows(body)
         self.table.show_rows(MOST_IN_SIGHT)
+        self._fit_table()
         self.notes.setText("\n".join(map(text_of, study.notes)))
+
+    def _fit_table(self) -> None:
+        """It is seen whole; only one that is wider than the tab is cut."""
+        room = self.width() - 2 * MARGIN_PX - self._bar.sizeHint().width()
+        self.table.setMinimumWidth(max(min(self.table.whole_width(), room), 0))
 
     def _export(self) -> None:
         kept = next((one for one in self._studies.all if one.id == self._studies.chosen), None)
