@@ -47,7 +47,7 @@ def plate(pose: Pose) -> tuple[np.ndarray, np.ndarray]:
     return (0.25 + 0.65 * in_plate - 0.82 * in_square).reshape(U.shape), points
 
 
-def render(pose: Pose, *, seed: int, moved: Pose | None = None, gain: float = 1.0) -> Pair:
+def render(pose: Pose, *, seed: int, moved: Pose | None = None, gain: float = 1.0, exposure: float = 1.0) -> Pair:
     """8-bit pictures of the target, fan on (at `moved`, if given) and off."""
     rng = np.random.default_rng(seed)
     without = plate(pose)
@@ -58,7 +58,7 @@ def render(pose: Pose, *, seed: int, moved: Pose | None = None, gain: float = 1.
         near = np.abs(distance) < 5 * STRIPE_MM
         light[near] += HEIGHT * gain * np.exp(-0.5 * (distance[near] / STRIPE_MM) ** 2)
     pictures = [light.reshape(albedo.shape) * albedo, 110.0 * without[0]]
-    on, off = (np.clip(np.round(p + rng.normal(0, 1.0, p.shape)), 0, 255).astype(np.uint8) for p in pictures)
+    on, off = (np.clip(np.round(exposure * p + rng.normal(0, 1.0, p.shape)), 0, 255).astype(np.uint8) for p in pictures)
     return Pair(on, off)
 
 
@@ -230,6 +230,20 @@ def test_saturated_points_are_flagged():
     bright = render(POSE, seed=3, gain=3.0)
     features = measure_plane_pose("p", bright.on, bright.off, TARGET, CAMERA)
     assert np.concatenate([line.saturated for line in features.centrelines]).mean() > 0.8
+
+
+def test_of_several_exposures_stripes_are_from_the_longest_that_is_not_saturated():
+    first, shorter = (render(POSE, seed=3, gain=3.0, exposure=exposure) for exposure in (1.0, 0.25))
+    dark, longer = (render(POSE, seed=4, gain=0.25, exposure=exposure) for exposure in (0.4, 1.6))
+    for one, other in ((first, shorter), (dark, longer)):
+        bracket = Beside(further=[(other.on, other.off)])
+        both = measure_plane_pose("p", one.on, one.off, TARGET, CAMERA, beside=bracket)
+        misses = misses_px(both)
+        assert np.sqrt(np.mean(misses**2)) < 0.1
+        assert np.concatenate([line.saturated for line in both.centrelines]).mean() < 0.1
+    alone = measure_plane_pose("p", dark.on, dark.off, TARGET, CAMERA)
+    sigma, worse = (np.median(np.concatenate([line.sigma for line in each.centrelines])) for each in (both, alone))
+    assert sigma < 0.7 * worse
 
 
 def test_pictures_of_different_size_are_refused(pair):
