@@ -95,8 +95,10 @@ def profile_step(
         log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
         change = since_calibration(found, calibration, options, progress)
-        common, section = CommonErrors.of_fan(camera, fan, change.deviations), None
-        seen, steps, pictures = [], [], []
+        common = CommonErrors.of_fan(camera, fan, change.deviations)
+        section: changed_section.ChangedSection | None = None
+        seen: list[Profiles] = []
+        steps, pictures = [], []
         stream = found.stream(paths)
         for index, (name, picture) in enumerate(stream):
             progress("profiles", index, len(paths))
