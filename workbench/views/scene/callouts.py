@@ -57,7 +57,7 @@ def plate_sizes(callouts: Sequence[Callout], font: QFont) -> Array:
 def lay_out(
     places: Array, sizes: Array, moved: Sequence[tuple[float, float] | None], room: QRectF, kept: Sequence[QRectF]
 ) -> list[QRectF]:
-    """Where the plates stand, all in logical pixels.
+    """Where the plates stand, all in logical pixels: where their lines would cross they have changed places.
 
     Parameters
     ----------
@@ -86,7 +86,71 @@ def lay_out(
         covered[:, : len(middle)] *= MIDDLE_WEIGHT
         best = middles[np.argmin(covered.sum(axis=1))]
         boxes[k] = best - half, best + half
-    return [QRectF(QPointF(*boxes[k][0]), QPointF(*boxes[k][1])) for k in range(len(places))]
+    laid = np.array([boxes[k] for k in range(len(places))]).reshape(-1, 2, 2)
+    laid = _uncrossed(places, laid, [offset is None for offset in moved], np.array(avoided).reshape(-1, 2, 2), room)
+    return [QRectF(QPointF(*low), QPointF(*high)) for low, high in laid]
+
+
+def _uncrossed(places: Array, boxes: Array, free: Sequence[bool], avoided: Array, room: QRectF) -> Array:
+    """Two free plates whose lines cross exchange places, if then fewer lines cross and no more is covered.
+
+    Corners (N, 2, 2) of the plates and (M, 2, 2) of what they avoid.
+    """
+    crossed, covered = _crossed(places, boxes), _covered(boxes, avoided)
+    for _ in range(len(places)):
+        for a, b in np.argwhere(np.triu(crossed)):
+            if not (free[a] and free[b]):
+                continue
+            tried = _exchanged(boxes, a, b, places.mean(axis=0), room)
+            left, covers = _crossed(places, tried), _covered(tried, avoided)
+            if left.sum() < crossed.sum() and covers <= covered + 1:
+                boxes, crossed, covered = tried, left, covers
+                break
+        else:
+            break
+    return boxes
+
+
+def _exchanged(boxes: Array, a: int, b: int, middle: Array, room: QRectF) -> Array:
+    """Two plates in each other's places, with the side towards `middle` where the other's was."""
+    tried, halves, middles = boxes.copy(), np.diff(boxes, axis=1)[:, 0] / 2, boxes.mean(axis=1)
+    low, high = np.array([room.left(), room.top()]), np.array([room.right(), room.bottom()])
+    for one, other in ((a, b), (b, a)):
+        away = middles[other] - middle
+        outwards = np.sign(away) * (np.abs(away) > halves[other])
+        at = middles[other] + outwards * (halves[one] - halves[other])
+        at = np.clip(at, low + halves[one], np.maximum(high - halves[one], low + halves[one]))
+        tried[one] = at - halves[one], at + halves[one]
+    return tried
+
+
+def _crossed(places: Array, boxes: Array) -> Array:
+    """Whose lines cross: (N, N) of bool."""
+    ends = np.clip(places, boxes[:, 0], boxes[:, 1])
+    along = ends - places
+
+    def side(points: Array) -> Array:
+        """Of which line (row) which of the points (column) lies: its sign."""
+        to = points[None] - places[:, None]
+        return np.sign(along[:, None, 0] * to[..., 1] - along[:, None, 1] * to[..., 0])
+
+    parted = side(places) * side(ends) < 0
+    crossed: Array = parted & parted.T
+    return crossed
+
+
+def _covered(boxes: Array, avoided: Array) -> float:
+    """Square pixels of plates on each other and on what they avoid."""
+    others = np.concatenate([boxes, avoided])
+    sides = np.minimum(boxes[:, None, 1], others[None, :, 1]) - np.maximum(boxes[:, None, 0], others[None, :, 0])
+    covered = np.maximum(sides, 0).prod(axis=2)
+    np.fill_diagonal(covered, 0)
+    return float(covered.sum())
+
+
+def _line_end(at: QPointF, plate: QRectF) -> QPointF:
+    """Where the line from a place meets its plate."""
+    return QPointF(min(max(at.x(), plate.left()), plate.right()), min(max(at.y(), plate.top()), plate.bottom()))
 
 
 def paint_callouts(
@@ -95,10 +159,9 @@ def paint_callouts(
     """Paint them, each with its place on the screen and its plate: lines first, so that none runs over a plate."""
     painter.setRenderHint(QPainter.RenderHint.Antialiasing)
     for _, at, plate in shown:
-        end = QPointF(min(max(at.x(), plate.left()), plate.right()), min(max(at.y(), plate.top()), plate.bottom()))
         for pen in (QPen(colours.ground, 3.5), QPen(colours.text, 1.2)):
             painter.setPen(pen)
-            painter.drawLine(at, end)
+            painter.drawLine(at, _line_end(at, plate))
         painter.setPen(QPen(colours.text, 1.4))
         painter.setBrush(colours.ground)
         painter.drawEllipse(at, DOT_PX, DOT_PX)

@@ -339,7 +339,11 @@ class SceneView(QWidget):
         seen &= True if hidden is None else ~hidden.hides(places)
         shown = np.flatnonzero(seen)
         moved = [callouts[k].moved for k in shown]
-        plates = lay_out(screen[shown], sizes[shown], moved, room, corner_taken(size) if self._axes else [])
+        kept = corner_taken(size) if self._axes else []
+        if self._handle is not None:
+            x, y = np.nan_to_num(self.screen_positions(self._handle[0][None])[0], nan=-1e6)
+            kept += [QRectF(x - 2 * HANDLE_PX, y - 2 * HANDLE_PX, 4 * HANDLE_PX, 4 * HANDLE_PX)]
+        plates = lay_out(screen[shown], sizes[shown], moved, room, kept)
         return [(callouts[k], QPointF(*screen[k]), plate) for k, plate in zip(shown, plates, strict=True)]
 
     def hide_side(self, side: tuple[ArrayLike, ArrayLike] | None) -> None:
