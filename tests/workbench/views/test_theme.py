@@ -13,23 +13,30 @@ from PySide6.QtCore import QPoint, QRect, QSize
 from PySide6.QtGui import QColor, QIcon, QPainter, QPixmap
 from PySide6.QtWidgets import (
     QAbstractButton,
+    QAbstractScrollArea,
     QApplication,
     QCheckBox,
     QComboBox,
     QDoubleSpinBox,
     QFrame,
     QHBoxLayout,
+    QLabel,
     QLineEdit,
+    QPlainTextEdit,
     QPushButton,
     QStyle,
+    QStyleOptionSlider,
     QStyleOptionTab,
     QToolButton,
+    QTreeWidget,
+    QTreeWidgetItem,
     QWidget,
 )
 
 from workbench.theme import CHECKED, DARK, LIGHT, Shades, _ThemedIcon, icon
 from workbench.views.common import IconLabel
-from workbench.views.layouts import Tabs
+from workbench.views.layouts import Tabs, UpAndDown
+from workbench.views.scene.overlay import OverlayColours, axis_colour
 
 
 def card_in(parent: QWidget) -> QFrame:
@@ -108,6 +115,55 @@ def test_no_field_has_a_frame_that_is_hardly_seen(qtbot: Any, theme: Callable[[s
         seen = [abs(frame.lightness() - ground) for frame in frames]
         assert min(seen[1:]) >= seen[0] - 1  # a text's frame has the colour of lines; a rounding more or less
         assert seen[0] >= 20
+
+
+@pytest.mark.parametrize(("name", "shades"), [("dark", DARK), ("light", LIGHT)])
+def test_the_handle_of_a_scroll_bar_is_seen_on_its_trough_alike_in_lists_texts_and_panels(
+    qtbot: Any, theme: Callable[[str], None], name: str, shades: Shades
+) -> None:
+    theme("light" if name == "dark" else "dark")
+    window, rows = QWidget(), "row\n" * 60
+    qtbot.addWidget(window)
+    tree = QTreeWidget()
+    tree.addTopLevelItems([QTreeWidgetItem([row]) for row in rows.split()])
+    areas: tuple[QAbstractScrollArea, ...] = (QPlainTextEdit(rows), tree, UpAndDown(QLabel(rows), steady=True))
+    row = QHBoxLayout(window)
+    for area in areas:
+        row.addWidget(area)
+    window.resize(600, 200)
+    window.show()
+    theme(name)
+    for area in areas:
+        bar, option = area.verticalScrollBar(), QStyleOptionSlider()
+        bar.initStyleOption(option)
+        image, style = bar.grab().toImage(), bar.style()
+        handle, trough = (
+            image.pixelColor(style.subControlRect(QStyle.ComplexControl.CC_ScrollBar, option, part, bar).center())
+            for part in (QStyle.SubControl.SC_ScrollBarSlider, QStyle.SubControl.SC_ScrollBarAddPage)
+        )
+        assert trough.name() == shades.window
+        assert contrast(handle, trough) >= 3, "what WCAG 2.2 asks of parts of controls"
+        assert style.pixelMetric(QStyle.PixelMetric.PM_ScrollBarExtent, option, bar) == bar.width()
+
+
+def contrast(one: QColor, other: QColor) -> float:
+    """Of two opaque colours, after WCAG."""
+
+    def luminance(colour: QColor) -> float:
+        parts = (colour.redF(), colour.greenF(), colour.blueF())
+        red, green, blue = (part / 12.92 if part <= 0.03928 else ((part + 0.055) / 1.055) ** 2.4 for part in parts)
+        return 0.2126 * red + 0.7152 * green + 0.0722 * blue
+
+    low, high = sorted(map(luminance, (one, other)))
+    return (high + 0.05) / (low + 0.05)
+
+
+@pytest.mark.parametrize("dark", [False, True])
+def test_axes_that_point_away_are_seen_too(dark: bool) -> None:
+    ground = QColor((DARK if dark else LIGHT).window)
+    colours = OverlayColours(ground, QColor("#808080"), QColor("#808080"))
+    for away in (False, True):
+        assert min(contrast(axis_colour(number, colours, away=away), ground) for number in range(3)) >= 3
 
 
 def test_titles_of_tabs_are_whole_down_to_the_feet_of_their_letters(qtbot: Any, theme: Callable[[str], None]) -> None:
