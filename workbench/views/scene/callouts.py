@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 from PySide6.QtCore import QPointF, QRectF, Qt
 from PySide6.QtGui import QColor, QFont, QFontMetricsF, QPainter, QPen
 
@@ -124,7 +125,7 @@ def _exchanged(boxes: Array, a: int, b: int, middle: Array, room: QRectF) -> Arr
     return tried
 
 
-def _crossed(places: Array, boxes: Array) -> Array:
+def _crossed(places: Array, boxes: Array) -> NDArray[np.bool_]:
     """Whose lines cross: (N, N) of bool."""
     ends = np.clip(places, boxes[:, 0], boxes[:, 1])
     along = ends - places
@@ -135,7 +136,7 @@ def _crossed(places: Array, boxes: Array) -> Array:
         return np.sign(along[:, None, 0] * to[..., 1] - along[:, None, 1] * to[..., 0])
 
     parted = side(places) * side(ends) < 0
-    crossed: Array = parted & parted.T
+    crossed: NDArray[np.bool_] = parted & parted.T
     return crossed
 
 
