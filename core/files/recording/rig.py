@@ -504,6 +504,14 @@ class Validity:
 
 
 @dataclass(frozen=True, slots=True)
+class ReferenceTarget:
+    """A target whose size is known, and how true it is."""
+
+    target: Target
+    board: BoardTolerance
+
+
+@dataclass(frozen=True, slots=True)
 class Rig:
     """What rig.toml says. `angle` between neighbouring lines is in rad (0 with one line).
 
@@ -539,10 +547,8 @@ class Rig:
     """The colour mosaic of raw pictures; None: pictures are no raw ones."""
     part: Part = field(default_factory=Part)
     """What is measured."""
-    reference_target: Target | None = None
+    reference: ReferenceTarget | None = None
     """What the plane target's size is compared with in pictures of both; None: the camera's target."""
-    reference_board: BoardTolerance = field(default_factory=BoardTolerance)
-    """How true that one is."""
     readjust: bool = False
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
 
@@ -622,9 +628,9 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
         stated["plane_board"] = _tolerance(tables.plane_target)
         stated["plane_margin_mm"] = tables.plane_target.margin_mm
     if tables.reference_target is not None:
-        stated["reference_target"] = _target(path, f"{within}reference_target", tables.reference_target)
-        stated["reference_board"] = _tolerance(tables.reference_target)
-        if stated["reference_target"] == stated.get("plane_target"):
+        reference = _target(path, f"{within}reference_target", tables.reference_target)
+        stated["reference"] = ReferenceTarget(reference, _tolerance(tables.reference_target))
+        if reference == stated.get("plane_target"):
             raise InputError(
                 Message(
                     "rig.targets_alike",
@@ -682,8 +688,8 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         | _present({"margin_mm": rig.plane_margin_mm})
         | temperature_table(rig.part.target),
         "reference_target": None
-        if rig.reference_target is None
-        else _target_table(rig.reference_target) | _tolerance_table(rig.reference_board),
+        if rig.reference is None
+        else _target_table(rig.reference.target) | _tolerance_table(rig.reference.board),
         "laser_fan": _present({"lines": rig.lines, "angle_deg": _in_degrees(rig.angle) if rig.angle else None}),
         "gauge": None if rig.gauge is None else _gauge_table(rig.gauge),
         "stability": _stability_tables(rig.stability, rig.drift) or None,

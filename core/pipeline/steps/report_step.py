@@ -248,8 +248,8 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], channel: str | None, wo
         said[label("Camera target")] = target_in_words(rig.camera_target, words)
     if "plane_target" not in rig.unstated:
         said[label("Plane target")] = target_in_words(rig.plane_target, words)
-    if rig.reference_target is not None:
-        said[label("Reference target")] = target_in_words(rig.reference_target, words)
+    if rig.reference is not None:
+        said[label("Reference target")] = target_in_words(rig.reference.target, words)
     if "laser_fan" not in rig.unstated:
         said[label("Fixed laser")] = (
             words("{n} lines, {angle}° apart", n=rig.lines, angle=angle) if rig.lines > 1 else words("1 line")

@@ -47,7 +47,7 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     """
     rig = found.rig
     paths = pictures_in(found.rig_file.parent / TARGETS)
-    other = rig.reference_target
+    other = None if rig.reference is None else rig.reference.target
     if other is None and not rig.one_target and "camera_target" not in rig.unstated:
         other = rig.camera_target
     if not paths or other is None:
@@ -113,10 +113,10 @@ def with_compared_sizes(
     ratio, notes = compare_targets(found, camera)
     if ratio is None:
         return fan, notes
-    by_reference = found.rig.reference_target is not None
-    board = found.rig.reference_board if by_reference else found.rig.camera_board
+    reference = found.rig.reference
+    board = found.rig.camera_board if reference is None else reference.board
     stated = math.hypot(board.size_sd, found.rig.plane_board.size_sd)
-    said = (*notes, ratio.note(stated, _REFERENCE if by_reference else _CAMERAS))
+    said = (*notes, ratio.note(stated, _CAMERAS if reference is None else _REFERENCE))
     if ratio.fit_p < NOT_FIXED:
         return fan, said
     known = board.scale_sd

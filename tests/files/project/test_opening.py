@@ -28,14 +28,23 @@ from core.files.project.data import (
 from core.files.project.folder import create_project, read_project
 from core.files.project.json_form import SCHEMA, project_text
 from core.files.recording.options import Options
-from core.files.recording.rig import Channels, GaugeSpec, Rig, Validity, default_rig, read_rig, rig_to_toml
+from core.files.recording.rig import (
+    Channels,
+    GaugeSpec,
+    ReferenceTarget,
+    Rig,
+    Validity,
+    default_rig,
+    read_rig,
+    rig_to_toml,
+)
 from core.image.stripes.stripe import StripeSettings
-from core.image.targets import Charuco, CircleGrid
+from core.image.targets import BlackSquare, Charuco, CircleGrid
 from core.inspect.characteristic import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message, plain
 from core.study.artefact_check import Artefact
 
@@ -54,7 +63,9 @@ def full_project():
             drift=Drift(Stability(3e-5, 0.003, 0.04, 2e-5), Stability(1e-6, 1e-3, 0.01, 1e-6)), air=Air(20.5, 21, 23.5),
             row_time_us=26.0,
             channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True,
-            mosaic="RGGB", part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5)),
+            mosaic="RGGB", reference=ReferenceTarget(BlackSquare(36.0), BoardTolerance(0.01, 1e-5)),
+            part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5,
+                      TargetTemperature(23.0, 0.5, 24e-6, 1e-6))),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
@@ -126,6 +137,7 @@ WHOLE = {
     ("rig", "unstated"),
     ("rig", "stability"),
     ("rig", "row_time_us"),
+    ("rig", "reference"),
     ("rig", "part"),
     ("options", "stripe"),
     ("options", "plane_stripe"),

@@ -9,6 +9,7 @@ from core.calibrate.board_shape import BoardTolerance
 from core.errors import InputError
 from core.files.recording.rig import (
     GaugeSpec,
+    ReferenceTarget,
     Rig,
     RigTables,
     default_rig,
@@ -136,7 +137,7 @@ def test_the_temperature_of_the_plane_target_can_be_said(tmp_path):
 def test_a_target_of_known_size_to_compare_the_plane_target_with_can_be_said(tmp_path):
     reference = '[reference_target]\nkind = "black_square"\nside_mm = 36.0\nscale_sd = 1e-5\n'
     rig = read(tmp_path, GOOD + reference)
-    assert (rig.reference_target, rig.reference_board) == (BlackSquare(36.0), BoardTolerance(scale_sd=1e-5))
+    assert rig.reference == ReferenceTarget(BlackSquare(36.0), BoardTolerance(scale_sd=1e-5))
     assert written(tmp_path, rig) == rig
     assert "as the plane target is" in complaint(tmp_path, GOOD + reference.replace("36", "60"))
 

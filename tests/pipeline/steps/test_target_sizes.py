@@ -9,6 +9,7 @@ from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.results import FanCalibration
 from core.files.pictures import write_picture
 from core.files.recording.recording_set import open_set
+from core.files.recording.rig import ReferenceTarget
 from core.image.targets import BlackSquare, Checkerboard
 from core.model import Fan, LightPlane, Pose
 from core.pipeline.steps.target_sizes import compare_targets, with_compared_sizes
@@ -73,7 +74,7 @@ def test_two_squares_in_one_picture_tell_the_size_of_the_one_by_the_other(
     found, plane = opened(tmp_path, simulated, shown, 60.0), BlackSquare(float(stated_mm))
     rig = replace(
         found.rig, camera_target=plane, plane_target=plane, plane_board=BoardTolerance(),
-        reference_target=BlackSquare(float(reference_mm)), reference_board=BoardTolerance(scale_sd=1e-4),
+        reference=ReferenceTarget(BlackSquare(float(reference_mm)), BoardTolerance(scale_sd=1e-4)),
     )  # fmt: skip
     found = replace(found, rig=rig)
     assert found.rig.one_target
@@ -91,7 +92,7 @@ def test_a_reference_target_counts_in_place_of_the_cameras(tmp_path, simulated, 
     found = opened(tmp_path, simulated, shown, 60.0)
     rig = replace(
         found.rig, camera_target=Checkerboard(17, 12, 10.0), camera_board=BoardTolerance(),
-        reference_target=BOARD, reference_board=BoardTolerance(scale_sd=1e-4), plane_board=BoardTolerance(),
+        reference=ReferenceTarget(BOARD, BoardTolerance(scale_sd=1e-4)), plane_board=BoardTolerance(),
     )  # fmt: skip
     fan, said = with_compared_sizes(UNSTATED, replace(found, rig=rig), camera)
     assert not fan.scale_assumed and said[-1].code == "target.sizes_agree"
