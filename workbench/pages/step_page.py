@@ -6,7 +6,6 @@ from functools import partial
 from typing import Any
 
 from PySide6.QtCore import QEvent, Qt
-from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QSizePolicy, QSplitter, QVBoxLayout, QWidget
 from superqt import QCollapsible
 
@@ -20,7 +19,10 @@ from workbench.views.stage_card import StageCard
 SIDE_WIDTH, NARROWEST_SIDE = 380, 300
 """Pixels of the panel at the side: at first, and at least."""
 LIST_HEIGHT, LIST_SHARE = 240, 0.36
-"""A list of pictures at the side is at least so many pixels high, and takes this share of a higher page."""
+"""A list of pictures at the side is at least so many pixels high, and takes this share of a higher page.
+
+It takes less where then nothing at the side has to be scrolled to.
+"""
 ANY_HEIGHT = 16_777_215
 """Qt's own largest height of a widget: no limit."""
 
@@ -98,13 +100,12 @@ class StepPage(QWidget):
         self._fit_lists()
         return self.add_panel(title, widget, kept="list")
 
-    def resizeEvent(self, event: QResizeEvent) -> None:
-        super().resizeEvent(event)
-        self._fit_lists()
-
     def _fit_lists(self) -> None:
         for widget in self._lists:
-            widget.setMinimumHeight(max(LIST_HEIGHT, round(LIST_SHARE * self.height())))
+            share = max(LIST_HEIGHT, round(LIST_SHARE * self.height()))
+            lacking = self.scrolled.lacking() - widget.minimumHeight() + share if widget.isVisible() else 0
+            gives = max(lacking, 0) if share - lacking >= LIST_HEIGHT else 0
+            widget.setMinimumHeight(share - gives)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
@@ -133,6 +134,7 @@ class StepPage(QWidget):
         inside.setSizePolicy(QSizePolicy.Policy.Preferred, QSizePolicy.Policy.Preferred)
         self.scrolled = scroll = UpAndDown(inside, NARROWEST_SIDE, steady=True)
         scroll.setAccessibleName(tr("Settings and quality"))
+        scroll.fitted.connect(self._fit_lists)
         return holding(in_column(self.pinned, (scroll, 1), spacing=0))
 
 

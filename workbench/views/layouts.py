@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final, TypeVar
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt
+from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -83,6 +83,9 @@ class UpAndDown(QScrollArea):
     With `steady` its bar has room even where there is nothing to scroll: as there is, no sentence is wrapped anew.
     """
 
+    fitted = Signal()
+    """It has another size, or what is in it wants another one."""
+
     def __init__(self, widget: QWidget, least_width: int = 0, *, steady: bool = False) -> None:
         super().__init__()
         if steady:
@@ -103,7 +106,22 @@ class UpAndDown(QScrollArea):
     def eventFilter(self, watched: QObject, event: QEvent) -> bool:
         if event.type() == QEvent.Type.LayoutRequest and watched is self.widget():
             self.updateGeometry()
+            self.fitted.emit()
         return super().eventFilter(watched, event)
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        self.fitted.emit()
+
+    def lacking(self) -> int:
+        """So many pixels of what is in it have to be scrolled to; less than none: so many are free."""
+        inside = self.widget()
+        layout = inside.layout() if inside is not None else None
+        if inside is None or layout is None:
+            return 0
+        width = max(self.viewport().width(), inside.minimumSizeHint().width())
+        height = layout.totalHeightForWidth(width) if layout.hasHeightForWidth() else inside.minimumSizeHint().height()
+        return height - self.viewport().height()
 
 
 class Folding(QWidget):
