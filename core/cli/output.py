@@ -192,7 +192,7 @@ def gauge_rows(gauge: GaugeResult) -> Rows:
     return [
         *rows,
         (tr("flatness"), flatness),
-        (tr("parallelism"), _angles([gauge.parallelism])),
+        (tr("angle of the faces"), _angles([gauge.parallelism])),
         (tr("points on faces"), tr("{above:,} above, {below:,} below", above=upper, below=lower)),
     ]
 

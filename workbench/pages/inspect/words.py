@@ -65,7 +65,7 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
         (tr("Flatness, upper face"), f"{wording().fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
         (tr("Flatness, lower face"), f"{wording().fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
         (
-            tr("Parallelism"),
+            tr("Angle of the faces"),
             f"{wording().fixed(math.degrees(gauge.parallelism), 3)}°",
             tr("Angle between the two faces when each is fitted by itself"),
             "",

@@ -210,7 +210,7 @@ def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
     assert shown.result.verdict.text == "Conforming"
     rows = shown.result.rows
     assert rows.text_of("Thickness") == "50.012 mm" and rows.text_of("U (k = 2)") == "± 0.024 mm"
-    assert rows.text_of("Deviation") == "+0.012 mm" and rows.text_of("Parallelism") == "0.029°"
+    assert rows.text_of("Deviation") == "+0.012 mm" and rows.text_of("Angle of the faces") == "0.029°"
     assert rows.text_of("Flatness, upper face") == "0.031 mm" and rows.text_of("Flatness, lower face") == "0.042 mm"
     assert rows.text_of("Points used, upper face") == "300"
     assert shown.result.rule.text() == "Rule: distance of two parallel planes."
