@@ -161,10 +161,11 @@ def _sentence(
     return Message(
         "fan.verdict",
         "{finding} (fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.3f} mm; "
-        "p = {p:.2g}); {use}",
+        "p = {p:.2g}, below {limit:g} it is refused); {use}",
         finding=finding,
         angles=angles,
         gap=gap,
         p=tied.p,
+        limit=SIGNIFICANT,
         use=use,
     )
