@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import (
@@ -51,6 +53,10 @@ class ToolStrip(QFrame):
         """A widget before the buttons."""
         self._row.insertWidget(self._place_for_tools, widget)
         self._place_for_tools += 1
+
+    def say_layers(self, titles: Sequence[str]) -> None:
+        """What is drawn, in the tip of the menu of layers: nothing where the legend says it."""
+        self.layers.setToolTip("\n".join((self.layers.accessibleName(), *titles)))
 
     def _button(self, symbol: str, tip: str) -> QToolButton:
         button = QToolButton()

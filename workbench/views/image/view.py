@@ -34,7 +34,7 @@ from workbench.views.layouts import in_column
 GROUND = {True: "#12151A", False: "#DDE1E6"}
 """Round the picture, in the dark and in the light theme."""
 
-LEGEND_SHARE = 0.25
+LEGEND_SHARE = 0.1
 """The legend takes no more than this share of the picture's place."""
 _PAN_PX = 60
 """One press of an arrow key moves the picture by so much."""
@@ -471,11 +471,12 @@ class ImageView(QWidget):
         self._place_legend()
 
     def _place_legend(self) -> None:
-        """Where it would cover too much of the picture, the layers menu alone has its signs."""
+        """Where it would cover too much of the picture, the layers menu has its signs and the menu's tip its words."""
         wanted, room = self._legend.sizeHint(), self._canvas.size()
         covered = wanted.width() * wanted.height() / max(room.width() * room.height(), 1)
         fits = covered <= LEGEND_SHARE and wanted.height() < room.height()
         self._legend.setVisible(fits and bool(self._legend.titles) and self._layers_menu.legend_shown)
+        self._strip.say_layers(() if fits else self._legend.titles)
         self._legend.move(8, 8)
 
     def _show_hint(self, drawing: bool) -> None:

@@ -23,6 +23,10 @@ class _Curve:
     points: bool
 
 
+LEGEND_LEFT, LEGEND_RIGHT = (8, 6), (-8, 6)
+"""How far in pixels the legend is from the upper corner in which fewer points are; negative: from the right."""
+
+
 class LineChart(Plot):
     """Curves over one axis."""
 
@@ -50,7 +54,7 @@ class LineChart(Plot):
         super().clear(message)
 
     def _prepare(self) -> None:
-        self._legend = self._item.addLegend(offset=(-8, 6), labelTextSize="11px", verSpacing=-4)
+        self._legend = self._item.addLegend(offset=LEGEND_RIGHT, labelTextSize="11px", verSpacing=-4)
 
     def _has_data(self) -> bool:
         return any(len(curve.x) for curve in self._curves.values())
@@ -90,4 +94,11 @@ class LineChart(Plot):
             lowest = 0.0 if self._from_zero else float(y.min()) - margin
             titles = sum(bool(curve.title) for curve in self._curves.values())
             above = margin * (1 + titles)  # the legend stands in no curve
+            self._place_legend(float(np.mean(across)), float(np.mean((y.min(), y.max()))))
             self._box.setRange(xRange=across, yRange=(lowest, float(y.max()) + above), padding=0.01)
+
+    def _place_legend(self, middle: float, half_up: float) -> None:
+        """In the upper corner that has fewer of the points in the upper half."""
+        across = np.concatenate([curve.x[curve.y >= half_up] for curve in self._curves.values()])  # no gap is there
+        at_left = np.count_nonzero(across < middle) < np.count_nonzero(across > middle)
+        self._legend.setOffset(LEGEND_LEFT if at_left else LEGEND_RIGHT)

@@ -221,6 +221,13 @@ def test_a_legend_never_covers_much_of_a_small_picture(view, qtbot):
         view.set_points(f"{number}", [(10, 10)], colour="red", title=f"crossing number {number}")
     view.resize(900, 700)
     qtbot.waitUntil(lambda: len(view.legend_titles) == 7)
+    button = view._strip.layers
+    tip = button.toolTip()
+    view.resize(470, 340)
+    qtbot.waitUntil(lambda: view.legend_titles == [])
+    assert button.toolTip().splitlines() == [tip, *(f"crossing number {number}" for number in range(7))]
+    view.resize(900, 700)
+    qtbot.waitUntil(lambda: len(view.legend_titles) == 7 and button.toolTip() == tip)
     view.resize(240, 270)
     qtbot.waitUntil(lambda: view.legend_titles == [])
     view._layers_menu.fill()

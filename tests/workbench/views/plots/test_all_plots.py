@@ -94,6 +94,21 @@ def test_counts_begin_at_zero_and_numbers_have_a_true_minus(qtbot):
     assert chart._item.getAxis("bottom").tickStrings([-0.5, 0.5], 1.0, 0.5) == ["−0.5", "0.5"]
 
 
+@pytest.mark.parametrize("high", [(60.0, 100.0), (0.0, 40.0), (20.0, 45.0), (55.0, 70.0)])
+def test_the_legend_of_curves_stands_where_there_are_fewest_of_their_points(qtbot, high):
+    chart = shown(qtbot, LineChart())
+    chart.resize(420, 240)
+    chart.set_axes("along the cut", "mm", "height", "mm")
+    x = np.linspace(0.0, 100.0, 201)
+    top = np.where((x >= high[0]) & (x <= high[1]), 50.0, 0.0)
+    chart.set_curve("points", x, top, title="points near the cut", points=True)
+    chart.set_curve("median", x, top, title="their median over each step")
+    chart.canvas.grab()
+    legend, box = (item.sceneBoundingRect().center() for item in (chart._legend, chart._box))
+    assert (legend.x() < box.x()) is (high[0] + high[1] > 100.0)
+    assert legend.y() < box.y()
+
+
 def test_numbers_at_an_axis_have_as_many_decimals(qtbot):
     for limits in ((49.75, 50.25), (-0.15, 0.15), (0.0, 3.0)):
         chart = shown(qtbot, LineChart())
