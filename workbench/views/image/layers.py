@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QMenu, QWidget
 
 from workbench.language import tr
 from workbench.views.colours import ColourLike, KeySign, sigma_table, to_colour, to_rgba
-from workbench.views.image.overlays import GROUND, TEXT, Grip, Layer, PolygonLayer
+from workbench.views.image.overlays import GROUND, TEXT, Grip, Layer, Points, PointsLayer, PolygonLayer
 from workbench.views.image.picture import PictureBox
 from workbench.views.image.symbols import symbol_pixmap
 
@@ -73,6 +73,11 @@ class LayerStack(QObject):
         """Title, sign and colour of the layers shown that have a title."""
         shown = (self._layers[name] for name in self if self.is_visible(name))
         return [(layer.title, *layer.key) for layer in shown if layer.title]
+
+    def points(self) -> Points:
+        """All points (N, 2) of the layers of points that are shown."""
+        shown = (self._layers[name] for name in self if self.is_visible(name))
+        return np.concatenate([np.zeros((0, 2)), *(layer.uv for layer in shown if isinstance(layer, PointsLayer))])
 
     def point_at(self, u: float, v: float) -> tuple[str, int] | None:
         """The topmost layer with a point at (u, v), and the point's number."""

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike
-from PySide6.QtCore import QEvent, QPoint, QPointF, QRectF, Qt, Signal
+from PySide6.QtCore import QEvent, QPoint, QPointF, QRect, QRectF, QSize, Qt, Signal
 from PySide6.QtGui import QContextMenuEvent, QCursor, QFocusEvent, QKeyEvent, QPaintEvent
 from PySide6.QtWidgets import QLabel, QMenu, QToolTip, QWidget
 
@@ -34,8 +34,11 @@ from workbench.views.layouts import in_column
 GROUND = {True: "#12151A", False: "#DDE1E6"}
 """Round the picture, in the dark and in the light theme."""
 
-LEGEND_SHARE = 0.1
+LEGEND_SHARE = 0.25
 """The legend takes no more than this share of the picture's place."""
+
+LEGEND_PX = 8
+"""From the edges to the legend."""
 _PAN_PX = 60
 """One press of an arrow key moves the picture by so much."""
 
@@ -71,6 +74,7 @@ class ImageView(QWidget):
         self._box.addItem(self._picture, ignoreBounds=True)
         self._layers, self._drawing = LayerStack(self._box, self), DrawingTool(self._box, self)
         self._legend = Legend(self._canvas)
+        self._corner = 0
         self._hint = QLabel(self._canvas)
         self._hint.setStyleSheet(
             "background: rgba(12, 16, 20, 200); color: #F4F6F8; border-radius: 4px; padding: 5px 9px;"
@@ -477,7 +481,22 @@ class ImageView(QWidget):
         fits = covered <= LEGEND_SHARE and wanted.height() < room.height()
         self._legend.setVisible(fits and bool(self._legend.titles) and self._layers_menu.legend_shown)
         self._strip.say_layers(() if fits else self._legend.titles)
-        self._legend.move(8, 8)
+        self._legend.setGeometry(self._corner_for(wanted))
+
+    def _corner_for(self, wanted: QSize) -> QRect:
+        """Where the legend covers fewest points; it stays where it is unless it covered twice as many there."""
+        room = self._canvas.rect().adjusted(LEGEND_PX, LEGEND_PX, -LEGEND_PX, -LEGEND_PX)
+        right, lower = room.right() - wanted.width() + 1, room.bottom() - wanted.height() + 1
+        corners = [QRect(QPoint(x, y), wanted) for x in (room.left(), right) for y in (room.top(), lower)]
+        origin, unit = (self._box.mapViewToScene(QPointF(at, at)) for at in (0.0, 1.0))
+        spots = self._layers.points() * [unit.x() - origin.x(), unit.y() - origin.y()] + [origin.x(), origin.y()]
+        covered = [
+            int(((spots >= [one.left(), one.top()]) & (spots <= [one.right(), one.bottom()])).all(axis=1).sum())
+            for one in corners
+        ]
+        if covered[self._corner] > 2 * min(covered):
+            self._corner = covered.index(min(covered))
+        return corners[self._corner]
 
     def _show_hint(self, drawing: bool) -> None:
         if drawing:

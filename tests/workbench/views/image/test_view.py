@@ -223,15 +223,30 @@ def test_a_legend_never_covers_much_of_a_small_picture(view, qtbot):
     qtbot.waitUntil(lambda: len(view.legend_titles) == 7)
     button = view._strip.layers
     tip = button.toolTip()
-    view.resize(470, 340)
-    qtbot.waitUntil(lambda: view.legend_titles == [])
-    assert button.toolTip().splitlines() == [tip, *(f"crossing number {number}" for number in range(7))]
-    view.resize(900, 700)
-    qtbot.waitUntil(lambda: len(view.legend_titles) == 7 and button.toolTip() == tip)
     view.resize(240, 270)
     qtbot.waitUntil(lambda: view.legend_titles == [])
+    assert button.toolTip().splitlines() == [tip, *(f"crossing number {number}" for number in range(7))]
     view._layers_menu.fill()
     assert "crossing number 3" in [action.text() for action in view._layers_menu.actions()], "its signs are there"
+
+
+def test_a_legend_stands_in_the_corner_with_fewest_points_and_leaves_it_only_for_one_far_emptier(view, qtbot):
+    view.resize(480, 360)
+    width, height = view.canvas.width(), view.canvas.height()
+
+    def corner(*crowds):
+        """Crowds of points on the screen, as (count, x, y); left and top of the legend are told."""
+        places = [(x, y) for count, x, y in crowds for _ in range(count)]
+        at = [view._box.mapSceneToView(QPointF(*place)) for place in places]
+        view.set_points("crowd", [(one.x(), one.y()) for one in at], colour="red", title="points used, upper")
+        middle = view._legend.geometry().center()
+        return middle.x() < width / 2, middle.y() < height / 2
+
+    left, right, top, bottom = 20, width - 20, 15, height - 15
+    assert corner((1, width / 2, height / 2)) == (True, True)
+    assert corner((50, left, top)) == (True, False)
+    assert corner((40, left, top), (30, left, bottom), (40, right, top), (40, right, bottom)) == (True, False)
+    assert corner((40, left, top), (50, left, bottom), (40, right, bottom)) == (False, True)
 
 
 def test_the_menu_hides_and_shows_layers_with_a_title(view):
