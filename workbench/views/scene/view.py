@@ -151,7 +151,7 @@ class SceneView(QWidget):
         self._drawing = Drawing(self._scene, lambda: self._navigator.camera, self._canvas)
         self._buttons = SceneButtons(self)
         self._buttons.setVisible(tools)
-        in_column(self._buttons, (self._canvas, 1), on=self, spacing=0)
+        self._column = in_column(self._buttons, (self._canvas, 1), on=self, spacing=0)
         self._buttons.view_asked.connect(self.view)
         self._buttons.fit_asked.connect(self.fit)
         self._buttons.parallel_asked.connect(self._navigator.set_parallel)
@@ -631,6 +631,10 @@ class SceneView(QWidget):
             self._drawing.moved()
 
     def _on_resized(self) -> None:
+        if self._canvas.geometry().bottom() != self.rect().bottom():
+            # What is around was laid out anew while this was being laid out, as Qt does when the tool bar's button for
+            # what it has no room for comes up: the canvas has the height of before, and would keep it.
+            self._column.invalidate()
         self._navigator.resized()
         self._drawing.moved()
 

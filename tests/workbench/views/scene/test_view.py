@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from numpy.testing import assert_allclose, assert_array_equal
-from PySide6.QtCore import QEvent, QPoint, QPointF, Qt
+from PySide6.QtCore import QEvent, QObject, QPoint, QPointF, Qt
 from PySide6.QtGui import QColor, QGuiApplication, QImage, QMouseEvent, QPainter, QPalette
 from PySide6.QtWidgets import QApplication, QFileDialog, QMainWindow, QStackedWidget, QWidget
 from pyvistaqt import QtInteractor
@@ -20,6 +20,7 @@ from core.inspect.shown.view_frame import CAMERA_FRAME, FRAME_NAMES, FrameKind, 
 from core.model import Pose
 from tests.workbench.views.scene.test_view_numbers import crossing_number
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
+from workbench.views.layouts import in_column
 from workbench.views.scene import drawing, overlay
 from workbench.views.scene import ready as ready_module
 from workbench.views.scene import view as view_module
@@ -911,3 +912,27 @@ def test_the_environment_can_forbid_opengl(unknown, monkeypatch):
     assert not unknown.opengl_in_windows() and unknown.kind is None
     monkeypatch.setenv(ready_module.VARIABLE, "none")
     assert unknown.kind == "none"
+
+
+def test_what_makes_the_view_lower_while_it_is_laid_out_leaves_no_canvas_that_is_cut(qtbot):
+    """As Qt lays all that is around out anew when the tool bar's button for what it has no room for comes up."""
+    page, above, view = QWidget(), QWidget(), SceneView()
+    qtbot.addWidget(page)
+    above.setFixedHeight(20)
+    column = in_column(above, (view, 1), on=page)
+    page.resize(900, 500)
+    page.show()
+    qtbot.waitExposed(page)
+
+    class Lower(QObject):
+        def eventFilter(self, watched, event):
+            if event.type() == QEvent.Type.Resize and above.height() == 20:
+                above.setFixedHeight(60)
+                column.activate()
+            return False
+
+    lower = Lower(page)
+    view._buttons.installEventFilter(lower)
+    page.resize(400, 420)
+    qtbot.waitUntil(lambda: above.height() == 60 and view.geometry().bottom() == page.rect().bottom())
+    qtbot.waitUntil(lambda: view._canvas.geometry().bottom() == view.rect().bottom())
