@@ -133,7 +133,8 @@ def _crossed(places: Array, boxes: Array) -> NDArray[np.bool_]:
     def side(points: Array) -> Array:
         """Of which line (row) which of the points (column) lies: its sign."""
         to = points[None] - places[:, None]
-        return np.sign(along[:, None, 0] * to[..., 1] - along[:, None, 1] * to[..., 0])
+        signs: Array = np.sign(along[:, None, 0] * to[..., 1] - along[:, None, 1] * to[..., 0])
+        return signs
 
     parted = side(places) * side(ends) < 0
     crossed: NDArray[np.bool_] = parted & parted.T

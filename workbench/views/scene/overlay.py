@@ -227,9 +227,9 @@ def axis_colour(number: int, colours: OverlayColours, *, away: bool) -> QColor:
     """Of an axis that points away from the viewer, or towards; opaque, as its line and its name lie on each other."""
     _, on_light, on_dark = AXES[number]
     part = AWAY if away else 1.0
-    axis, ground = on_dark if colours.dark else on_light, colours.ground
-    under = (ground.red(), ground.green(), ground.blue())
-    return QColor(*(round(part * one + (1 - part) * other) for one, other in zip(axis, under, strict=True)))
+    under_it = colours.ground
+    axis, ground = on_dark if colours.dark else on_light, (under_it.red(), under_it.green(), under_it.blue())
+    return QColor(*(round(part * one + (1 - part) * under) for one, under in zip(axis, ground, strict=True)))
 
 
 def _paint_scale(
