@@ -484,7 +484,7 @@ def test_the_series_is_copied_with_all_digits(shown):
 def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown, qtbot):
     values = (50.012, 50.018, 50.007, 50.011)
     put_repeats(shown, values[:1])
-    assert "two repeats or more" in shown.repeats.no_type1
+    assert "needs two repeats" in shown.repeats.no_type1
     put_repeats(shown, values)
     shown.repeats.study()
     qtbot.waitUntil(lambda: shown.repeats.type1 is not None)
