@@ -16,6 +16,9 @@ from core.pipeline.steps.workspace import FILES
 from tests.workbench.technician import Technician
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 
+UNSTATED = ("scale_sd", "flatness_mm", "celsius", "u_celsius")
+"""What a new project does not state of its targets."""
+
 watched: list[Watchdog] = []
 """The GUI thread during the whole job, for the test after it."""
 
@@ -77,7 +80,7 @@ def test_from_new_project_to_report_and_cloud_with_the_numbers_of_the_pipeline(
     unstated = Path(shutil.copytree(simulated, tmp_path / simulated.name))
     rig = unstated / "rig.toml"
     stated = rig.read_text().split("[stability]")[0].splitlines()  # a new project states nothing of it, nor of targets
-    rig.write_text("\n".join(line for line in stated if not line.startswith(("scale_sd", "flatness_mm"))))
+    rig.write_text("\n".join(line for line in stated if not line.startswith(UNSTATED)))
     expected = run(unstated, tmp_path / "out", Options(sigma_cut_mm=0.3))
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert expected.gauge is not None
