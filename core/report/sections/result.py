@@ -167,7 +167,7 @@ def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowa
     return [*parts, Spacer(0, 2.5 * mm), _facts(look, facts, width), Spacer(0, 2 * mm), sentence]
 
 
-WIDTHS = [size * mm for size in (15.5, 27, 19.5, 14, 8, 18, 32.5)]
+WIDTHS = [size * mm for size in (15.5, 27, 19.5, 16.5, 8, 18.5, 32.5)]
 """Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
 DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for verdict in Verdict}
 """How a decision is written: where there is none, it is not made much of."""
@@ -205,7 +205,8 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
     limits = one.limits
     nominal = "" if limits is None else with_unit(words.general(factor * limits.nominal), unit)
     known = one.deviation is not None and math.isfinite(one.deviation)
-    deviation = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True) if known else ""
+    off = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True)
+    deviation = with_unit(off, unit) if known else ""
     name = shown_name(one, words)
     title = look.link(name, key, "small_strong") if key else look.text(name, "small_strong")
     below: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
@@ -213,7 +214,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
         below.insert(0, look.say("Datum {letter}", "rule", letter=letter))
     if frame := content.control_frames.get(one.name):
         below.insert(0, ControlFrameMark(look, frame))
-    U = words.fixed(factor * one.U, decimals) if math.isfinite(one.U) else words("unknown")
+    U = with_unit(words.fixed(factor * one.U, decimals), unit) if math.isfinite(one.U) else words("unknown")
     numbers = (
         nominal,
         tolerance_words(one, words),
