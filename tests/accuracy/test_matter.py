@@ -9,7 +9,7 @@ import pytest
 
 from core.files.recording.recording_set import open_set
 from core.inspect.conformity import Verdict
-from core.inspect.uncertainty.part import Part
+from core.inspect.uncertainty.part import TARGET_AT_20, Part
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.workspace import Workspace
 from core.simulate.scenario import Scenario
@@ -62,7 +62,7 @@ def test_nothing_is_told_of_a_matt_part(seed, calibrated, tmp_path):
 # ---- small pictures, whose stripes hide most of it: what they do not exclude is in U
 
 SMALL = {"scale": 0.25, "frames": 36, "camera_views": 10, "plane_poses": 8}
-UNSTATED, METAL = (Part(material, celsius=20.0, u_celsius=0.0) for material in (None, "metal"))
+UNSTATED, METAL = (Part(material, celsius=20.0, u_celsius=0.0, target=TARGET_AT_20) for material in (None, "metal"))
 
 
 @pytest.fixture(scope="module")
