@@ -7,12 +7,18 @@ from functools import partial
 import numpy as np
 import pytest
 
+from core.acquire.source import SourceChoice, SourceSettings
+from core.calibrate.results import CameraCalibration, FanCalibration
 from core.cli import recording
 from core.files.recording.rig import Rig, rig_to_toml
+from core.files.results.camera_file import camera_id, write_camera
+from core.files.results.fan_file import write_fan
 from core.image.targets import BlackSquare, Checkerboard
-from core.messages import Message, label
+from core.messages import Message, label, plain
+from core.model import Camera, Fan, LightPlane
 from core.pipeline.live.commands import Capture, Resume, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveEnded, LiveNotice, LiveTaken, LiveView, PlanesDetail
+from tests.calibrate.fan_scenes import CAMERA, PAPER
 from tests.simulated import trisect
 
 SIMULATED = ("--source", "simulated", "--device", "scale = 0.25")
@@ -161,6 +167,21 @@ def test_what_cannot_be_recorded_is_refused(folder, words, told):
     assert said.code == 2
     assert told in said.err
     assert not (folder / "scan").exists()
+
+
+def test_a_scan_is_judged_by_the_camera_that_the_fan_is_used_with(folder, tmp_path):
+    planes, places = tuple(LightPlane(pi) for pi in PAPER), 1e-8 * np.eye(9)
+    camera = CameraCalibration(CAMERA, 1e-4 * np.eye(10), (), 0.1, 0.1, 1.0, 0.5, 0.01)
+    corrected = Camera(CAMERA.image_size, CAMERA.matrix * 1.0001, CAMERA.distortion)
+    fan = FanCalibration(
+        Fan(planes, places), Fan(planes), (0.01,) * 3, (0.087,) * 2, (0.087,) * 2, 0.02, True, plain("It suits."), (),
+        camera=corrected, camera_covariance=1e-4 * np.eye(10),
+    )  # fmt: skip
+    write_camera(tmp_path / "camera.json", camera)
+    write_fan(tmp_path / "planes.json", fan, CAMERA)
+    known = (SourceChoice("simulated"), tmp_path, SourceSettings(), ".png")
+    assert camera_id(recording.request(folder, "scan", *known).camera) == camera_id(corrected)
+    assert camera_id(recording.request(folder, "planes", *known).camera) == camera_id(CAMERA)
 
 
 def test_pictures_that_are_there_are_not_mixed_with_new_ones(folder):

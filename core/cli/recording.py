@@ -24,7 +24,6 @@ from core.errors import InputError
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import read_rig, require_tables
 from core.files.results.camera_file import read_camera
-from core.files.results.fan_file import read_fan
 from core.messages import Message, plural_message, visible
 from core.pipeline.live.commands import Capture, Command, LiveRequest, Stop
 from core.pipeline.live.events import (
@@ -47,6 +46,7 @@ from core.pipeline.live.events import (
 )
 from core.pipeline.live.session import run_live
 from core.pipeline.live.sources import SOURCES, list_sources, missing_driver
+from core.pipeline.steps.workspace import FILES, read_calibration
 
 STATUS_S = 5.0
 """No more often in s a scan tells how many frames it has, or what would expose stripes better."""
@@ -69,9 +69,11 @@ def request(
     rig = read_rig(file)
     require_tables(rig, file, *_TARGETS[step])
     camera = fan = None
-    if calibrations is not None:
-        camera = read_camera(calibrations / "camera.json").camera
-        fan = read_fan(calibrations / "planes.json", camera).fan if step in ("scan", "check") else None
+    if calibrations is not None and step in ("scan", "check"):
+        known = read_calibration(calibrations)
+        camera, fan = known.camera.camera, known.fan.fan
+    elif calibrations is not None:
+        camera = read_camera(calibrations / FILES["camera"]).camera
     return LiveRequest(step, choice, settings, rig, folder / step, camera, fan, display_px=320, ending=ending)
 
 
