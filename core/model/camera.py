@@ -174,6 +174,10 @@ class Camera:
         forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
         return np.asarray(np.linalg.inv(forward), dtype=np.float64)
 
+    def inverse_depth_slopes(self, pi: Array, rays: Array, directions: Array) -> Array:
+        """∂(1/z) (N,) in 1/(mm px) of light in the plane `pi` (3,) seen at `rays`, along `directions` (N, 2) of uv."""
+        return np.asarray(np.einsum("i,nij,nj->n", pi[:2], self.ray_jacobian(rays), directions), dtype=np.float64)
+
 
 def _solve_2x2(matrices: Array, vectors: Array) -> Array:
     """Solve N systems of two equations, (N, 2, 2) and (N, 2), in closed form."""

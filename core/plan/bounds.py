@@ -216,7 +216,7 @@ class _Bounds:
         for seen in scan.sweeps:
             for line, _, density in seen.stripes:
                 rays, depth = camera.rays(line.uv), line.points[:, 2]
-                slope = np.einsum("i,nij,nj->n", seen.pi[:2], camera.ray_jacobian(rays), line.normal)
+                slope = camera.inverse_depth_slopes(seen.pi, rays, line.normal)
                 length_px = FREE_FORM_MM * camera.focal / depth
                 sigma.append(depth**2 * np.abs(slope) * density / np.sqrt(length_px))
         return float(np.median(np.concatenate(sigma)))

@@ -133,4 +133,4 @@ def _slopes(lines: Sequence[Centreline], camera: Camera, pi: Array) -> Array:
     """∂(1/z)/∂(px along the normal) (N,) of light in the plane `pi`."""
     uv = np.vstack([line.uv for line in lines])
     normal = np.vstack([line.normal for line in lines])
-    return np.asarray(np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(camera.rays(uv)), normal))
+    return camera.inverse_depth_slopes(pi, camera.rays(uv), normal)

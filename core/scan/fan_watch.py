@@ -234,6 +234,6 @@ def _depth_per_px(features: ScanFeatures, lines: FanLines, camera: Camera, fan: 
             continue
         piece, pi = features.fan[number].select(np.arange(points.start, points.stop)), fan.planes[line].pi
         rays = camera.rays(piece.uv)
-        slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(rays), piece.normal)
+        slope = camera.inverse_depth_slopes(pi, rays, piece.normal)
         per_px.append(float(np.median(slope / (rays @ pi) ** 2)))
     return np.array(per_px)

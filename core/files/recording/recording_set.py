@@ -51,8 +51,6 @@ CHECK = "check"
 RIG = "rig.toml"
 _BRACKETED = ("planes", "scan", CHECK)
 """Folders whose pictures may have further exposures."""
-FURTHER = (2, 3)
-"""Numbers of further exposures: NAME@2.png, NAME@3.png."""
 
 _LOOKED_AT = 3
 """Pictures that decide on the channel of a part."""
@@ -111,6 +109,10 @@ class RecordingSet:
     def with_further(self, paths: Iterable[Path]) -> list[Path]:
         """Each of some pictures and, behind it, its further exposures."""
         return [one for path in paths for one in (path, *self.further.get(path, {}).values())]
+
+    def pictures_of(self, pairs: Iterable[PlanePair]) -> list[Path]:
+        """All pictures of some poses: the fan on and off, and their further exposures."""
+        return self.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
     def read_further(self, path: Path, number: int) -> Picture | None:
         """As `read` the further exposure of this number of a picture; None if there is none."""
@@ -392,8 +394,7 @@ def _paths(found: RecordingSet, part: str) -> list[Path]:
         return list(found.camera)
     if part == "scan":
         return found.with_further([*([found.reference] if found.reference else []), *found.frames])
-    pairs = found.check if part == CHECK else found.planes
-    return found.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
+    return found.pictures_of(found.check if part == CHECK else found.planes)
 
 
 def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:

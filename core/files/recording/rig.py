@@ -301,16 +301,14 @@ class _Stability(Table):
 
 
 _TOTALS = ("turn_urad", "shift_um", "centre_px", "focal_ppm")
-_CELSIUS = Annotated[float, Field(ge=-50, le=200, allow_inf_nan=False)]
-_A_TEMPERATURE = label("a temperature in °C from −50 to 200")
 
 
 class _Air(Table):
     """[air]: how warm it was around the rig."""
 
-    calibrated_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
-    checked_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
-    scanned_celsius: _CELSIUS | None = Field(None, description=_A_TEMPERATURE)
+    calibrated_celsius: _Celsius | None = Field(None, description=_A_TEMPERATURE)
+    checked_celsius: _Celsius | None = Field(None, description=_A_TEMPERATURE)
+    scanned_celsius: _Celsius | None = Field(None, description=_A_TEMPERATURE)
 
     def air(self) -> Air:
         return Air(self.calibrated_celsius, self.checked_celsius, self.scanned_celsius)

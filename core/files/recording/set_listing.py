@@ -20,7 +20,9 @@ from core.files.pictures import is_picture
 from core.messages import Message
 
 _OFF = "_off"
-_FURTHER = re.compile(r"(.+)@([23])")
+FURTHER = (2, 3)
+"""Numbers of further exposures: NAME@2.png, NAME@3.png."""
+_FURTHER = re.compile(rf"(.+)@({'|'.join(map(str, FURTHER))})")
 _REFERENCE = "reference"
 
 

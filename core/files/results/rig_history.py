@@ -164,8 +164,8 @@ class PastCheck:
         )  # fmt: skip
 
 
-class ArtefactChart(NamedTuple):
-    """The results of one artefact in the order of time, and the limits for the last of them."""
+class CheckChart(NamedTuple):
+    """Checks by the same means, pictures or one artefact, in the order of time, and the limits for one of them."""
 
     checks: tuple[PastCheck, ...]
     limits: ControlChart
@@ -190,13 +190,14 @@ class RigHistory:
                 found[one.artefact] = replace(measured, outside=self.beyond(one))
         return tuple(found[name] for name in sorted(found))
 
-    def artefact_charts(self, calibration_id: str) -> tuple[ArtefactChart, ...]:
+    def charted(self, check: PastCheck) -> CheckChart:
+        """A check among those like it."""
+        return CheckChart(self.like(check), self.chart(check))
+
+    def artefact_charts(self, calibration_id: str) -> tuple[CheckChart, ...]:
         """Of each artefact measured with these calibrations all results, and the limits for the last of them."""
-        by_id: dict[str, list[PastCheck]] = {}
-        for one in self.of_calibration(calibration_id):
-            if one.artefact:
-                by_id.setdefault(one.artefact, []).append(one)
-        return tuple(ArtefactChart(tuple(by_id[name]), self.chart(by_id[name][-1])) for name in sorted(by_id))
+        last = {one.artefact: one for one in self.of_calibration(calibration_id) if one.artefact}
+        return tuple(self.charted(last[name]) for name in sorted(last))
 
     def like(self, check: PastCheck) -> tuple[PastCheck, ...]:
         """Those with the same calibrations by the same means: pictures, or one artefact."""

@@ -41,7 +41,7 @@ from core.inspect.uncertainty.causes import (
     SCALE_TEMPERATURE,
     SCALE_TEMPERATURE_ASSUMED,
 )
-from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, Part, TargetTemperature
+from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message
 
 COMPARED = "feature.compared_with_master"
@@ -116,14 +116,9 @@ def temperature_of(part: Part) -> Temperature | None:
     None where both are at 20 °C for sure.
     """
     alpha, u_alpha = part.expansion
-    assumed = part.celsius is None or part.u_celsius is None
+    celsius, u_celsius, assumed = part.warmth
     known = Temperature(
-        SUSPECTED_CELSIUS if part.celsius is None or assumed else part.celsius,
-        SUSPECTED_CELSIUS_SD if part.u_celsius is None or assumed else part.u_celsius,
-        alpha,
-        u_alpha,
-        celsius_assumed=assumed,
-        alpha_assumed=part.expansion_assumed,
+        celsius, u_celsius, alpha, u_alpha, celsius_assumed=assumed, alpha_assumed=part.expansion_assumed
     )
     known = with_scale(known, part.target)
     at_20 = known.part_celsius == known.scale_celsius == REFERENCE_C
@@ -137,11 +132,11 @@ def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperatu
     alpha, u_alpha = target.expansion
     if temperature.scale_celsius != REFERENCE_C or temperature.u_scale_celsius:
         return replace(temperature, scale_alpha=alpha, u_scale_alpha=u_alpha, scale_alpha_assumed=target.alpha is None)
-    assumed = target.celsius is None or target.u_celsius is None
+    celsius, u_celsius, assumed = target.warmth
     return replace(
         temperature,
-        scale_celsius=SUSPECTED_CELSIUS if target.celsius is None or assumed else target.celsius,
-        u_scale_celsius=SUSPECTED_CELSIUS_SD if target.u_celsius is None or assumed else target.u_celsius,
+        scale_celsius=celsius,
+        u_scale_celsius=u_celsius,
         scale_alpha=alpha,
         u_scale_alpha=u_alpha,
         scale_celsius_assumed=assumed,

@@ -14,6 +14,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import PART_OFFSET, SPRAY, SPRAY_ASSUMED
@@ -54,6 +55,21 @@ MATERIALS: Mapping[str, Material] = {
 """By the names that rig.toml has. "sprayed" is any material under a layer that lets no light through."""
 
 
+class Warmth(NamedTuple):
+    """A temperature in °C, its standard uncertainty, and whether both are assumed."""
+
+    celsius: float
+    u_celsius: float
+    assumed: bool
+
+    @classmethod
+    def of(cls, celsius: float | None, u_celsius: float | None) -> Warmth:
+        """What is stated, else what is assumed."""
+        if celsius is None or u_celsius is None:
+            return cls(SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD, assumed=True)
+        return cls(celsius, u_celsius, assumed=False)
+
+
 @dataclass(frozen=True, slots=True)
 class TargetTemperature:
     """How warm the plane target was in its pictures, in °C, and how it expands, in 1/K; None: nothing is stated.
@@ -65,6 +81,11 @@ class TargetTemperature:
     u_celsius: float | None = None
     alpha: float | None = None
     u_alpha: float | None = None
+
+    @property
+    def warmth(self) -> Warmth:
+        """Its temperature, stated or assumed."""
+        return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:
@@ -119,6 +140,11 @@ class Part:
         if self.spray_mm is not None or self.offset_mm is not None:
             return 0.0
         return UNKNOWN_LETS_LIGHT_IN if self.material is None else 0.0 if MATERIALS[self.material].opaque else 1.0
+
+    @property
+    def warmth(self) -> Warmth:
+        """Its temperature, stated or assumed."""
+        return Warmth.of(self.celsius, self.u_celsius)
 
     @property
     def expansion(self) -> tuple[float, float]:

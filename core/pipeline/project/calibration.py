@@ -135,8 +135,7 @@ def accept_fan(
         )
     found = project_set(folder, project)
     names = {pose.name for pose in poses}
-    poses_of = (pair for pair in found.planes if pair.name in names)
-    pictures = found.with_further(path for pair in poses_of for path in (pair.on, pair.off) if path is not None)
+    pictures = found.pictures_of(pair for pair in found.planes if pair.name in names)
     settings = planes_settings(project.rig, project.options)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True

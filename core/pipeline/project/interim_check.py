@@ -20,7 +20,7 @@ from core.files.project.folder import results_folder, source_folder
 from core.files.recording.set_listing import scan_frames, taken_at
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.inspection_file import read_inspection
-from core.files.results.rig_history import ArtefactChart, RigHistory
+from core.files.results.rig_history import CheckChart, RigHistory
 from core.messages import Message
 from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
@@ -101,7 +101,7 @@ def artefact_checks(folder: Path, project: Project) -> tuple[ArtefactCheck, ...]
     return history_of(project.rig, calibration.id).artefacts(calibration.id, taken_at(frames))
 
 
-def artefact_charts(folder: Path, project: Project) -> tuple[ArtefactChart, ...]:
+def artefact_charts(folder: Path, project: Project) -> tuple[CheckChart, ...]:
     """All results of each artefact measured with the accepted calibrations, with their limits.
 
     Raises

@@ -177,7 +177,7 @@ class _OfStep(NamedTuple):
 
 def check_paths(found: RecordingSet) -> list[Path]:
     """The pictures of the check."""
-    return found.with_further(path for pair in found.check for path in (pair.on, pair.off) if path is not None)
+    return found.pictures_of(found.check)
 
 
 def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:

@@ -148,7 +148,7 @@ def _poses_key(project: Project, found: RecordingSet) -> str:
 
 
 def _pose_pictures(found: RecordingSet) -> list[Path]:
-    return found.with_further(path for pair in found.planes for path in (pair.on, pair.off) if path is not None)
+    return found.pictures_of(found.planes)
 
 
 def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:

@@ -16,9 +16,9 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.options import Options
-from core.files.recording.recording_set import FURTHER, RecordingSet, require_planes
+from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
-from core.files.recording.set_listing import PlanePair
+from core.files.recording.set_listing import FURTHER, PlanePair
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.mosaic import ALL_SITES

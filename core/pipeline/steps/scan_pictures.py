@@ -13,7 +13,8 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
-from core.files.recording.recording_set import FURTHER, RecordingSet
+from core.files.recording.recording_set import RecordingSet
+from core.files.recording.set_listing import FURTHER
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes

@@ -175,6 +175,6 @@ def _at_middle(t: Array, inside: NDArray[np.bool_]) -> Array:
 def _depth_per_px(piece: Centreline, plane: LightPlane, camera: Camera) -> Array:
     """∂z/∂(offset along the normal), (N,) in mm/px, of each point on the plane: 1/z = π·r."""
     rays = camera.rays(piece.uv)
-    slope = np.einsum("i,nij,nj->n", plane.pi[:2], camera.ray_jacobian(rays), piece.normal)
+    slope = camera.inverse_depth_slopes(plane.pi, rays, piece.normal)
     inverse_depth = rays @ plane.pi
     return np.asarray(-slope / np.where(np.abs(inverse_depth) > 1e-9, inverse_depth, np.inf) ** 2)

@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.keys import up_to_date
-from core.files.results.rig_history import ArtefactChart
+from core.files.results.rig_history import CheckChart
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from workbench.bench import Bench
 from workbench.language import text_of, tr
@@ -35,7 +35,7 @@ class KnownArtefacts(QObject):
         self.own: Mapping[str, Artefact] = {}
         self.lengths: Mapping[ArtefactKind, tuple[str, ...]] = {}
         self.checks: tuple[ArtefactCheck, ...] = ()
-        self.charts: tuple[ArtefactChart, ...] = ()
+        self.charts: tuple[CheckChart, ...] = ()
         self.problem, self._looked = "", ""
         self._task: Task | None = None
 
@@ -173,7 +173,7 @@ class KnownArtefacts(QObject):
                 self.checks = checks
                 self.changed.emit()
 
-        def read_charts(charts: tuple[ArtefactChart, ...]) -> None:
+        def read_charts(charts: tuple[CheckChart, ...]) -> None:
             if self._looked == wanted:
                 self.charts = charts
                 self.changed.emit()

@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QApplication, QComboBox, QFrame, QLabel, QPushButt
 
 from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
-from core.files.results.rig_history import ArtefactChart, PastCheck, RigHistory
+from core.files.results.rig_history import CheckChart, PastCheck, RigHistory
 from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.wording import with_uncertainty
@@ -204,17 +204,15 @@ class CheckCard(QFrame):
         said = sentences(*map(text_of, found), check.refusal)
         return LEVELS[verdict], capital(tr(CHECKS[verdict])), said
 
-    def _charts(self, history: RigHistory | None, past: PastCheck | None) -> Mapping[str, ArtefactChart]:
+    def _charts(self, history: RigHistory | None, past: PastCheck | None) -> Mapping[str, CheckChart]:
         """What there are two or more of with these calibrations, by its name: pictures, and each artefact."""
         of_pictures = (
-            {tr("Pictures of the target"): ArtefactChart(history.like(past), history.chart(past))}
-            if history is not None and past is not None
-            else {}
+            {tr("Pictures of the target"): history.charted(past)} if history is not None and past is not None else {}
         )
         charts = {**of_pictures, **{one.checks[-1].artefact: one for one in self._artefacts.charts}}
         return {name: one for name, one in charts.items() if len(one.checks) > 1}
 
-    def _show_chart(self, charts: Mapping[str, ArtefactChart]) -> None:
+    def _show_chart(self, charts: Mapping[str, CheckChart]) -> None:
         """One chart, each value scaled to the height of the last one's step; of several one can be chosen."""
         names = list(charts)
         if [self.charted.itemText(row) for row in range(self.charted.count())] != names:

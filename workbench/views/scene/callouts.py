@@ -82,8 +82,7 @@ def lay_out(
             middles = np.vstack([places[k] + DIRECTIONS * (half + step) for step in STEPS_PX])
         middles = np.clip(middles, low + half, np.maximum(high - half, low + half))
         ends = np.array([*middle, *boxes.values(), *avoided]).reshape(-1, 2, 2)
-        sides = np.minimum(middles[:, None] + half, ends[:, 1]) - np.maximum(middles[:, None] - half, ends[:, 0])
-        covered = np.maximum(sides, 0).prod(axis=2)
+        covered = _overlaps(np.stack([middles - half, middles + half], axis=1), ends)
         covered[:, : len(middle)] *= MIDDLE_WEIGHT
         best = middles[np.argmin(covered.sum(axis=1))]
         boxes[k] = best - half, best + half
@@ -143,11 +142,16 @@ def _crossed(places: Array, boxes: Array) -> NDArray[np.bool_]:
 
 def _covered(boxes: Array, avoided: Array) -> float:
     """Square pixels of plates on each other and on what they avoid."""
-    others = np.concatenate([boxes, avoided])
-    sides = np.minimum(boxes[:, None, 1], others[None, :, 1]) - np.maximum(boxes[:, None, 0], others[None, :, 0])
-    covered = np.maximum(sides, 0).prod(axis=2)
+    covered = _overlaps(boxes, np.concatenate([boxes, avoided]))
     np.fill_diagonal(covered, 0)
     return float(covered.sum())
+
+
+def _overlaps(boxes: Array, others: Array) -> Array:
+    """Square pixels (N, M) that boxes, by their corners (N, 2, 2), share with others (M, 2, 2)."""
+    sides = np.minimum(boxes[:, None, 1], others[None, :, 1]) - np.maximum(boxes[:, None, 0], others[None, :, 0])
+    shared: Array = np.maximum(sides, 0).prod(axis=2)
+    return shared
 
 
 def _line_end(at: QPointF, plate: QRectF) -> QPointF:

@@ -299,19 +299,25 @@ def test_the_characteristic_of_a_series_is_asked_of_the_projects_that_are_added(
     assert asked[0][0] == "series" and asked[0][6] == "top flatness"
 
 
+def page_with_study(presenter, show_page, qtbot):
+    """A page of a window 1280 pixels wide that shows a gauge R&R study."""
+    page = show_page(presenter, 1280 - RAIL, 700)
+    page.tabs.setCurrentIndex(STUDIES)
+    studies = presenter.studies
+    studies.begin("grr")
+    studies.write("part;operator;value\n" + ROWS)
+    studies.finish()
+    made(studies, qtbot)
+    page.refreshing.at_once()
+    return page
+
+
 def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_page, qapp, qtbot):
     sheet = qapp.styleSheet()
     choose(language("de"), qapp)
     try:
         apply_theme(qapp, "light")
-        page = show_page(presenter, 1280 - RAIL, 700)
-        page.tabs.setCurrentIndex(STUDIES)
-        studies = presenter.studies
-        studies.begin("grr")
-        studies.write("part;operator;value\n" + ROWS)
-        studies.finish()
-        made(studies, qtbot)
-        page.refreshing.at_once()
+        page = page_with_study(presenter, show_page, qtbot)
         table = page.studies.table
         qtbot.waitUntil(lambda: table.isVisible() and len(table.rows()) == 7)
         assert len(table._model.titles) == 5 and table.table.horizontalScrollBar().maximum() == 0
@@ -331,14 +337,7 @@ def test_the_table_of_a_study_is_cut_for_no_numbers_beside_it_but_for_the_edge_o
     sheet = qapp.styleSheet()
     try:
         apply_theme(qapp, "light")
-        page = show_page(presenter, 1280 - RAIL, 700)
-        page.tabs.setCurrentIndex(STUDIES)
-        studies = presenter.studies
-        studies.begin("grr")
-        studies.write("part;operator;value\n" + ROWS)
-        studies.finish()
-        made(studies, qtbot)
-        page.refreshing.at_once()
+        page = page_with_study(presenter, show_page, qtbot)
         tab = page.studies
         bar, outer = tab.table.table.horizontalScrollBar(), tab.findChild(QScrollArea).horizontalScrollBar()
         qtbot.waitUntil(lambda: tab.table.isVisible() and len(tab.table.rows()) == 7)
