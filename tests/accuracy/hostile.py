@@ -30,7 +30,7 @@ from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.simulate.recording import simulate_set
-from tests.accuracy.hostile_cases import HostileCase, calibration_of
+from tests.accuracy.hostile_cases import HostileCase
 
 Figures = dict[str, Any]
 
@@ -139,7 +139,7 @@ def _opened(case: HostileCase, place: Path) -> RecordingSet:
 
 def calibration_in(folder: Path, case: HostileCase) -> Path:
     """The set of a case's calibration, calibrated, in `folder`; its results stand beside it, in SET.out."""
-    scenario = calibration_of(case.scenario)
+    scenario = case.calibration
     place = folder / f"calibrated-{scenario.key}{'' if case.states_size else '-unstated'}"
     out = place.with_suffix(".out")
     if not place.exists():

@@ -9,8 +9,8 @@ from typing import Any
 from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.files.recording.rig import Rig
 from core.inspect.uncertainty.part import Part
-from core.simulate.effects.laser import LaserEffects
-from core.simulate.effects.lens import LensEffects
+from core.simulate.effects.laser import GAUSSIAN_LASER, LaserEffects
+from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.plates import PlateEffects
 from core.simulate.effects.room import RoomEffects
 from core.simulate.effects.sensor import SensorEffects
@@ -32,6 +32,9 @@ class Effect:
 
 NOTHING_STATED = "–, nothing stated"
 """Strength at which rig.toml says nothing of the targets' sizes and of the part."""
+
+SKEWED_SINCE = "lasers or lens skewed since the calibration"
+"""The one effect whose laser and lens are those of the scan alone."""
 
 EFFECTS = (
     Effect("nothing", [("–", {}), (NOTHING_STATED, {})]),
@@ -104,6 +107,11 @@ EFFECTS = (
             ("halo of 15 %", {"laser": LaserEffects(halo=0.15)}),
             ("shoulder of 30 %", {"laser": LaserEffects(shoulder=0.3)}),
         ],
+    ),
+    Effect(
+        SKEWED_SINCE,
+        [(f"shoulder of {share:.0%}", {"laser": LaserEffects(shoulder=share)}) for share in (0.1, 0.3)]
+        + [("coma of 12 px", {"lens": LensEffects(coma_px=12.0)})],
     ),
     Effect("coma", [(f"{px:g} px", {"lens": LensEffects(coma_px=px)}) for px in (2.0, 6.0)]),
     Effect("defocus", [(f"{mm:g} mm", {"lens": LensEffects(aperture_mm=mm)}) for mm in (1.0, 3.0, 6.0)]),
@@ -213,6 +221,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
     "lens with k3": (*LENS, "camera.third_radial"),
     "lasers that are no Gaussian across": ("gauge.unsure_and_no_faces", "inspection.light_is_skewed"),
+    SKEWED_SINCE: (*CHANGED, "scan.section_changed", "inspection.section_has_changed"),
     "coma": (*LENS, "inspection.light_is_skewed"),
     "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),
     "JPEG": ("scan.compressed",),
@@ -248,6 +257,25 @@ class HostileCase:
     def causes(self) -> frozenset[str]:
         """Codes that name the cause."""
         return frozenset(code for title in TOGETHER.get(self.strength, (self.effect,)) for code in CAUSES[title])
+
+    @property
+    def calibration(self) -> Scenario:
+        """The scenario of its calibration pictures alone: cases for which it is the same share them."""
+        scenario = self.scenario
+        if self.effect == SKEWED_SINCE:
+            scenario = replace(scenario, laser=GAUSSIAN_LASER, lens=IDEAL_LENS)
+        ideal = base(scenario.scale)
+        return replace(
+            ideal,
+            seed=scenario.seed,
+            fan_bow=scenario.fan_bow,
+            speckle=scenario.speckle,
+            laser=scenario.laser,
+            lens=scenario.lens,
+            plates=scenario.plates,
+            sensor=replace(scenario.sensor, brightness=1.0),
+            frames=0,
+        )
 
     @property
     def states_size(self) -> bool:
@@ -296,19 +324,3 @@ def hostile_cases(
         for effect in EFFECTS
         for label, fields in effect.strengths
     ]
-
-
-def calibration_of(scenario: Scenario) -> Scenario:
-    """The scenario of a case's calibration pictures alone: cases for which it is the same share them."""
-    ideal = base(scenario.scale)
-    return replace(
-        ideal,
-        seed=scenario.seed,
-        fan_bow=scenario.fan_bow,
-        speckle=scenario.speckle,
-        laser=scenario.laser,
-        lens=scenario.lens,
-        plates=scenario.plates,
-        sensor=replace(scenario.sensor, brightness=1.0),
-        frames=0,
-    )

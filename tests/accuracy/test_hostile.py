@@ -8,6 +8,8 @@ from core.errors import InputError
 from core.files.recording.rig import default_rig
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
+from core.simulate.effects.laser import LaserEffects
+from core.simulate.effects.lens import LensEffects
 from core.simulate.scenario import Scenario
 from tests.accuracy import hostile
 from tests.accuracy.hostile import codes_in, false_alarms, figures_of, named, row_of, state_of, summary, table
@@ -15,10 +17,10 @@ from tests.accuracy.hostile_cases import (
     CAUSES,
     EFFECTS,
     NOTHING_STATED,
+    SKEWED_SINCE,
     TOGETHER,
     HostileCase,
     base,
-    calibration_of,
     hostile_cases,
 )
 
@@ -118,12 +120,18 @@ def test_only_what_is_the_effect_itself_is_left_unstated():
     assert nothing.plane_board.scale_sd is None and nothing.part == Part()
 
 
+def test_a_laser_skewed_since_the_calibration_is_calibrated_as_it_was():
+    since, always = case(SKEWED_SINCE, laser=LaserEffects(shoulder=0.3)), case("coma", lens=LensEffects(coma_px=6.0))
+    assert since.calibration == case(MATT).calibration
+    assert always.calibration.lens == always.scenario.lens
+
+
 def test_cases_share_calibrations_only_where_these_are_the_same():
     cases = hostile_cases(0.25)
     assert len({case.name for case in cases}) == len(cases) == 6 * sum(len(effect.strengths) for effect in EFFECTS)
-    ideal = calibration_of(base(0.25))
+    ideal = HostileCase("nothing", "–", base(0.25)).calibration
     for case in cases:
-        shares = calibration_of(case.scenario) == ideal
+        shares = case.calibration == ideal
         own = case.effect in {
             "camera's target bowed", "plane target bowed", "camera's target larger", "plane target larger",
             "lens with k3", "coma", "defocus", "JPEG", "Bayer mosaic", "hot pixels", "fan lines that bow", "speckle",

@@ -16,6 +16,7 @@ from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
+from core.scan.changed_section import changed_section
 from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight, stripe_width
 
 CHECK_EVERY_S = 1.0
@@ -28,7 +29,9 @@ class ScanChecks:
     def __init__(self, context: LiveContext, previewer: ScanPreviewer) -> None:
         self._context, self._previewer = context, previewer
         self._image_size = (0, 0)
-        self._stripe_px = calibrated_stripe_px(context.request)
+        self._poses = calibrated_poses(context.request)
+        self._stripe_px = stripe_width(piece for pose in self._poses for piece in pose)
+        self._section: Message | None = None
         self._adviser = ExposureAdviser()
         self._told: tuple[Check, ...] = ()
         self._looked_s = 0.0
@@ -42,6 +45,15 @@ class ScanChecks:
         """The first picture is there, of (width, height)."""
         self._image_size = image_size
         self._tell(None, None)
+
+    def accepted(self) -> None:
+        """A reference has been taken."""
+        camera, fan = self._context.request.camera, self._context.request.fan
+        if camera is not None and fan is not None:
+            stripes = [piece for pieces in self._previewer.fan_lines for piece in pieces]
+            changed = changed_section(self._poses, stripes, camera, fan)
+            self._section = None if changed is None else changed.note
+        self.reference()
 
     def reference(self, departed: Message | None = None) -> None:
         """There is a reference; the latest picture suits it, or why not."""
@@ -72,6 +84,7 @@ class ScanChecks:
             age_s=None if request.calibrated_s is None else max(0.0, time.time() - request.calibrated_s),
             stripe_px=self._stripe_px,
             fresh_days=request.rig.validity.calibration_days or FRESH_DAYS,
+            section=self._section,
         ).checks()
         checks = (*checks, rig_check(request.check, datetime.now().astimezone()))
         if checks != self._told:
@@ -94,12 +107,11 @@ def rig_check(check: InterimCheck | None, now: datetime) -> Check:
     return Check("check", "ok" if check.passed else "failed", check.sentence)
 
 
-def calibrated_stripe_px(request: LiveRequest) -> float | None:
-    """Median width of the fan's stripes in its calibration, in pixels; None if that cannot be known any more."""
+def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]:
+    """The fan's stripes in each pose of its calibration; none if they cannot be known any more."""
     if request.kept_fan is None:
-        return None
+        return ()
     try:
-        poses = read_stored_poses(*request.kept_fan)
+        return tuple(pose.centrelines for pose in read_stored_poses(*request.kept_fan))
     except InputError:
-        return None
-    return stripe_width(piece for pose in poses for piece in pose.centrelines)
+        return ()

@@ -293,7 +293,7 @@ class LiveScan:
         self._context.write(REFERENCE, picture)
         self._context.took(REFERENCE, picture)
         self._looking = self._forced = False
-        self._checks.reference()
+        self._checks.accepted()
         fan = self._previewer.fan_cloud()
         self._new, self._renewed = [fan], True
         if self._coverage is not None:

@@ -66,6 +66,8 @@ class Preflight:
         Median width (σ) of the fan's stripes when it was calibrated; None if that is not known.
     fresh_days
         For how many days a calibration holds.
+    section
+        How the fan's stripes are skewed otherwise than in its calibration; None where they are not, or cannot tell.
     """
 
     lines: int
@@ -78,6 +80,7 @@ class Preflight:
     age_s: float | None = None
     stripe_px: float | None = None
     fresh_days: float = FRESH_DAYS
+    section: Message | None = None
 
     def checks(self) -> tuple[Check, ...]:
         """Make all checks, the reference first: the next three rest on it."""
@@ -149,6 +152,8 @@ class Preflight:
             said, todo = _width_changed(width, self.stripe_px), _REFOCUS
         if width >= blurred:
             return Check("focus", "failed", _out_of_focus(said, todo))
+        if self.section is not None:
+            return Check("focus", "failed", self.section)
         return Check(
             "focus", "ok" if width <= sharp else "unknown", Message("scan.check_focus", "{width}.", width=said)
         )

@@ -480,18 +480,32 @@ def test_before_a_scan_what_it_needs_is_looked_at_and_told(monkeypatch, tmp_path
     assert {name for name, state in checks(after_reference).items() if state != "ok"} == {"check"}
 
 
+def focus_of_fan_calibrated_with(stripes, monkeypatch, folder, stage):
+    """The check of a scan's focus where these stripes were seen in four poses of the fan's calibration."""
+    history = folder / "calibrations"
+    history.mkdir()
+    (history / "planes-f1.json").touch()
+    write_poses(history / "planes-f1.npz", "f1", [PoseFeatures(f"pose{k}", None, stripes) for k in range(4)])
+    window = Window()
+    scan(monkeypatch, folder, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(folder, "f1"))
+    return next(check for check in window.all(LiveChecks)[-1].checks if check.name == "focus")
+
+
+def test_stripes_that_reach_further_to_one_side_than_at_the_calibration_are_told_before_the_scan(
+    monkeypatch, tmp_path, stage
+):
+    seen = read_reference(stage.reference).fan
+    stripes = tuple(replace(piece, skewness=piece.skewness + 0.6 * np.sign(piece.normal[:, 0])) for piece in seen)
+    focus = focus_of_fan_calibrated_with(stripes, monkeypatch, tmp_path, stage)
+    assert (focus.state, focus.message.code) == ("failed", "scan.section_changed")
+
+
 @pytest.mark.parametrize(("sharper", "state"), [(1.0, "ok"), (2.0, "failed")])
 def test_the_focus_is_held_against_the_stripes_the_fan_was_calibrated_with(
     monkeypatch, tmp_path, stage, sharper, state
 ):
     stripes = tuple(replace(piece, width=piece.width / sharper) for piece in read_reference(stage.reference).fan)
-    history = tmp_path / "calibrations"
-    history.mkdir()
-    (history / "planes-f1.json").touch()
-    write_poses(history / "planes-f1.npz", "f1", [PoseFeatures("pose0", None, stripes)])
-    window = Window()
-    scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
-    focus = next(check for check in window.all(LiveChecks)[-1].checks if check.name == "focus")
+    focus = focus_of_fan_calibrated_with(stripes, monkeypatch, tmp_path, stage)
     assert focus.state == state
     assert "px when the fan was calibrated" in str(focus.message)
 

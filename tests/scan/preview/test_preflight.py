@@ -71,6 +71,7 @@ def test_before_the_reference_only_the_calibration_is_known():
             "failed",
             "0.9 px when the fan was calibrated: set the focus of camera and laser",
         ),
+        ({"section": plain("skewed otherwise")}, "focus", "failed", "skewed otherwise"),
         ({"stripe_px": 9.0, "fan_lines": ((stripe(width=9.0),),) * 3}, "focus", "ok", "9.0 px wide"),
         (
             {"image_size": (960, 687)},
