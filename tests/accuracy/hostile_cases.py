@@ -221,7 +221,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "plane target larger": ("target.size_unconfirmed", "target.sizes_disagree"),
     "lens with k3": (*LENS, "camera.third_radial"),
     "lasers that are no Gaussian across": ("gauge.unsure_and_no_faces", "inspection.light_is_skewed"),
-    SKEWED_SINCE: (*CHANGED, "scan.section_changed", "inspection.section_has_changed"),
+    SKEWED_SINCE: (*CHANGED, "scan.section_changed", "inspection.section_has_changed", "inspection.light_is_skewed"),
     "coma": (*LENS, "inspection.light_is_skewed"),
     "defocus": ("scan.check_out_of_focus", "scan.stripe_width_changed"),
     "JPEG": ("scan.compressed",),
