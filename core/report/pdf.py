@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
-from reportlab.platypus import BaseDocTemplate, Frame, PageTemplate
+from reportlab.platypus import BaseDocTemplate, Flowable, Frame, PageTemplate
 
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
@@ -162,10 +162,24 @@ def _page_room(paper: Paper) -> float:
 
 
 class _Trial(Canvas):  # type: ignore[misc]
-    """A canvas that leaves pictures out: to learn how many pages there are, they need not be compressed."""
+    """A canvas of which no file is made: to learn how many pages there are."""
 
-    def drawImage(self, *_: Any, **__: Any) -> None:
-        """Paint nothing."""
+    def save(self) -> None:
+        """Compress nothing."""
+
+
+class _TrialFrame(Frame):  # type: ignore[misc]
+    """Where everything comes to stand, without drawing any of it."""
+
+    def _add(self, flowable: Flowable, canvas: Canvas, trySplit: int = 0) -> int:
+        flowable._drawOn = _draw_nothing
+        return int(super()._add(flowable, canvas, trySplit))
+
+    add = _add
+
+
+def _draw_nothing(_: Canvas) -> None:
+    """Stand where it stands."""
 
 
 class _Typeset(NamedTuple):
@@ -212,7 +226,8 @@ def _typeset(
         initialFontName=SANS,
         lang=content.language,
     )
-    frame = Frame(
+    frame_kind = _TrialFrame if canvas_kind is _Trial else Frame
+    frame = frame_kind(
         margin,
         FOOT,
         TEXT_WIDTH,

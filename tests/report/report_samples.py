@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from hashlib import sha256
 
 import numpy as np
@@ -36,6 +37,7 @@ def surface_depth(rays):
     return np.where(block, top, table), block
 
 
+@cache
 def cloud_and_mesh(step=8, seed=1):
     rng = np.random.default_rng(seed)
     u, v = np.meshgrid(np.arange(300.0, 1620, step), np.arange(180.0, 1200, step))
@@ -92,6 +94,7 @@ def line(u, v):
     return Centreline(uv, np.tile([1.0, 0.0], (len(uv), 1)), 2 * ones, 120 * ones, 0.05 * ones, ones > 2)
 
 
+@cache
 def overlay():
     rng = np.random.default_rng(3)
     v, u = np.mgrid[0:1374, 0:1920].astype(np.float32)
