@@ -274,7 +274,8 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     assert gauge.verdict == Verdict.NOT_PROVEN and gauge.notes[0].code == "target.size_unconfirmed"
 
 
-@pytest.mark.parametrize(("stated", "said"), [(None, True), pytest.param(0.0, False, marks=pytest.mark.accuracy)])
+@pytest.mark.accuracy
+@pytest.mark.parametrize(("stated", "said"), [(None, True), (0.0, False)])
 def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_path, stated, said):
     work = work_in(unchanged, tmp_path, with_check=False)
     work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=stated)), work.out)
@@ -380,12 +381,14 @@ def test_a_check_of_another_day_says_nothing_of_this_scan(unchanged, tmp_path):
     assert change.p == without.p
 
 
-def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing(unchanged, tmp_path):
+def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing_and_an_unstated_shutter_is_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
     daily = replace(work.found.rig, validity=Validity(check_days=1.0))
     work = replace(work, found=replace(work.found, rig=daily))
-    measured = scan_of(unchanged, work)
-    assert measured.scan.notes[0].code == "validity.never_checked"
+    work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=None)), work.out)
+    notes = scan_of(unchanged, work).scan.notes
+    assert notes[0].code == "validity.never_checked"
+    assert "scan.shutter_assumed" in {note.code for note in notes}
     gauge = gauge_step(work)
     assert not gauge.complete and gauge.verdict is Verdict.NOT_PROVEN
     assert gauge.notes[0].code == "validity.never_checked"

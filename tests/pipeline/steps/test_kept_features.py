@@ -94,6 +94,11 @@ def test_a_frame_that_was_changed_on_the_disk_is_looked_at_again(own):
 
 
 def test_measured_again_with_nothing_changed_the_pictures_are_looked_at_again(done, tmp_path):
+    assert looks_at_frames(copy_of(done.folder, tmp_path / "project"), done.project)
+
+
+@pytest.mark.accuracy
+def test_measured_again_with_nothing_changed_the_results_are_the_same(done, tmp_path):
     folder = copy_of(done.folder, tmp_path / "project")
     assert "frames" in stages_of(folder, done.project)
     assert contents(folder) == contents(done.folder)

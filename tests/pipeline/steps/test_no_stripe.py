@@ -42,13 +42,15 @@ def ridges(work: Workspace) -> list[str]:
     return sorted(path.name for path in (work.out / RIDGES).glob("*"))
 
 
-def test_the_pose_without_a_stripe_has_its_picture_and_a_note_tells_of_it(work):
+def test_the_pose_without_a_stripe_has_its_picture_in_place_of_older_ones_and_a_note_tells_of_it(work):
+    work.put_ridges({"of an older set": np.zeros((2, 3), np.uint8)})
     planes_step(work)
     assert ridges(work) == ["pose01-ridge.png"]
     ridge = read_picture(work.out / RIDGES / "pose01-ridge.png")
     assert ridge.shape == read_picture(work.found.planes[1].on).shape
     assert ridge.max() >= 250
     assert "fan.ridges_written" in [note.code for note in work.record().notes["planes"]]
+    clearing_takes_them_away(work)
 
 
 def test_pictures_are_there_where_no_planes_came_of_it_and_the_error_says_so(work):
@@ -58,10 +60,7 @@ def test_pictures_are_there_where_no_planes_came_of_it_and_the_error_says_so(wor
     assert not work.path("planes").exists()
 
 
-def test_the_next_search_and_clearing_take_old_pictures_away(work):
-    work.put_ridges({"of an older set": np.zeros((2, 3), np.uint8)})
-    planes_step(work)
-    assert ridges(work) == ["pose01-ridge.png"]
+def clearing_takes_them_away(work: Workspace) -> None:
     (work.out / RIDGES / "of somebody else.txt").touch()
     work.clear()
     assert ridges(work) == ["of somebody else.txt"]

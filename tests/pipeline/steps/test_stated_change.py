@@ -14,7 +14,7 @@ from core.files.recording.set_listing import taken_at
 from core.pipeline.project.workspace import rig_in_its_air
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
-from tests.pipeline.steps.test_check_step import check_of, scan_of, unchanged, work_in
+from tests.pipeline.steps.test_check_step import check_of, check_seen_in, scan_of, unchanged, work_in
 
 __all__ = ["unchanged"]  # a fixture of the checks, used here too
 
@@ -26,12 +26,12 @@ def stating(work, **stated):
     return replace(work, found=replace(work.found, rig=replace(work.found.rig, **stated)))
 
 
-def change_of(work):
-    return since_calibration(work.found, work.calibration(), Options())
+def change_of(work, poses=None):
+    return since_calibration(work.found, work.calibration(), Options(), poses=poses)
 
 
-def codes(work):
-    change = change_of(work)
+def codes(work, poses=None):
+    change = change_of(work, poses)
     return [note.code for note in assumed_stability(work.found, change, work.calibration().fan)]
 
 
@@ -41,6 +41,16 @@ def size(change):
     return float(np.sqrt(sum(np.sum((pis - np.mean(planes, axis=0)) ** 2) for pis in planes)))
 
 
+def test_the_change_is_small_at_the_temperature_of_the_calibration_and_large_10_k_above(unchanged, tmp_path):
+    work = stating(work_in(unchanged, tmp_path, with_check=False), stability=AT_REST, drift=WARMING)
+    cold, warm = (stating(work, air=Air(20.0, None, celsius)) for celsius in (20.0, 30.0))
+    assert size(change_of(warm)) > 3 * size(change_of(cold))
+    notes = assumed_stability(warm.found, change_of(warm), warm.calibration().fan)
+    assert [note.values["kelvins"] for note in notes if note.code == "scan.change_by_warmth_and_time"] == [10.0]
+    assert not {"scan.kelvins_assumed", "scan.stability_assumed"} & {note.code for note in notes}
+
+
+@pytest.mark.accuracy
 def test_the_row_is_small_at_the_temperature_of_the_calibration_and_large_10_k_above(unchanged, tmp_path):
     rows = {}
     for celsius in (20.0, 30.0):
@@ -95,7 +105,8 @@ def test_a_rig_calibrated_far_from_its_temperature_is_assumed_to_change_more(unc
 @pytest.mark.parametrize("air", [Air(), Air(20.0, 21.0, 24.0)], ids=["nothing", "usual"])
 def test_what_is_not_stated_changes_no_number(unchanged, tmp_path, air):
     work = work_in(unchanged, tmp_path)
-    before, after = change_of(work), change_of(stating(work, air=air))
+    poses, _ = check_seen_in(unchanged)
+    before, after = change_of(work, poses), change_of(stating(work, air=air), poses)
     assert after.p == before.p
     for one, other in zip(before.deviations, after.deviations, strict=True):
         assert np.array_equal(one.fan.pis, other.fan.pis) and one.source == other.source
@@ -103,11 +114,12 @@ def test_what_is_not_stated_changes_no_number(unchanged, tmp_path, air):
 
 def test_a_check_says_less_of_a_scan_the_warmer_it_has_become_since(unchanged, tmp_path):
     work = stating(work_in(unchanged, tmp_path), stability=AT_REST, drift=WARMING)
-    cold, warm = (change_of(stating(work, air=Air(20.0, 20.0, celsius))) for celsius in (20.0, 26.0))
+    poses, _ = check_seen_in(unchanged)
+    cold, warm = (change_of(stating(work, air=Air(20.0, 20.0, celsius)), poses) for celsius in (20.0, 26.0))
     without = change_of(replace(work, found=replace(stating(work, air=Air(20.0, None, 26.0)).found, check=())))
     assert cold.checked and warm.checked
-    assert "scan.kelvins_since_check_assumed" not in codes(stating(work, air=Air(20.0, 20.0, 26.0)))
-    assert "scan.kelvins_since_check_assumed" in codes(stating(work, air=Air(20.0, None, 26.0)))
+    assert "scan.kelvins_since_check_assumed" not in codes(stating(work, air=Air(20.0, 20.0, 26.0)), poses)
+    assert "scan.kelvins_since_check_assumed" in codes(stating(work, air=Air(20.0, None, 26.0)), poses)
     assert 2 * size(cold) < size(warm) < size(without)
 
 

@@ -12,6 +12,7 @@ from core.files.recording.recording_set import open_set
 from core.files.recording.rig import ReferenceTarget
 from core.image.targets import BlackSquare, Checkerboard
 from core.model import Fan, LightPlane, Pose
+from core.pipeline.steps import target_sizes
 from core.pipeline.steps.target_sizes import compare_targets, with_compared_sizes
 from core.simulate.blur import blurred
 from core.simulate.calibration import CAMERA_GREY
@@ -25,6 +26,22 @@ from core.simulate.scene.targets import room_shade
 PLANE = LightPlane(np.array([0.0, 0.001, 0.002]))
 FAN = FanCalibration(Fan((PLANE,)), Fan((PLANE,)), (0.0,), (), (), 0.0, None, None, (), scale_sd=5e-4)
 BOARD = Checkerboard(9, 7, 8.0)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def each_target_is_looked_for_once():
+    """In the same pictures the same targets are found, whatever is stated of them."""
+    detect, seen = target_sizes.detect, {}
+
+    def found(target, picture, name, camera):
+        key = (target, picture.tobytes(), name, camera.matrix.tobytes())
+        if key not in seen:
+            seen[key] = detect(target, picture, name, camera)
+        return seen[key]
+
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(target_sizes, "detect", found)
+        yield
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +81,13 @@ def two_squares():
 
 
 @pytest.mark.parametrize(
-    ("plane_mm", "stated_mm", "reference_mm"), [(60, 60, 36), (60, 61, 36), (36, 36, 60), (36, 37, 60)]
+    ("plane_mm", "stated_mm", "reference_mm"),
+    [
+        pytest.param(60, 60, 36, marks=pytest.mark.accuracy),
+        (60, 61, 36),
+        (36, 36, 60),
+        pytest.param(36, 37, 60, marks=pytest.mark.accuracy),
+    ],
 )
 def test_two_squares_in_one_picture_tell_the_size_of_the_one_by_the_other(
     tmp_path, simulated, two_squares, plane_mm, stated_mm, reference_mm
@@ -115,7 +138,6 @@ def opened(tmp_path, simulated, shown, side_mm):
 def test_sizes_that_are_stated_truly_agree(tmp_path, simulated, pictures):
     camera, shown = pictures
     ratio, notes = compare_targets(opened(tmp_path, simulated, shown, 60.0), camera)
-    print(ratio)
     assert ratio.pictures == 3 and notes == () and ratio.fit_p > 0.01
     assert abs(ratio.ratio - 1) < 3 * ratio.u < 0.01
     fan, said = with_compared_sizes(FAN, opened(tmp_path / "again", simulated, shown, 60.0), camera)
