@@ -11,7 +11,8 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Sequence
-from typing import Annotated
+from functools import cache
+from typing import Annotated, Any
 
 import typer
 from typer.main import get_command
@@ -92,7 +93,8 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _run(words: list[str]) -> None:
     """Run the commands; they leave by SystemExit with their own code."""
     try:
-        command = language.speak(get_command(app), HELP_VALUES)
+        command = _commands(language.spoken().name)
+        language.name_panels()
         sys.exit(command(words, prog_name="trisect", standalone_mode=False))
     except NoArgsIsHelpError:
         sys.exit(ExitCode.BAD_INPUT)
@@ -100,6 +102,12 @@ def _run(words: list[str]) -> None:
         raise usage_error(error, words) from error
     finally:
         sys.stdout.flush()  # here, where a closed pipe can still be told apart from a failure
+
+
+@cache
+def _commands(_spoken: str) -> Any:
+    """Every command in the language that is spoken: Typer reads all functions for it, which takes 0.1 s."""
+    return language.speak(get_command(app), HELP_VALUES)
 
 
 def _fault(words: Sequence[str], error: Exception) -> InputError:

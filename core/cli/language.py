@@ -118,12 +118,13 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
             shown.help = _helped(shown.help, values)
             if shown.param_type_name == "argument" or shown.is_flag:
                 shown.display_type = _no_type
-    if _spoken is not ENGLISH or "typer.rich_utils" in sys.modules:  # which costs a start, and speaks English by itself
-        _name_panels()
     return command
 
 
-def _name_panels() -> None:
+def name_panels() -> None:
+    """Put Typer's own words in help into the language."""
+    if _spoken is ENGLISH and "typer.rich_utils" not in sys.modules:
+        return  # it costs a start, and speaks English by itself
     from typer import rich_utils
 
     _fold_help()
