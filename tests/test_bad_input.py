@@ -329,9 +329,10 @@ def test_full_disk(simulated, out, monkeypatch):
         raise OSError(errno.ENOSPC, "No space left on device")
 
     monkeypatch.setattr(os, "fsync", full)
-    said = trisect("camera", simulated, "--out", out)
+    said = trisect("gauge", simulated, "--out", out)
     assert said.code == 2
-    assert "camera.json: cannot be written, because the disk is full" in said.sentence
+    assert "cannot be written, because the disk is full" in said.sentence
+    assert str(out) in said.sentence
     assert {path.name: path.read_bytes() for path in out.iterdir()} == before
 
 

@@ -57,7 +57,7 @@ def covered(kind: str, times: float, days: int, rigs: int = 60) -> tuple[float, 
     return float(np.mean(share)), float(np.mean(factors))
 
 
-@pytest.mark.parametrize("days", [8, 20, pytest.param(QUIET_DAYS, marks=pytest.mark.accuracy)])
+@pytest.mark.parametrize("days", [8, *(pytest.param(days, marks=pytest.mark.accuracy) for days in (20, QUIET_DAYS))])
 @pytest.mark.parametrize(("kind", "times"), [("all", 1.0), ("all", 4.0), ("drift", 4.0)])
 def test_what_is_charted_holds_as_many_errors_as_it_says(kind, times, days):
     share, factor = covered(kind, times, days)

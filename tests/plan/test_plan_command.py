@@ -1,12 +1,16 @@
 import json
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
+from core.calibrate.change import DEFAULT_STABILITY
+from core.cli import preparing
 from core.errors import InputError
 from core.files.pictures import read_picture
 from core.pipeline.project import rig_plan
 from core.pipeline.steps.plan_step import plan, write_plan
+from core.plan.bounds import bounds_of
 from core.report.plots.plan_map import plan_map_png
 from tests.plan.small import CUT_MM, SMALL, TOML
 from tests.simulated import trisect
@@ -92,12 +96,16 @@ def test_the_same_plan_writes_the_same_bytes(rig, told, result):
         assert (rig.parent / "again" / name).read_bytes() == (out / name).read_bytes()
 
 
-def test_people_are_told_in_lines(tmp_path):
-    rig = tmp_path / "rig.toml"
-    rig.write_text(TOML.replace("[40, 50]", "[40]"), encoding="utf-8")
+def test_people_are_told_in_lines(rig, result, monkeypatch):
+    asked = []
+    told = replace(result, bounds=bounds_of(result.design, stability=DEFAULT_STABILITY))
+    monkeypatch.setattr(preparing, "plan", lambda _, **how: asked.append(how) or told)
     said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM, "--bounds")
 
     assert said.code == 0
+    assert {key: asked[0][key] for key in ("scans", "changes", "bounds", "sigma_cut_mm")} == {
+        "scans": 1, "changes": False, "bounds": True, "sigma_cut_mm": CUT_MM,
+    }  # fmt: skip
     assert "block 40 mm" in said.out and "U = 0." in said.out
     assert "common to the scan" in said.out
     assert "no program below" in said.out and "thickness of 40 mm: u 0.0" in said.out

@@ -21,11 +21,12 @@ def planner():
 
 @pytest.fixture(scope="module")
 def base(planner):
-    return planner.predict(SMALL, HEIGHT, scans=2)
+    return planner.predict(SMALL, HEIGHT, scans=1)
 
 
 @pytest.mark.accuracy
-def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(base):
+def test_u_is_the_sum_of_its_budget_and_holds_the_errors_drawn(planner):
+    base = planner.predict(SMALL, HEIGHT, scans=2)
     total = np.sqrt(sum(row.u_mm**2 for row in base.budget))
 
     assert base.u_mm == pytest.approx(total, rel=1e-6)
@@ -79,7 +80,7 @@ def test_without_speckle_a_thickness_is_surer(planner, base):
 def test_changes_come_with_the_most_helpful_first_and_say_why_one_cannot_be_made(planner, base):
     impossible = Change(plain("no views"), lambda design: plain("1"), lambda design: replace(design, views=1))
     named = {str(change.name): change for change in CHANGES}
-    chosen = (named["poses of the plane target doubled"], named["baseline of the fan 20 % shorter"], impossible)
+    chosen = (impossible, named["baseline of the fan 20 % shorter"])
     effects = compare(planner, SMALL, base, scans=1, changes=chosen)
 
     assert [effect.share for effect in effects] == sorted(effect.share for effect in effects)

@@ -251,7 +251,7 @@ def test_pictures_of_different_size_are_refused(pair):
         measure_plane_pose("p", pair.on, pair.off[:-1], TARGET, CAMERA)
 
 
-@pytest.mark.parametrize("with_off", [True, False])
+@pytest.mark.parametrize("with_off", [True, pytest.param(False, marks=pytest.mark.accuracy)])
 def test_pictures_to_fan(with_off):
     features = []
     for number, pose in enumerate(fan_scenes.poses(4, 3)):
