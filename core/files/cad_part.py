@@ -30,7 +30,10 @@ _MM = 1000.0
 """glTF is in metres whatever the unit of the STEP file was."""
 _ASK_EVERY_S = 0.1
 """How often in s it is asked whether the job is cancelled."""
-_TESSELLATE = "import sys, cascadio; sys.exit(cascadio.step_to_glb(*sys.argv[1:3], *map(float, sys.argv[3:])))"
+_TESSELLATE = (
+    "import sys; sys.modules['trimesh'] = None; "  # cascadio would tell it of itself, and load it and scipy for that
+    "import cascadio; sys.exit(cascadio.step_to_glb(*sys.argv[1:3], *map(float, sys.argv[3:])))"
+)
 
 
 def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Array:
