@@ -13,12 +13,17 @@ import numpy as np
 import pytest
 
 from core.files.pictures import read_picture, write_picture
-from tests.simulated import CUT, SMALL, copy_of, trisect
+from tests.simulated import CUT, SMALL, TINY, copy_of, trisect
 
 
 @pytest.fixture
 def folder(simulated, tmp_path):
     return copy_of(simulated, tmp_path / "set")
+
+
+@pytest.fixture
+def tiny(tiny_set, tmp_path):
+    return copy_of(tiny_set, tmp_path / "set")
 
 
 @pytest.fixture
@@ -140,11 +145,11 @@ def test_missing_rig(folder, tmp_path):
     assert "rig.toml: the file is missing" in said.sentence
 
 
-def test_wrong_inner_corners(folder, tmp_path):
-    edit_rig(folder, "inner_corners = [", "inner_corners = [8, 5] # [")
-    for view in sorted((folder / "camera").iterdir())[2:]:
+def test_wrong_inner_corners(tiny, tmp_path):
+    edit_rig(tiny, "inner_corners = [", "inner_corners = [8, 5] # [")
+    for view in sorted((tiny / "camera").iterdir())[2:]:
         view.unlink()
-    said = trisect("camera", folder, "--out", tmp_path / "new")
+    said = trisect("camera", tiny, "--out", tmp_path / "new")
     assert said.code == 2
     assert "camera" in said.sentence
     assert "none of 2 pictures" in said.sentence
@@ -160,14 +165,14 @@ def spoil(path, how):
     write_picture(path, np.full_like(picture, {"black": 0, "white": 255}[how]) if how != "noise" else picture)
 
 
-def test_a_view_without_a_board_and_a_black_and_a_white_one_are_left_out(folder, tmp_path):
-    views = sorted((folder / "camera").iterdir())
+def test_a_view_without_a_board_and_a_black_and_a_white_one_are_left_out(tiny, tmp_path):
+    views = sorted((tiny / "camera").iterdir())
     for view, how in zip(views, ("noise", "black", "white"), strict=False):
         spoil(view, how)
-    said = trisect("camera", folder, "--out", tmp_path / "new", "--json")
+    said = trisect("camera", tiny, "--out", tmp_path / "new", "--json")
     assert said.code == 0, said.err
     values = json.loads(said.out)
-    assert values["views_used"] == SMALL.camera_views - 3
+    assert values["views_used"] == TINY.camera_views - 3
     assert [view["name"] for view in values["views_left_out"]] == [f"camera/{view.name}" for view in views[:3]]
     assert all(view["reason"] and view["code"] and view["values"] is not None for view in values["views_left_out"])
     assert any(f"camera/{views[0].name}" in note["text"] for note in values["notes"])

@@ -65,7 +65,7 @@ def test_what_is_charted_holds_as_many_errors_as_it_says(kind, times, days):
 
 
 def test_a_quiet_rig_is_held_to_the_default_until_there_are_many_days():
-    assert covered("all", 0.5, 20)[1] == pytest.approx(1.0, abs=0.02)
-    share, factor = covered("all", 0.5, QUIET_DAYS)
+    assert covered("all", 0.5, 20, rigs=20)[1] == pytest.approx(1.0, abs=0.02)
+    share, factor = covered("all", 0.5, QUIET_DAYS, rigs=20)
     assert 0.5 <= factor < 0.75
     assert share >= 0.93

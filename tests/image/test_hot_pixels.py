@@ -51,11 +51,10 @@ def test_a_picture_of_another_depth_is_refused():
         standing_out(np.zeros((4, 4), np.float32))
 
 
-def test_a_camera_with_hot_pixels_is_told_and_one_without_is_not(tmp_path):
+def test_a_camera_with_hot_pixels_is_told_and_one_without_is_not(simulated, tmp_path):
     scene = replace(SMALL, camera_views=6, plane_poses=0, frames=0)
-    for share, told in ((0.0, 0), (0.002, 1)):
-        place = tmp_path / str(share)
-        simulate_set(replace(scene, sensor=replace(scene.sensor, hot_share=share)), place)
+    simulate_set(replace(scene, sensor=replace(scene.sensor, hot_share=0.002)), tmp_path / "hot")
+    for place, share, told in ((simulated, 0.0, 0), (tmp_path / "hot", 0.002, 1)):
         seen = see_views(open_set(place))
         notes = [note for note in solve_camera(seen).notes if note.code == "camera.hot_pixels"]
         assert len(notes) == told

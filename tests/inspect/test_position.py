@@ -161,11 +161,12 @@ def scanned(seed, place, *limits):
 
 def test_the_datums_are_in_its_uncertainty_and_only_an_upper_limit_counts():
     place = coordinates(scanned(0, (0.0, 0.0, 0.0)), "ball") + [0.0, 0.5, 0.0]
-    found = scanned(0, place, ("position", Limits(0.0, -np.inf, 2.0))).characteristics[-1]
+    inspection = scanned(0, place, ("position", Limits(0.0, -np.inf, 2.0)))
+    found = inspection.characteristics[-1]
     assert found.value == pytest.approx(1.0, abs=1e-6)
     assert found.verdict == Verdict.CONFORMING
-    ball = scanned(0, place).result("ball").element
-    across = scanned(0, place).pose_camera_part.rotation[:, 1]
+    ball = inspection.result("ball").element
+    across = inspection.pose_camera_part.rotation[:, 1]
     assert found.u > 1.2 * combined(budget_of([(2 * across @ ball.position_gradient, ball.effects)]))
 
 

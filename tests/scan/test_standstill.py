@@ -19,8 +19,8 @@ ASIDE = (0.3, 0.0, 0.0)
 
 
 @cache
-def exact(kind, moved=None):
-    return ExactScan.of(Scenario(object=kind, scale=0.5), moved=moved)
+def exact(kind, moved=None, scale=0.5):
+    return ExactScan.of(Scenario(object=kind, scale=scale), moved=moved)
 
 
 def movement(scan, seed):
@@ -31,7 +31,7 @@ def movement(scan, seed):
 
 @pytest.fixture(scope="module")
 def moved():
-    scan = exact("mask", (40, ASIDE))
+    scan = exact("mask", (40, ASIDE), 0.35)
     return scan, reconstruct(scan.measured(2), scan.rig.camera, scan.rig.fan)
 
 
@@ -86,7 +86,7 @@ def test_too_little_left_is_refused_in_one_sentence():
 
 def test_a_lifted_block_gives_the_block_of_the_reference():
     """Two parallel planes shifted along their normal can not be told from other light planes, and need not be."""
-    scan = exact("block", (30, (0.0, 0.0, -0.3)))
+    scan = exact("block", (30, (0.0, 0.0, -0.3)), 0.35)
     result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
     up, foot = scan.scene.pose_cam_table.rotation[:, 2], scan.scene.pose_cam_table.translation
     late = (result.cloud.frame >= 30) & (result.cloud.sweep >= 0)

@@ -98,7 +98,7 @@ def test_laser_stripes_across_the_board_do_not_hide_it():
 @pytest.mark.parametrize(
     ("columns", "rows", "todo"),
     [
-        (8, 6, "check inner_corners"),
+        pytest.param(8, 6, "check inner_corners", marks=pytest.mark.accuracy),
         pytest.param(11, 8, "check inner_corners", marks=pytest.mark.accuracy),
         (17, 12, "check inner_corners"),
     ],

@@ -76,6 +76,18 @@ def advance(pictures):
     return rule
 
 
+def seen_often(sentence, times=5):
+    """A rule: stop once pictures have been judged so this many times."""
+    seen = [0]
+
+    def rule(event):
+        if isinstance(event, LiveView) and event.detail is not None:
+            seen[0] += str(event.detail.sentence) == sentence
+        return Stop() if seen[0] >= times else None
+
+    return rule
+
+
 def test_views_that_add_something_are_taken_by_themselves(monkeypatch, tmp_path, plates):
     pictures = OneAfterAnother(plates.views)
     window = Window(advance(pictures))
@@ -94,9 +106,9 @@ def test_views_that_add_something_are_taken_by_themselves(monkeypatch, tmp_path,
 
 def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_taken_again(monkeypatch, tmp_path, plates):
     there = tuple(detect(RIG.camera_target, view, f"camera/view{n:02d}.png") for n, view in enumerate(plates.views[:3]))
-    window = Window()
+    window = Window(seen_often("Turn the board: this tilt is already there."))
     shown = OneAfterAnother(plates.views[:1])
-    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=60, there=there)
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=UNTIL_STOPPED, there=there)
     assert ended.recorded == 0
     seen = [detail for detail in window.details if detail.uv is not None]
     assert str(seen[0].missing[0]) == "Record at least 10 views; there are 3."
@@ -105,8 +117,9 @@ def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_take
 
 
 def test_the_same_view_is_taken_once(monkeypatch, tmp_path, plates):
-    window = Window()
-    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother(plates.views[:1]), frames=120)
+    window = Window(seen_often("Turn the board: this tilt is already there."))
+    shown = OneAfterAnother(plates.views[:1])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=UNTIL_STOPPED)
     assert ended.recorded == 1
     assert "Turn the board: this tilt is already there." in {str(detail.sentence) for detail in window.details}
 
@@ -142,15 +155,17 @@ def test_auto_can_be_switched_off_and_on(monkeypatch, tmp_path, plates):
 
 
 def test_capture_without_a_target_says_why(monkeypatch, tmp_path, plates):
-    window = Window(after(3, LiveView, Capture()))
-    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother([plates.nothing]), frames=60)
+    window = Window(after(3, LiveView, Capture()), answer_to(LiveNotice, Stop()))
+    shown = OneAfterAnother([plates.nothing])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=UNTIL_STOPPED)
     assert ended.recorded == 0
     assert "No checkerboard is seen in the picture." in str(window.all(LiveNotice)[-1].sentence)
 
 
 def test_a_discarded_view_is_put_aside_and_may_be_taken_again(monkeypatch, tmp_path, plates):
-    window = Window(after(1, LiveTaken, Discard("view00")))
-    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother(plates.views[:1]), frames=150)
+    window = Window(after(1, LiveTaken, Discard("view00")), after(2, LiveTaken, Stop()))
+    shown = OneAfterAnother(plates.views[:1])
+    ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=UNTIL_STOPPED)
     assert ended.recorded == 1
     assert (tmp_path / "camera" / "discarded" / "view00.png").exists()
     assert [path.name for path in (tmp_path / "camera").glob("*.png")] == ["view01.png"]
@@ -175,10 +190,9 @@ def test_poses_are_taken_with_the_fan_on_and_off(monkeypatch, tmp_path, plates):
 
 def test_a_pose_whose_target_moved_between_the_pictures_is_not_kept(monkeypatch, tmp_path, plates):
     moved = [plates.poses[0][0], np.roll(plates.poses[0][1], 3, axis=1)]
-    window = Window()
-    ended = views_taken(
-        monkeypatch, tmp_path, plates, window, OneAfterAnother([moved]), "planes", frames=120, camera=plates.camera
-    )
+    window = Window(answer_to(LiveNotice, Stop()))
+    choices = {"frames": UNTIL_STOPPED, "camera": plates.camera}
+    ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother([moved]), "planes", **choices)
     assert ended.recorded == 0
     assert any("moved by" in str(notice.sentence) for notice in window.all(LiveNotice))
 

@@ -31,7 +31,7 @@ def test_the_preview_is_the_report_and_writes_nothing(done, folder):
     before = {path: path.stat().st_mtime_ns for path in folder.rglob("*")}
     pages = preview_report(folder, done.project, 300)
     assert {path: path.stat().st_mtime_ns for path in folder.rglob("*")} == before
-    assert len(pages) == len(PdfReader(make_report(folder, done.project)).pages)
+    assert len(pages) == len(PdfReader(results_folder(folder) / "report.pdf").pages)
     for page in pages:
         assert (page.dtype, page.shape[1:]) == (np.uint8, (300, 3))
         assert page.shape[0] == pytest.approx(300 * 297 / 210, abs=2)
@@ -56,7 +56,7 @@ def test_a_project_measures_with_a_camera_of_another_program(done, folder, tmp_p
 
 
 def test_the_preview_follows_sections_and_paper(done, folder):
-    whole = preview_report(folder, done.project, 300)
+    whole = PdfReader(results_folder(folder) / "report.pdf").pages
     choices = ReportChoices(frozenset(SECTIONS), "Letter")
     short = preview_report(folder, replace(done.project, report=choices), 300)
     assert len(short) < len(whole)

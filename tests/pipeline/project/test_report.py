@@ -17,7 +17,8 @@ def test_the_report_prints_what_the_project_says(done, tmp_path):
         "job", part="Endmass 7", serial="S-17", operator="Ada", customer="Babbage Ltd", laboratory="Room 12",
         air_celsius=20.5, notes="Seen through glass.",
     )  # fmt: skip
-    project = replace(done.project, info=info, report=ReportChoices(frozenset({"inputs", "no such section"})))
+    hidden = frozenset({"inputs", "surface", "frame", "points", "maps", "no such section"})
+    project = replace(done.project, info=info, report=ReportChoices(hidden))
     text = "\n".join(page.extract_text() for page in PdfReader(str(make_report(folder, project))).pages)
     for words in ("Endmass 7", "S-17", "Ada", "Babbage Ltd", "Room 12", "20.5", "Seen through glass."):
         assert words in text

@@ -115,7 +115,7 @@ def test_choosing_a_template_takes_what_it_names_and_leaves_the_rest_to_the_user
 
 
 def test_a_template_that_is_gone_is_told_and_the_old_report_stays(done, folder):
-    report = make_report(folder, done.project)
+    report = results_folder(folder) / "report.pdf"
     before = report.read_bytes()
     choices = ReportChoices(template="gone.toml")
     with pytest.raises(InputError, match=r"gone\.toml"):

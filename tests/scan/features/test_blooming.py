@@ -50,7 +50,7 @@ def misses(frames, truth, *, beside):
     return np.concatenate(found)
 
 
-@pytest.mark.parametrize("bloom", [0.0, 0.5, 0.9])
+@pytest.mark.parametrize("bloom", [0.0, pytest.param(0.5, marks=pytest.mark.accuracy), 0.9])
 def test_points_that_count_are_not_drawn_to_where_charge_flows(truth, bloom):
     seen = frames_of(replace(SHINY, sensor=SensorEffects(brightness=2.0, bloom=bloom)))
     for beside in (False, True):

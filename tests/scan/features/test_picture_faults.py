@@ -58,7 +58,7 @@ def test_lines_without_light_have_no_speckle():
 
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3))])
-@pytest.mark.parametrize("scale", [0.25, 0.5])
+@pytest.mark.parametrize("scale", [0.25, pytest.param(0.5, marks=pytest.mark.accuracy)])
 def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
     raw = replace(RIG, scale=scale, seed=seed, sensor=SensorEffects(colour=True, raw=True))
     assert RAW in told_of(raw)

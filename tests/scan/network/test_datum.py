@@ -30,7 +30,7 @@ def test_more_relief_fixes_the_scale_better():
 
 
 def test_a_block_under_the_fan_needs_no_advice():
-    scan = ExactScan.of(Scenario(scale=0.5))
+    scan = ExactScan.of(Scenario(scale=0.35))
     result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
     assert not result.datum.weak
     assert result.datum.scale < 0.001
