@@ -1,6 +1,7 @@
 """Lines that are no planes of light: told with their direction, and uncertain by what was seen of it."""
 
 from dataclasses import replace
+from functools import cache
 
 import numpy as np
 import pytest
@@ -17,6 +18,7 @@ BOW = 5e-5
 """In 1/mm: 0.25 mm from the middle of a stripe to its ends."""
 
 
+@cache
 def fitted(bow: float, seed: int = 1) -> FanCalibration:
     return fit_fan(features(poses(9, seed), Noise(), seed, points=GRID, bow=bow), CAMERA, THREE)
 
@@ -49,6 +51,7 @@ SLIGHT = BOW / 3
 UNSTATED = BoardTolerance()
 
 
+@cache
 def of_square(bow: float, seed: int = 1, target: BoardTolerance = UNSTATED) -> FanCalibration:
     """With a black square, whose corners do not tell whether its plate is bowed."""
     return fit_fan(features(poses(9, seed), Noise(), seed, bow=bow), CAMERA, replace(THREE, target=target))

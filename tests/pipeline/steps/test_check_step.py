@@ -283,7 +283,7 @@ def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_
     assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
 
 
-def test_stripes_much_wider_than_at_the_calibration_are_told_by_the_scan(unchanged, tmp_path):
+def test_stripes_much_wider_than_at_the_calibration_are_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
     assert notes_on_focus(work, known, seen) == ()
@@ -293,15 +293,13 @@ def test_stripes_much_wider_than_at_the_calibration_are_told_by_the_scan(unchang
         sharp = [replace(p, centrelines=tuple(replace(c, width=share * c.width) for c in p.centrelines)) for p in poses]
         write_poses(work.path("poses"), id_, sharp)
         assert [note.code for note in notes_on_focus(work, known, seen)] == said
-    notes = scan_of(unchanged, work).scan.notes
-    assert "px when the fan was calibrated: set the focus of camera and laser back" in " ".join(map(str, notes))
     work.path("poses").write_bytes(b"damaged")
     assert [note.code for note in notes_on_focus(work, known, seen)] != [], (
         "told, and the scan is measured all the same"
     )
 
 
-def test_stripes_that_are_skewed_otherwise_than_at_the_calibration_are_told_and_in_u(unchanged, tmp_path):
+def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_the_scan_and_in_u(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
     assert section_change(work, known, seen) is None
@@ -310,13 +308,14 @@ def test_stripes_that_are_skewed_otherwise_than_at_the_calibration_are_told_and_
 
     def skewed(line):
         slope = np.einsum("i,nij,nj->n", pi[:2], camera.ray_jacobian(camera.rays(line.uv)), line.normal)
-        return replace(line, skewness=line.skewness - 0.3 * np.sign(slope))
+        return replace(line, skewness=line.skewness - 0.3 * np.sign(slope), width=line.width / 1.8)
 
     poses = read_poses(work.path("poses"), id_)
     poses = [replace(pose, centrelines=tuple(map(skewed, pose.centrelines))) for pose in poses]
     write_poses(work.path("poses"), id_, poses)
     notes = scan_of(unchanged, work).scan.notes
     assert [note.code for note in notes[:2]] == ["scan.section_changed", "inspection.section_has_changed"]
+    assert "px when the fan was calibrated: set the focus of camera and laser back" in " ".join(map(str, notes))
     gauge = gauge_step(work)
     (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_skewed_fan"]
     assert row.u_mm > 1e-3
