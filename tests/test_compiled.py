@@ -64,8 +64,12 @@ print(*(hashlib.sha256((out / name).read_bytes()).hexdigest() for name in ("clou
 
 @pytest.fixture
 def package(tmp_path):
+    return put_package(tmp_path)
+
+
+def put_package(place):
     """A small package of the same name with a compiled function that calls one of another file."""
-    folder = tmp_path / "package" / "core"
+    folder = place / "package" / "core"
     folder.mkdir(parents=True)
     shutil.copy(compiled.__file__, folder)
     shutil.copy(processor.__file__, folder)
@@ -90,8 +94,25 @@ def ask(package, cache):
     return float(answer), int(made), Path(folder)
 
 
-def test_the_answer_changes_with_a_function_of_another_file(package, tmp_path):
-    assert ask(package, tmp_path / "cache")[:2] == (21.0, 2)
+@pytest.fixture(scope="module")
+def asked_once(tmp_path_factory):
+    """Such a package that has been asked, its cache, and the folder of the code in it; copy what is to be changed."""
+    folder = tmp_path_factory.mktemp("asked")
+    package = put_package(folder)
+    answer, made, code = ask(package, folder / "cache")
+    assert (answer, made) == (21.0, 2)
+    return package, folder / "cache", code
+
+
+def copies(asked_once, tmp_path):
+    """Package, cache and the folder of the code, to be changed."""
+    package, cache, code = asked_once
+    own = copy_of(cache, tmp_path / "cache")
+    return copy_of(package.parent, tmp_path / "package") / "core", own, own / code.relative_to(cache)
+
+
+def test_the_answer_changes_with_a_function_of_another_file(asked_once, tmp_path):
+    package, _, _ = copies(asked_once, tmp_path)
     assert ask(package, tmp_path / "cache")[:2] == (21.0, 0)
     (package / "callee.py").write_text(CALLEE.format(factor=3.0))
     assert ask(package, tmp_path / "cache")[:2] == (31.0, 2)
@@ -99,21 +120,22 @@ def test_the_answer_changes_with_a_function_of_another_file(package, tmp_path):
     assert ask(package, tmp_path / "cache")[:2] == (21.0, 0)
 
 
-def test_saved_code_goes_where_its_package_goes(package, tmp_path):
-    made_in = ask(package, tmp_path / "cache")[2]
-    shutil.copytree(made_in.parent, package / compiled.SHIPPED.name)
+def test_saved_code_goes_where_its_package_goes(asked_once, tmp_path):
+    package, _, made_in = asked_once
     elsewhere = shutil.copytree(package.parent, tmp_path / "installed") / "core"
+    shutil.copytree(made_in.parent, elsewhere / compiled.SHIPPED.name)
     assert ask(elsewhere, tmp_path / "another_cache")[:2] == (21.0, 0)
 
 
-def test_code_that_is_not_whole_is_made_anew(package, tmp_path):
-    for file in ask(package, tmp_path / "cache")[2].iterdir():
+def test_code_that_is_not_whole_is_made_anew(asked_once, tmp_path):
+    package, _, folder = copies(asked_once, tmp_path)
+    for file in folder.iterdir():
         file.write_bytes(file.read_bytes()[:-1])
     assert ask(package, tmp_path / "cache")[:2] == (21.0, 2)
 
 
-def test_what_nobody_has_used_for_long_is_removed(package, tmp_path):
-    folder = ask(package, tmp_path / "cache")[2]
+def test_what_nobody_has_used_for_long_is_removed(asked_once, tmp_path):
+    package, _, folder = copies(asked_once, tmp_path)
     old, recent = folder.parent / "old", folder.parent / "recent"
     old.mkdir()
     recent.mkdir()

@@ -23,7 +23,10 @@ def block():
     return scan, with_normals(scan.measure(np.random.default_rng(1), outliers=0.01))
 
 
-@pytest.fixture(scope="module", params=[9.0, 20.0], ids=["close stripes", "sparse stripes"])
+@pytest.fixture(
+    scope="module",
+    params=[pytest.param(9.0, marks=pytest.mark.accuracy, id="close stripes"), pytest.param(20.0, id="sparse stripes")],
+)
 def shapes(request):
     scan = ShapeScan(request.param)
     return scan, with_normals(scan.measure(np.random.default_rng(1), outliers=0.01))
