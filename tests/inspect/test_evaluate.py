@@ -73,7 +73,7 @@ def test_a_section_gives_the_height_between_two_stretches(cloud):
 
 
 @pytest.mark.parametrize("half_width", [0.5, 3.0])
-@pytest.mark.parametrize("lean", [0.0, 10.0])
+@pytest.mark.parametrize("lean", [pytest.param(0.0, marks=pytest.mark.accuracy), 10.0])
 def test_a_height_is_square_to_the_faces_however_the_sections_plane_leans_on_them(cloud, lean, half_width):
     angle, across = np.radians(lean), axes()[1]
     normal = np.cos(angle) * across + np.sin(angle) * NORMAL

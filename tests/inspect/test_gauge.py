@@ -44,7 +44,7 @@ def rows(result):
     return {row.source: row.u_mm for row in result.budget}
 
 
-@pytest.mark.parametrize("height", [20.0, 50.0])
+@pytest.mark.parametrize("height", [20.0, pytest.param(50.0, marks=pytest.mark.accuracy)])
 def test_thickness_found_without_being_told_where(height):
     scan = BlockScan(height=height, sweeps=40)
     cloud = scan.measure(np.random.default_rng(0), outliers=0.05)

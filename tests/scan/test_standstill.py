@@ -39,8 +39,10 @@ def moved():
     "kind",
     [
         "block",
-        "mask",
-        *(pytest.param(kind, marks=pytest.mark.accuracy) for kind in ("narrow-block", "steps", "sphere", "plane")),
+        *(
+            pytest.param(kind, marks=pytest.mark.accuracy)
+            for kind in ("mask", "narrow-block", "steps", "sphere", "plane")
+        ),
     ],
 )
 def test_a_scan_at_rest_is_not_suspected(kind):

@@ -44,7 +44,7 @@ def test_a_click_on_a_face_of_the_thickness_grows_over_all_of_it(done, faces, cl
     assert seed.at_px == pytest.approx(cloud.uv[faces[0]], abs=0.06)
 
 
-@pytest.mark.parametrize("swapped", [False, True])
+@pytest.mark.parametrize("swapped", [pytest.param(False, marks=pytest.mark.accuracy), True])
 def test_two_clicks_are_parallel_the_nearer_face_first_and_measure_the_thickness(done, faces, cloud, swapped):
     pair = clicked_faces(done.folder, faces[::-1] if swapped else faces)
     assert pair.parallel

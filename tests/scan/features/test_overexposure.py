@@ -55,7 +55,9 @@ def shine_in(seen):
     return notes_on_shine(seen.fan, [piece for frame in seen.frames for piece in frame.centrelines], 255.0)
 
 
-@pytest.mark.parametrize(("gloss", "stops"), [(3.0, (0.5, 1.0)), (20.0, (1.0, 2.5))])
+@pytest.mark.parametrize(
+    ("gloss", "stops"), [pytest.param(3.0, (0.5, 1.0), marks=pytest.mark.accuracy), (20.0, (1.0, 2.5))]
+)
 def test_a_glossy_part_is_told_with_how_much_less_to_expose(gloss, stops):
     (note,) = shine_of(replace(RIG, gloss=gloss))
     assert note.code == "scan.shines"

@@ -36,14 +36,14 @@ def told_of(scenario):
 @pytest.mark.parametrize(
     ("scenario", "codes"),
     [
-        (replace(RIG, speckle=0.1), []),
+        pytest.param(replace(RIG, speckle=0.1), [], marks=pytest.mark.accuracy),
         (RIG, []),
-        (replace(RIG, seed=2), []),
+        pytest.param(replace(RIG, seed=2), [], marks=pytest.mark.accuracy),
         (replace(RIG, speckle=0.35), [SPECKLED]),
-        (replace(RIG, speckle=0.35, seed=2), [SPECKLED]),
-        (replace(RIG, speckle=0.35, seed=4), [SPECKLED]),
-        (replace(RIG, speckle=0.6), [SPECKLED]),
-        (replace(RIG, scale=0.5, speckle=0.6), [SPECKLED]),
+        pytest.param(replace(RIG, speckle=0.35, seed=2), [SPECKLED], marks=pytest.mark.accuracy),
+        pytest.param(replace(RIG, speckle=0.35, seed=4), [SPECKLED], marks=pytest.mark.accuracy),
+        pytest.param(replace(RIG, speckle=0.6), [SPECKLED], marks=pytest.mark.accuracy),
+        pytest.param(replace(RIG, scale=0.5, speckle=0.6), [SPECKLED], marks=pytest.mark.accuracy),
     ],
 )
 def test_strong_speckle_is_told_and_no_other(scenario, codes):

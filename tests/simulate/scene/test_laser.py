@@ -1,6 +1,7 @@
 """Stripes, before and after the lens, against where plane and sphere really meet the sheet."""
 
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 
 import numpy as np
@@ -210,6 +211,7 @@ def test_an_object_does_not_shade_itself_where_it_faces_the_laser():
     assert (light[top] > 50).all()
 
 
+@cache
 def section_of(material: Material) -> tuple[np.ndarray, np.ndarray]:
     """Rows about a fan line on a facing plate of this material, and the light in them at one column."""
     corners = np.array([[-80.0, -80, 500], [80, -80, 500], [80, 80, 500], [-80, 80, 500]])

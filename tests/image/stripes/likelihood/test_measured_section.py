@@ -64,7 +64,7 @@ def found(shape: str, contrast: float, degrees: float, measured: bool = True) ->
     return float(np.mean(scatter)), float(np.mean(stated)), float(np.mean(mean))
 
 
-@pytest.mark.parametrize("degrees", [88.0, 50.0])
+@pytest.mark.parametrize("degrees", [88.0, pytest.param(50.0, marks=pytest.mark.accuracy)])
 @pytest.mark.parametrize(("shape", "share"), [("flat", 0.5), ("bar", 0.68)])
 def test_speckled_stripes_of_another_section_scatter_less_and_say_how_much(shape, share, degrees):
     before, after = found(shape, CONTRAST, degrees, measured=False), found(shape, CONTRAST, degrees)
@@ -73,7 +73,7 @@ def test_speckled_stripes_of_another_section_scatter_less_and_say_how_much(shape
 
 
 @pytest.mark.parametrize("shape", ["flat", "bar"])
-@pytest.mark.parametrize("degrees", [88.0, 50.0])
+@pytest.mark.parametrize("degrees", [88.0, pytest.param(50.0, marks=pytest.mark.accuracy)])
 def test_the_middle_of_a_line_stays_where_it_was_whatever_the_speckle(shape, degrees):
     """A calibration may have less speckle than a scan: what is called the middle must not depend on it."""
     still = found(shape, 0.0, degrees, measured=False)[2]
