@@ -77,6 +77,8 @@ class MainWindow(QMainWindow):
         resize_on_screen(self, 1280, 800)
         self.setAcceptDrops(True)
         self.projects = ProjectActions(bench, self)
+        self._current = ""
+        self.model.opened.connect(self._leave_page)  # before the presenters read what the page would show
         self.presenters: dict[str, StepPresenter] = {step.name: step.presenter(bench) for step in STEPS}
         self._scan_presenter().offer_whole(self._project_presenter().whole)
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
@@ -100,7 +102,6 @@ class MainWindow(QMainWindow):
         self._stack.addWidget(self._start)
         self._stack.addWidget(self._steps)
         self.setCentralWidget(self._stack)
-        self._current = ""
         self._task: Task | None = None
         self._remaining = Remaining({})
         self._left = False
@@ -381,15 +382,19 @@ class MainWindow(QMainWindow):
         _turn(self._stack, self.operator if self.operator_mode.on else self._steps)
         self._refresh()
 
+    def _leave_page(self) -> None:
+        """Tell the page that was shown that it no longer is: another project is open, or none."""
+        if self._current:
+            self.presenters[self._current].left()
+        self._current = ""
+
     def _project_opened(self) -> None:
         self.banner.hide()
         self.operator.banner.hide()
         if self.model.is_open:
-            self._current = ""
             self.go_to("project")
             self._show_mode()
         else:
-            self._current = ""
             _turn(self._stack, self._start)
             self.welcome.refresh()
         self._show_name()

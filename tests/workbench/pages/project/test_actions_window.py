@@ -68,3 +68,14 @@ def test_the_program_started_with_something_else_says_so_on_the_welcome_page(
     assert not technician.model.is_open
     assert technician.window.welcome.banner.isVisible()
     assert "is neither a project" in technician.errors()[0]
+
+
+def test_a_project_opened_from_the_page_of_the_report_draws_no_pages_that_nobody_looks_at(
+    window: MainWindow, project: Path, measured_project: Path
+) -> None:
+    window.model.open(project)
+    window.go_to("report")
+    report = window.presenters["report"]
+    window.model.open(measured_project)
+    assert window.current == "project"
+    assert report.ready() and not report.drawing  # type: ignore[attr-defined]
