@@ -76,7 +76,9 @@ class TaskBar(QWidget):
             self._bar.setRange(0, 0)
         else:
             self._bar.setRange(0, 1000)
+            self._bar.setUpdatesEnabled(False)  # else Qt draws it at once, and a 3D view's whole window with it
             self._bar.setValue(round(share * 1000))
+            self._bar.setUpdatesEnabled(True)
         self._left.setText(left)
 
     def cancelling(self) -> None:

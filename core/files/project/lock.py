@@ -34,6 +34,9 @@ from core.messages import Message
 
 LOCK = ".lock.json"
 
+Stamp = tuple[int, int, int, int]
+"""Which file it is, its size, and when it was written."""
+
 
 @dataclass(frozen=True, slots=True)
 class LockOwner:
@@ -73,9 +76,13 @@ class ProjectLock:
 
     def __init__(self, folder: Path, holder: LockOwner, handle: int) -> None:
         self.folder, self.holder, self._handle = folder, holder, handle
+        self._seen: Stamp | None = None
 
     def check(self) -> None:
         """InputError if this program no longer has the lock: another has taken it over, or the folder is gone."""
+        stamp = _stamp(self.folder / LOCK)
+        if stamp is not None and stamp == self._seen:
+            return  # a window asks many times a second: the file that was read is not read again
         holder = read_holder(self.folder)
         if holder is None:
             raise vanished(self.folder)
@@ -91,6 +98,7 @@ class ProjectLock:
                 where=self.folder,
                 todo=Message("advice.go_on_in_copy", "go on in a copy (File, Save a copy)"),
             )
+        self._seen = stamp
 
     def release(self) -> None:
         """Let others change the project."""
@@ -117,6 +125,19 @@ def read_holder(folder: Path) -> LockOwner | None:
         return checked_json(LockOwner, read_json(folder / LOCK), folder / LOCK)
     except InputError:
         return None
+
+
+def _stamp(path: Path) -> Stamp | None:
+    """Of the file as it is now; None if there is none. It is opened: a disk of the network tells old news else."""
+    try:
+        handle = os.open(path, os.O_RDONLY)
+    except OSError:
+        return None
+    try:
+        of = os.fstat(handle)
+    finally:
+        os.close(handle)
+    return of.st_dev, of.st_ino, of.st_size, of.st_mtime_ns
 
 
 def held_by(folder: Path) -> LockOwner | None:

@@ -56,6 +56,7 @@ class LiveLoop:
     ) -> None:
         self._context, self._step, self._commands, self._ready = context, step, commands, ready
         self._source: FrameSource = context.source
+        self._waiting_source = context.source if isinstance(context.source, WaitingSource) else None
         self._display = Display.of(context.request.rig, context.request.display_px)
         self._stopping = self._started = False
         self._waiting: deque[Command] = deque()
@@ -121,7 +122,7 @@ class LiveLoop:
 
         A source that waits is read when the last frame has been looked at: so every one is.
         """
-        if self._context.worker.busy and isinstance(self._source, WaitingSource) and self._source.waits:
+        if self._context.worker.busy and self._waiting_source is not None and self._waiting_source.waits:
             time.sleep(WORKING_LISTEN_S)
             return None
         try:

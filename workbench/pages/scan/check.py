@@ -81,7 +81,8 @@ class RigCheck(QObject):
     @property
     def problem(self) -> str:
         """Why the last check of the project as it is gave no result, or ""."""
-        return self._problem[1] if self._problem[0] == _key(self._model.project) else ""
+        made_of, problem = self._problem
+        return problem if problem and made_of == _key(self._model.project) else ""
 
     @property
     def cannot_check(self) -> str:

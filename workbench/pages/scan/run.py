@@ -71,7 +71,8 @@ class ScanRun(QObject):
     @property
     def problem(self) -> str:
         """Why the last measurement of the project as it is failed, or ""."""
-        return self._problem[1] if self._problem[0] == _key(self._model.project) else ""
+        made_of, problem = self._problem
+        return problem if problem and made_of == _key(self._model.project) else ""  # the key takes a millisecond
 
     def opened(self) -> None:
         """Another project: stop, and forget."""
