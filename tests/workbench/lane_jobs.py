@@ -1,4 +1,7 @@
-"""Jobs for the tests of lanes; they run in another process."""
+"""Jobs for the tests of lanes; they run in another process.
+
+Each of many processes imports this module: what takes long to import is imported by the job that needs it.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +10,15 @@ import sys
 import threading
 import time
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-import cv2
 import numpy as np
 
 from core.errors import InputError
-from core.files.project.data import Project, new_project
 from core.progress import Progress
+
+if TYPE_CHECKING:
+    from core.files.project.data import Project
 
 
 def double(value: int, progress: Progress) -> int:
@@ -130,6 +134,8 @@ def until_the_window_is_gone(place: str, channel: Any) -> None:
 
 
 def leaves_threads_that_compute() -> None:
+    import cv2
+
     def compute() -> None:
         picture = np.zeros((300, 300), np.uint8)
         while True:
@@ -140,4 +146,6 @@ def leaves_threads_that_compute() -> None:
 
 
 def project_to_measure(speaks: str, progress: Progress) -> Project:
+    from core.files.project.data import new_project
+
     return new_project("Sample")

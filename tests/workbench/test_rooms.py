@@ -77,7 +77,7 @@ def test_the_window_can_be_imported_without_the_large_libraries() -> None:
     import subprocess
     import sys
 
-    heavy = "('pyvista', 'vtkmodules', 'matplotlib', 'scipy.stats', 'numba', 'trimesh', 'networkx')"
+    heavy = "('pyvista', 'vtkmodules', 'matplotlib', 'scipy.stats', 'numba', 'trimesh', 'networkx', 'qtconsole', 'zmq')"
     code = f"import sys, workbench.app, workbench.main_window; print([m for m in {heavy} if m in sys.modules])"
     answer = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert answer.stdout.strip() == "[]"

@@ -2,6 +2,7 @@ from __future__ import annotations
 
 import sys
 import weakref
+from collections.abc import Iterator
 from typing import Any
 
 import pytest
@@ -10,7 +11,6 @@ from PySide6.QtCore import QObject
 from PySide6.QtWidgets import QApplication
 
 from core.errors import InputError
-from workbench.bench import Bench
 from workbench.language import text_of
 from workbench.work.jobs import Job
 from workbench.work.tasks import STOP_WITHIN_MS, Lane, Task
@@ -40,9 +40,13 @@ class Answers:
         )
 
 
-@pytest.fixture
-def lane(bench: Bench) -> Lane:
-    return bench.quick
+@pytest.fixture(scope="module")
+def lane(qapp: QApplication) -> Iterator[Lane]:
+    """One for all these tests, and with nothing warm: some end its process, and the next one is there soon."""
+    made = Lane("quick")
+    yield made
+    made.close()
+    made.wait_until_closed()
 
 
 def finish(qtbot: Any, lane: Lane, seconds: float = 20) -> None:
