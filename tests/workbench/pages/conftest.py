@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -13,7 +13,7 @@ import pytest
 from PySide6.QtWidgets import QApplication
 
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.camera.views import SeenView, SeenViews
+from core.calibrate.camera.views import SeenView, SeenViews, ViewsJudgement, judge_views
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.pictures import write_picture
@@ -90,11 +90,25 @@ def solve(folder: Path, project: Project, found: SeenViews) -> CameraCalibration
     return replace(solved(project.options, project.rig.camera_board))
 
 
+JUDGED: dict[tuple[int, frozenset[str]], tuple[CameraCalibration, ViewsJudgement]] = {}
+"""By the camera, which is kept alive beside it, and by what is left out."""
+
+
+def judge(seen: SeenViews, excluded: Collection[str], calibration: CameraCalibration | None) -> ViewsJudgement:
+    """The judgement of the views; of a calibration out of `solved` it is made once for all tests."""
+    if calibration is None or seen is not views():
+        return judge_views(seen, excluded, calibration)
+    key = id(calibration.camera), frozenset(excluded)
+    if key not in JUDGED:
+        JUDGED[key] = calibration, judge_views(seen, excluded, calibration)
+    return JUDGED[key][1]
+
+
 @pytest.fixture
 def camera_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     """An open project without pictures; the target is found at once in whatever it is given."""
     cast(HandLane, hand_bench.measuring).answers[jobs.FIND_VIEWS] = find
-    cast(HandLane, hand_bench.quick).answers[jobs.SOLVE_VIEWS] = solve
+    cast(HandLane, hand_bench.quick).answers |= {jobs.SOLVE_VIEWS: solve, jobs.JUDGE_VIEWS: judge}
     hand_bench.model.create(tmp_path / "project", new_project("block"))
     return hand_bench
 
