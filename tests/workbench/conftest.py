@@ -59,11 +59,32 @@ class SharedBench(Bench):
         lanes, end = (self.measuring, self.quick, self.live), time.monotonic() + STOPS_WITHIN_S
         for lane in lanes:
             lane.cancel_all()
-        while any(lane.busy for lane in lanes) and time.monotonic() < end:
+        while any(lane.busy and (time.monotonic() < end or is_importing(lane)) for lane in lanes):
             QCoreApplication.processEvents(QEventLoop.ProcessEventsFlag.WaitForMoreEvents)  # a lane has a timer, too
         for lane in lanes:
             if lane.busy:
                 lane.close()
+
+
+class SharedLane(Lane):
+    """Its process is not ended while it still imports: the next test's job would have to begin with that again."""
+
+    _answering: object = None
+
+    def _received(self, kind: int, number: int, body: bytes) -> None:
+        self._answering = self._process
+        super()._received(kind, number, body)
+
+    def _end_stubborn(self) -> None:
+        if is_importing(self):
+            self._stop_timer.start()
+        else:
+            super()._end_stubborn()
+
+
+def is_importing(lane: Lane) -> bool:
+    """Whether its process has been started and has not answered yet."""
+    return isinstance(lane, SharedLane) and lane._process is not None and lane._answering is not lane._process
 
 
 @pytest.fixture(autouse=True)
@@ -93,9 +114,9 @@ def garbage_stays_here() -> Iterator[None]:
 
 
 @pytest.fixture(scope="session")
-def lanes() -> Iterator[dict[str, Lane]]:
+def lanes() -> Iterator[dict[str, SharedLane]]:
     """Processes shared by all tests of this worker: starting one takes seconds."""
-    made: dict[str, Lane] = {}
+    made: dict[str, SharedLane] = {}
     yield made
     for lane in made.values():
         lane.close()
@@ -103,11 +124,12 @@ def lanes() -> Iterator[dict[str, Lane]]:
 
 
 @pytest.fixture
-def bench(qapp: QApplication, lanes: dict[str, Lane], tmp_path: Path) -> Iterator[Bench]:
+def bench(qapp: QApplication, lanes: dict[str, SharedLane], tmp_path: Path) -> Iterator[Bench]:
     """A bench as the program makes it, with settings and projects in a temporary folder."""
     for name in ("measuring", "quick", "live"):
         if name not in lanes:
-            lanes[name] = Lane(name, warm=(jobs.MEASURE_SCAN,))
+            # that of the live source is often started and seldom used
+            lanes[name] = SharedLane(name, warm=() if name == "live" else (jobs.MEASURE_SCAN,))
     settings = AppSettings(tmp_path / "settings.ini")
     settings.projects_folder = tmp_path / "projects"
     made = SharedBench(ProjectModel(), Notices(), settings, lanes["measuring"], lanes["quick"], lanes["live"])

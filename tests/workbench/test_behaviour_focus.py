@@ -32,43 +32,47 @@ def opened(t: Technician, project: Path) -> None:
     t.idle()
 
 
-def test_whatever_is_greyed_or_hidden_hands_its_focus_to_no_other_button(
+def test_the_focus_goes_to_no_other_button_where_one_is_greyed_or_hidden_or_its_page_is_left(
     technician: Technician, measured_project: Path
 ) -> None:
-    t, wrong = technician, []
-    opened(t, measured_project)
-    for page in ORDER:
-        t.window.go_to(page)
-        t.idle()
-        buttons = pressable(t.window)
-        assert len(buttons) > 3
-        for button in buttons:
-            for change, back in ((button.setDisabled, button.setEnabled), (button.setHidden, button.setVisible)):
-                button.setFocus()
-                if not button.hasFocus():  # one of a group: another is chosen
-                    continue
-                change(True)
-                now = QApplication.focusWidget()
-                if now is None or isinstance(now, QAbstractButton) or not now.isAncestorOf(button):
-                    wrong.append((page, named(button), change.__name__, now and named(now)))
-                back(True)
-    assert not wrong
-
-
-def test_whoever_comes_to_a_page_is_on_none_of_its_buttons(technician: Technician, measured_project: Path) -> None:
-    t, wrong = technician, []
+    t = technician
     opened(t, measured_project)
     for page, other in pairwise([*ORDER, ORDER[0]]):
         t.window.go_to(page)
         t.idle()
-        for button in pressable(t.page()):
+        assert grey_and_hide(t) == []
+        assert come_and_go(t, page, other) == []
+
+
+def grey_and_hide(t: Technician) -> list[tuple[object, ...]]:
+    """Whatever hands its focus to another button when it is greyed or hidden."""
+    wrong: list[tuple[object, ...]] = []
+    buttons = pressable(t.window)
+    assert len(buttons) > 3
+    for button in buttons:
+        for change, back in ((button.setDisabled, button.setEnabled), (button.setHidden, button.setVisible)):
             button.setFocus()
-            for to in (other, page):
-                t.window.go_to(to)
-                now = QApplication.focusWidget()
-                if now is None or (isinstance(now, QAbstractButton) and t.page().isAncestorOf(now)):
-                    wrong.append((named(button), to, now and named(now)))
-    assert not wrong
+            if not button.hasFocus():  # one of a group: another is chosen
+                continue
+            change(True)
+            now = QApplication.focusWidget()
+            if now is None or isinstance(now, QAbstractButton) or not now.isAncestorOf(button):
+                wrong.append((t.window.current, named(button), change.__name__, now and named(now)))
+            back(True)
+    return wrong
+
+
+def come_and_go(t: Technician, page: str, other: str) -> list[tuple[object, ...]]:
+    """Whatever button of a page has the focus when somebody comes to the page."""
+    wrong: list[tuple[object, ...]] = []
+    for button in pressable(t.page()):
+        button.setFocus()
+        for to in (other, page):
+            t.window.go_to(to)
+            now = QApplication.focusWidget()
+            if now is None or (isinstance(now, QAbstractButton) and t.page().isAncestorOf(now)):
+                wrong.append((named(button), to, now and named(now)))
+    return wrong
 
 
 def test_a_button_hidden_behind_a_question_does_not_hand_on_its_focus_afterwards(

@@ -42,19 +42,6 @@ def test_an_empty_project_says_on_each_page_what_is_missing(technician: Technici
         assert t.window.current == page
 
 
-def test_a_finished_project_lacks_nothing_on_any_page(technician: Technician, measured_project: Path) -> None:
-    t = technician
-    t.window.projects.open_project(measured_project)
-    for page in ORDER:
-        t.window.go_to(page)
-        t.idle()
-        assert t.presenter().blocker() == "", page
-        if page != ORDER[-1]:
-            assert t.window.next.isEnabled(), page
-            assert t.window.missing.text() == ""
-    assert t.errors() == []
-
-
 def test_the_sentence_goes_when_what_is_missing_comes_and_comes_back_with_undo(
     technician: Technician, tmp_path: Path
 ) -> None:
@@ -68,7 +55,9 @@ def test_the_sentence_goes_when_what_is_missing_comes_and_comes_back_with_undo(
     assert t.window.next.toolTip() == MISSING["project"]
 
 
-def test_the_theme_is_switched_on_every_page(technician: Technician, measured_project: Path) -> None:
+def test_a_finished_project_lacks_nothing_and_the_theme_is_switched_on_any_page(
+    technician: Technician, measured_project: Path
+) -> None:
     t = technician
     t.bench.settings.theme = "light"
     t.activate()
@@ -78,6 +67,10 @@ def test_the_theme_is_switched_on_every_page(technician: Technician, measured_pr
     for page in ORDER:
         t.window.go_to(page)
         t.idle()
+        assert t.presenter().blocker() == "", page
+        if page != ORDER[-1]:
+            assert t.window.next.isEnabled()
+            assert t.window.missing.text() == ""
         before = is_dark()
         for dark in (not before, before):
             t.shortcut(Qt.Key.Key_T)

@@ -14,7 +14,14 @@ AT_MOST_S = 20.0
 """Of processor time, which other work on the machine hardly changes; usual are 3 to 5 s."""
 
 
-@pytest.mark.parametrize("opengl", ["", "1"], ids=["as it is", "no OpenGL"])
+@pytest.mark.parametrize(
+    "opengl",
+    [
+        pytest.param("", id="as it is"),
+        # the program of tests/workbench/test_behaviour_crash.py runs without, too
+        pytest.param("1", id="no OpenGL", marks=pytest.mark.accuracy),
+    ],
+)
 def test_the_program_starts_soon_imports_nothing_that_can_wait_and_ends_well(tmp_path: Path, opengl: str) -> None:
     environment = os.environ | {
         "HOME": str(tmp_path),

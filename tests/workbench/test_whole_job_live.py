@@ -14,8 +14,8 @@ import pytest
 from core.pipeline.steps.workspace import FILES
 from tests.workbench.technician import Technician
 
-SCENE = "scale = 0.25\nseed = 3\n"
-VIEWS, POSES, FRAMES = 7, 5, 40
+SCENE = "scale = 0.2\nseed = 3\n"
+VIEWS, POSES, FRAMES = 6, 4, 20
 
 
 @pytest.mark.slow

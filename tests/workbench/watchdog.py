@@ -22,6 +22,8 @@ from PySide6.QtCore import QObject, QTimer
 
 BEAT_MS = 5
 LOOK_S = 0.008
+CHANGES_MS = 0.5
+"""A thread that was busy for less has not got into another situation; to ask would take longer than that."""
 DEPTH = 7
 ROOT = Path(__file__).parents[2]
 
@@ -105,7 +107,8 @@ class Watchdog(QObject):
             self.absences.append(
                 Absence(away, 1e3 * (clock - self._clock), clock - self._started, self._situation, where[:12])
             )
-        self._situation = self._during()
+        if away >= CHANGES_MS:
+            self._situation = self._during()
         self._busy, self._clock = time.thread_time(), time.perf_counter()
 
     def _look(self, number: int, frame: FrameType | None) -> None:

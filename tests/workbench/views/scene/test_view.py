@@ -824,17 +824,6 @@ def test_the_libraries_come_while_the_view_waits(ready, unknown, qtbot):
     view.close()
 
 
-def test_libraries_that_cannot_be_imported_leave_a_sentence(ready, unknown, qtbot, monkeypatch, caplog):
-    def broken(name):
-        raise ImportError(name)
-
-    monkeypatch.setattr(ready_module.importlib, "import_module", broken)
-    with qtbot.waitSignal(unknown.known, timeout=30_000):
-        unknown.find_out()
-    assert unknown.kind == "none"
-    assert "cannot be imported" in caplog.text
-
-
 def test_it_is_embedded_where_a_window_has_opengl_and_else_a_picture_with_one_notice(ready, qtbot, monkeypatch):
     monkeypatch.setattr(ready, "notified", frozenset())
     said, views = [], [SceneView(), SceneView()]

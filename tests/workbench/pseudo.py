@@ -1,17 +1,15 @@
-"""No text of the window is told past the catalogues: in the pseudo-language each of them has its accents."""
+"""Texts of a window that are told past the catalogues: in the pseudo-language each other one has its accents."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator
-from pathlib import Path
 
 from PySide6.QtCore import QAbstractItemModel, QAbstractListModel, QModelIndex, Qt
 from PySide6.QtGui import QAction
 from PySide6.QtWidgets import (
     QAbstractButton,
     QAbstractItemView,
-    QApplication,
     QComboBox,
     QGroupBox,
     QLabel,
@@ -20,12 +18,6 @@ from PySide6.QtWidgets import (
     QTabBar,
     QWidget,
 )
-
-from core.translations import PSEUDO, language
-from workbench.app import build_window
-from workbench.bench import Bench
-from workbench.language import choose
-from workbench.steps import STEPS
 
 FOREIGN = (
     "Trisect",
@@ -95,32 +87,3 @@ def told_past_the_catalogues(window: QWidget, foreign: re.Pattern[str]) -> dict[
             if english(foreign.sub(" ", text)):
                 found[text] = f"{type(widget).__name__} {widget.objectName()}".strip()
     return found
-
-
-def test_every_text_of_every_page_comes_from_a_catalogue(
-    bench: Bench, qapp: QApplication, qtbot, measured_project: Path
-) -> None:
-    sheet = qapp.styleSheet()
-    choose(language(PSEUDO), qapp)
-    try:
-        window = build_window(qapp, bench, "light")
-        qtbot.addWidget(window)
-        bench.model.open(measured_project)
-        info = bench.model.project.info
-        names = [re.escape(name) for name in (info.name, info.part, info.operator) if name]
-        foreign = re.compile("|".join([rf"\b{name}\b" for name in (*names, *FOREIGN)]))
-        window.show()
-        found: dict[str, str] = {}
-        seen = 0
-        for step in STEPS:
-            window.go_to(step.name)
-            qtbot.wait(100)
-            qtbot.waitUntil(lambda: not bench.quick.busy, timeout=60_000)
-            found |= told_past_the_catalogues(window, foreign)
-            seen = max(seen, sum("⟦" in text for one in window.findChildren(QWidget) for text in texts_of(one)))
-        window.dismiss()
-    finally:
-        choose(language("en"), qapp)
-        qapp.setStyleSheet(sheet)
-    assert seen > 500  # the window does speak the pseudo-language
-    assert found == {}
