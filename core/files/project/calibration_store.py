@@ -40,6 +40,8 @@ Kind = Literal["camera", "fan"]
 
 _FILES: Mapping[Kind, str] = {"camera": "camera", "fan": "planes"}
 _KEPT = ".kept.json"
+READJUSTED_FROM = "readjusted_from"
+"""Setting of a fan that was re-adjusted: the id of the calibration it was before, whose poses are kept with it."""
 
 IMPORTED = "imported"
 """Among the settings of a camera taken from another program: its file."""

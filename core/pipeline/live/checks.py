@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from datetime import datetime
 
 from core.errors import InputError
-from core.files.project.calibration_store import read_stored_poses
+from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_poses
 from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
@@ -48,8 +48,9 @@ class ScanChecks:
 
     def accepted(self) -> None:
         """A reference has been taken."""
-        camera, fan = self._context.request.camera, self._context.request.fan
-        if camera is not None and fan is not None:
+        request = self._context.request
+        camera, fan = request.camera, request.fan
+        if camera is not None and fan is not None and not _is_readjusted(request):
             stripes = [piece for pieces in self._previewer.fan_lines for piece in pieces]
             changed = changed_section(self._poses, stripes, camera, fan)
             self._section = None if changed is None else changed.note
@@ -115,3 +116,15 @@ def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]
         return tuple(pose.centrelines for pose in read_stored_poses(*request.kept_fan))
     except InputError:
         return ()
+
+
+def _is_readjusted(request: LiveRequest) -> bool:
+    """Whether the fan rests on stripes seen since its poses, or that is not known: then these are not compared."""
+    if request.kept_fan is None:
+        return False
+    folder, id_ = request.kept_fan
+    try:
+        kept = read_stored(folder, "fan", id_)
+    except InputError:
+        return True
+    return kept is not None and READJUSTED_FROM in kept.settings

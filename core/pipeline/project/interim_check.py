@@ -8,6 +8,7 @@ from pathlib import Path
 from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
 from core.files.project.calibration_store import (
+    READJUSTED_FROM,
     keep_fan,
     put_in_place,
     read_stored,
@@ -147,7 +148,7 @@ def accept_readjustment(
         proposed.fan,
         camera.camera,
         read_stored_poses(folder, project.accepted.fan),
-        {**({} if before is None else before.settings), "readjusted_from": project.accepted.fan},
+        {**({} if before is None else before.settings), READJUSTED_FROM: project.accepted.fan},
         {**({} if before is None else before.inputs), **proposed.record.hashes},
     )
 

@@ -1,3 +1,4 @@
+import json
 import time
 from dataclasses import replace
 
@@ -8,6 +9,7 @@ from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.pictures import is_picture, read_picture, write_picture
+from core.files.project.calibration_store import READJUSTED_FROM
 from core.files.recording.features_file import write_poses
 from core.files.recording.marks import marked_frames
 from core.files.recording.options import Options
@@ -483,7 +485,7 @@ def test_before_a_scan_what_it_needs_is_looked_at_and_told(monkeypatch, tmp_path
 def focus_of_fan_calibrated_with(stripes, monkeypatch, folder, stage):
     """The check of a scan's focus where these stripes were seen in four poses of the fan's calibration."""
     history = folder / "calibrations"
-    history.mkdir()
+    history.mkdir(exist_ok=True)
     (history / "planes-f1.json").touch()
     write_poses(history / "planes-f1.npz", "f1", [PoseFeatures(f"pose{k}", None, stripes) for k in range(4)])
     window = Window()
@@ -498,6 +500,19 @@ def test_stripes_that_reach_further_to_one_side_than_at_the_calibration_are_told
     stripes = tuple(replace(piece, skewness=piece.skewness + 0.6 * np.sign(piece.normal[:, 0])) for piece in seen)
     focus = focus_of_fan_calibrated_with(stripes, monkeypatch, tmp_path, stage)
     assert (focus.state, focus.message.code) == ("failed", "scan.section_changed")
+
+
+@pytest.mark.parametrize("damaged", [False, True])
+def test_a_fan_that_is_or_may_be_readjusted_since_is_not_held_to_the_sections_of_its_calibration(
+    monkeypatch, tmp_path, stage, damaged
+):
+    seen = read_reference(stage.reference).fan
+    stripes = tuple(replace(piece, skewness=piece.skewness + 0.6 * np.sign(piece.normal[:, 0])) for piece in seen)
+    kept = {"kind": "fan", "id": "f1", "kept_at": "2026-11-27T08:00:00+00:00", "used": 4, "total": 4}
+    about = {**kept, "settings": {READJUSTED_FROM: "f0"}}
+    (tmp_path / "calibrations").mkdir()
+    (tmp_path / "calibrations" / "planes-f1.kept.json").write_text("{" if damaged else json.dumps(about))
+    assert focus_of_fan_calibrated_with(stripes, monkeypatch, tmp_path, stage).state == "ok"
 
 
 @pytest.mark.parametrize(("sharper", "state"), [(1.0, "ok"), (2.0, "failed")])
