@@ -110,7 +110,7 @@ def build_report(content: ReportContent, progress: Progress = silent) -> bytes:
         limits = replace(step_limits, picture_scale=step_limits.picture_scale * shorter)
         longest = None if step_limits is LIMITS[-1] else most_pages
         try:
-            tried = _typeset(look, content, pictures, limits, most_pages, longest, _Trial)
+            tried = _typeset(look, content, pictures, limits, most_pages, longest, trial=True)
         except _TooLongError:
             continue
         break
@@ -131,7 +131,7 @@ def _without_last_page(
         if smaller.picture_scale < LEAST_SCALE:
             break
         try:
-            return smaller, _typeset(look, content, pictures, smaller, tried.pages - 1, tried.pages - 1, _Trial)
+            return smaller, _typeset(look, content, pictures, smaller, tried.pages - 1, tried.pages - 1, trial=True)
         except _TooLongError:
             continue
     return limits, tried
@@ -201,9 +201,10 @@ def _typeset(
     limits: Limits,
     pages: int,
     most_pages: int | None = None,
-    canvas_kind: type[Canvas] = Canvas,
+    *,
+    trial: bool = False,
 ) -> _Typeset:
-    """Lay everything out. `pages` is what the foot of each page says.
+    """Lay everything out. `pages` is what the foot of each page says; of a `trial` nothing is drawn.
 
     Raises
     ------
@@ -226,8 +227,7 @@ def _typeset(
         initialFontName=SANS,
         lang=content.language,
     )
-    frame_kind = _TrialFrame if canvas_kind is _Trial else Frame
-    frame = frame_kind(
+    frame = (_TrialFrame if trial else Frame)(
         margin,
         FOOT,
         TEXT_WIDTH,
@@ -247,7 +247,7 @@ def _typeset(
         _foot(canvas, look, content, pages, margin)
 
     document.addPageTemplates(PageTemplate("page", [frame], onPage=on_page))
-    document.build(story(look, content, pictures, limits), canvasmaker=canvas_kind)
+    document.build(story(look, content, pictures, limits), canvasmaker=_Trial if trial else Canvas)
     filled = 1 - (document.frame._y - document.frame._y1p) / _page_room(content.paper)
     return _Typeset(document.page, filled, stream.getvalue())
 

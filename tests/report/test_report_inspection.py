@@ -181,7 +181,7 @@ def test_studies_are_printed_with_figures_and_notes(data):
 
 @pytest.mark.parametrize(("fits_at", "pages"), [(0.9, 4), (0.6, 5)])
 def test_pictures_become_smaller_to_save_a_last_page_with_hardly_anything_on_it(monkeypatch, content, fits_at, pages):
-    def typeset(look, content, pictures, limits, pages, longest, kind):
+    def typeset(look, content, pictures, limits, pages, longest, *, trial):
         if limits.picture_scale > fits_at:
             raise pdf._TooLongError
         return pdf._Typeset(longest, 0.9, b"")
