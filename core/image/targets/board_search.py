@@ -187,12 +187,13 @@ def _seed_grids(picture: NDArray[np.uint8], saddles: _Saddles, known: list[Array
     points, strength = saddles.points, saddles.strength
     if len(points) < 9:
         return
-    near = np.asarray(cKDTree(points).query(points, k=min(NEIGHBOURS, len(points)))[1], dtype=np.intp)
+    tree = cKDTree(points)
     tries = 0
     for k, point in enumerate(points):
         if any(_within(grid, point) for grid in known):
             continue
-        around = near[k][strength[near[k]] >= ALIKE * strength[k]]
+        near = np.asarray(tree.query(point, k=min(NEIGHBOURS, len(points)))[1], dtype=np.intp)
+        around = near[strength[near] >= ALIKE * strength[k]]
         crossed = np.cos(2 * (saddles.turn[around] - saddles.turn[k]))  # +1 alike, −1 a right angle; NaN: not known
         seed = _seed(picture, points[around], saddles.edges[k], crossed)
         if seed is not None:

@@ -35,6 +35,9 @@ smoothed by 1 px. It grows with the root of a smaller window."""
 AT_A_TIME = 16
 """Corners whose windows are looked at together: those of all of them would be many times the picture."""
 
+_ACROSS, _DOWN = np.mgrid[-1:2, -1:2].reshape(2, 9, 1)
+"""From a pixel to itself and its eight neighbours."""
+
 
 def spacing(grid: Array) -> Array:
     """Distance (R, C) in pixels from each corner of `grid` (R, C, 2) to its nearest neighbour."""
@@ -60,7 +63,7 @@ def squares_around(picture: Picture, corner: Array, along: Array, down: Array, s
         u, v = np.rint(corner + share * (a * along + b * down)).astype(int).T
         inside = (u >= 1) & (v >= 1) & (u < width - 1) & (v < height - 1)
         u, v = u[inside], v[inside]
-        levels[inside, k] = np.mean([picture[v + j, u + i] for i in (-1, 0, 1) for j in (-1, 0, 1)], axis=0)
+        levels[inside, k] = picture[v + _DOWN, u + _ACROSS].mean(axis=0)
     return levels
 
 

@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.image.targets.picture import without_stripes
+from core.image.targets.picture import level_quantiles, without_stripes
 from core.model.arrays import Array
 
 STRIPE_WIDTHS = (1, 7, 13, 21)
@@ -37,9 +37,9 @@ def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
     found: list[Array] = []
     for width in STRIPE_WIDTHS:
         opened = picture if width == 1 else without_stripes(picture, width)
-        darkest, lightest = np.quantile(opened[::4, ::4], [0.01, 0.99])
+        darkest, lightest = level_quantiles(opened[::4, ::4], 0.01, 0.99)
         for mask in _thresholded(opened):
-            whole, cut = _quadrilaterals(opened, mask, float(lightest - darkest))
+            whole, cut = _quadrilaterals(opened, mask, lightest - darkest)
             cut_off = max(cut_off, cut)
             large = [quad for quad in whole if _sides(quad).min() >= 3 * width]
             found.extend(quad for quad in large if width == 1 or _mostly_dark(picture, opened, quad))
@@ -131,8 +131,7 @@ def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Ar
     inside = np.zeros(picture.shape, dtype=np.uint8)
     cv2.fillConvexPoly(inside, corners - (left, top), 1)
     before, after = picture[inside > 0], opened[inside > 0]
-    lightest = float(np.quantile(before, 0.98))
-    middle = (float(np.median(after)) + lightest) / 2
+    middle = (level_quantiles(after, 0.5)[0] + level_quantiles(before, 0.98)[0]) / 2
     if float(np.mean(before < middle)) < 0.5:
         return False
     dark = np.where((picture < middle) & (inside > 0), 255, 0).astype(np.uint8)
