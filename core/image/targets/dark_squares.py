@@ -106,17 +106,17 @@ def _dark_on_light(picture: NDArray[np.uint8], quad: Array, contrast: float) -> 
     """Whether the inside is dark throughout and lighter ground lies beyond every side, by the picture's contrast."""
     centre = quad.mean(axis=0)
     shares = np.linspace(0.15, 0.85, 25)[:, None]
-    inside: list[float] = []
+    levels: list[Array] = []
     outside: list[float] = []
     for start, end in zip(quad, np.roll(quad, -1, axis=0), strict=True):
         side = start + shares * (end - start)
         out = np.array([end[1] - start[1], start[0] - end[0]]) / np.linalg.norm(end - start)
         reach = max(3.0, 0.04 * float(np.linalg.norm(end - start)))
         outside.append(float(np.median(_levels(picture, side + reach * out))))
-        inside.extend(_levels(picture, side - reach * out))
-        inside.extend(_levels(picture, centre + 0.4 * (side - centre)))
+        levels += [_levels(picture, side - reach * out), _levels(picture, centre + 0.4 * (side - centre))]
+    inside = np.concatenate(levels)
     step = min(outside) - float(np.median(inside))
-    return step > 0.15 * contrast and float(np.mean(np.array(inside) < min(outside) - 0.4 * step)) > 0.8
+    return step > 0.15 * contrast and float(np.mean(inside < min(outside) - 0.4 * step)) > 0.8
 
 
 def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:

@@ -66,11 +66,13 @@ def grey_range(picture: Picture) -> tuple[float, float]:
 def level_quantiles(levels: Picture, *shares: float) -> list[float]:
     """What :func:`numpy.quantile` gives for grey `levels` of any shape, counted: there are far more pixels."""
     upto = np.cumsum(np.bincount(levels.ravel()))
-    quantiles = []
+    quantiles: list[float] = []
     for share in shares:
         place = share * (levels.size - 1)
-        below, above = np.searchsorted(upto, [np.floor(place), np.ceil(place)], side="right")
-        quantiles.append(float(np.quantile([below, above], place - np.floor(place))))
+        below, above = np.searchsorted(upto, [np.floor(place), np.ceil(place)], side="right").tolist()
+        share_above = place - np.floor(place)
+        step = float(above - below)  # rounded as numpy does
+        quantiles.append(below + step * share_above if share_above < 0.5 else above - step * (1 - share_above))
     return quantiles
 
 
