@@ -17,7 +17,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.camera.reprojection import camera_of, linearise, moved, parameters_of
+from core.calibrate.camera.reprojection import all_moved, camera_of, linearise_turned, parameters_of
 from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.model.robust import huber_weights
@@ -82,8 +82,53 @@ class Normal:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Block:
-    """One view's share of the normal equations: camera, camera–pose and pose."""
+class _Together:
+    """All views' corners behind one another: NumPy is quicker on all of them at once than on each view in turn.
+
+    `view` (N,): the view that each corner is of; `parts`: each view's corners.
+    """
+
+    corners: Observed
+    view: NDArray[np.intp]
+    parts: tuple[slice, ...]
+
+    @classmethod
+    def of(cls, views: Sequence[Observed]) -> _Together:
+        corners = Observed(
+            np.concatenate([np.zeros((0, 3)), *(view.points for view in views)]),
+            np.concatenate([np.zeros((0, 2)), *(view.uv for view in views)]),
+            np.concatenate([np.zeros(0), *(view.weights for view in views)]),
+        )
+        counts = [len(view.uv) for view in views]
+        ends = np.cumsum(counts).tolist()
+        parts = tuple(slice(end - count, end) for end, count in zip(ends, counts, strict=True))
+        return cls(corners, np.repeat(np.arange(len(views)), counts), parts)
+
+    def turned(self, poses: Sequence[Pose]) -> tuple[Array, Array]:
+        """The points (N, 3) turned by their view's pose, and shifted by it as well, in mm."""
+        points = self.corners.points
+        turned = np.concatenate(
+            [np.zeros((0, 3)), *(points[part] @ pose.rotation.T for part, pose in zip(self.parts, poses, strict=True))]
+        )
+        shift = np.array([pose.translation for pose in poses]).reshape(-1, 3)
+        return turned, turned + shift[self.view]
+
+    def cost(self, bundle: Bundle) -> float:
+        """The weighted sum of squared residuals; not finite where a point is not in front of the camera."""
+        _, position = self.turned(bundle.poses)
+        with np.errstate(all="ignore"):
+            missing = self.corners.uv - bundle.camera.project(position)
+            missing[np.isin(self.view, self.view[position[:, 2] < _NEAREST_MM])] = np.inf
+            squares = np.sum(missing**2, axis=1)
+            return sum(float(self.corners.weights[part] @ squares[part]) for part in self.parts)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Blocks:
+    """The V views' shares of the normal equations: camera (V, F, F), camera–pose (V, F, 6) and pose (V, 6, 6).
+
+    With the gradients (V, F) and (V, 6).
+    """
 
     camera: Array
     mixed: Array
@@ -91,19 +136,27 @@ class _Block:
     camera_gradient: Array
     pose_gradient: Array
 
-    def damped(self, damping: float) -> _Block:
-        """With Marquardt's multiple of its diagonal added."""
+    def damped(self, damping: float) -> _Blocks:
+        """With Marquardt's multiple of their diagonals added."""
         return replace(
-            self,
-            camera=self.camera + damping * np.diag(np.diag(self.camera)),
-            pose=self.pose + damping * np.diag(np.diag(self.pose)),
+            self, camera=_with_more_diagonal(self.camera, damping), pose=_with_more_diagonal(self.pose, damping)
         )
 
     def reduced(self) -> tuple[Array, Array]:
-        """Information and gradient of the camera alone."""
-        eliminated = np.linalg.solve(self.pose, np.column_stack([self.mixed.T, self.pose_gradient]))
-        information = self.camera - self.mixed @ eliminated[:, :-1]
-        return information, self.camera_gradient - self.mixed @ eliminated[:, -1]
+        """Information (F, F) and gradient (F,) of the camera alone."""
+        right = np.concatenate([self.mixed.transpose(0, 2, 1), self.pose_gradient[:, :, None]], axis=2)
+        eliminated = np.linalg.solve(self.pose, right)
+        information = self.camera - self.mixed @ eliminated[:, :, :-1]
+        gradient = self.camera_gradient - (self.mixed @ eliminated[:, :, -1:])[:, :, 0]
+        return information.sum(axis=0), gradient.sum(axis=0)
+
+
+def _with_more_diagonal(matrices: Array, damping: float) -> Array:
+    """Square matrices (V, K, K) with their diagonals 1 + `damping` times as large."""
+    more = matrices.copy()
+    index = np.arange(matrices.shape[1])
+    more[:, index, index] += damping * matrices[:, index, index]
+    return more
 
 
 def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tolerance: float = 1e-12) -> Bundle:
@@ -112,12 +165,13 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
     `free` are the indices (F,) of the camera's free parameters in CAMERA_PARAMETERS; none means that only the poses
     are found. Stops when a step gains less than `tolerance` of the cost.
     """
-    current, cost = start, _cost(start, views)
+    together = _Together.of(views)
+    current, cost = start, together.cost(start)
     damping: float = _FIRST_DAMPING
-    blocks = _blocks(current, views, free)
+    blocks = _blocks(current, together, free)
     for _ in range(_MOST_ITERATIONS):
-        proposal = _step(current, [block.damped(damping) for block in blocks], free)
-        proposed = np.inf if proposal is None else _cost(proposal, views)
+        proposal = _step(current, blocks.damped(damping), free)
+        proposed = np.inf if proposal is None else together.cost(proposal)
         if proposal is None or not proposed <= cost:
             damping *= _DAMPING_FACTOR
             if damping > _MOST_DAMPING:
@@ -127,7 +181,7 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
         damping = max(damping / _DAMPING_FACTOR, _LEAST_DAMPING)
         if gain <= tolerance * cost:
             break
-        blocks = _blocks(current, views, free)
+        blocks = _blocks(current, together, free)
     return current
 
 
@@ -174,60 +228,49 @@ def normal_equations(
     """
     information, gradients = [], []
     for index, (pose, view) in enumerate(zip(bundle.poses, views, strict=True)):
-        unknowns, by_pose, missing = _weighted(bundle.camera, pose, view, free)
+        unknowns, by_pose, missing = _weighted(Bundle(bundle.camera, (pose,)), _Together.of([view]), free)
         if target_changes is not None:
             by_target = by_pose.reshape(-1, 2, 6)[..., 3:] @ pose.rotation @ target_changes[index]
             unknowns = np.hstack([unknowns, by_target.reshape(len(unknowns), -1)])
         alone = unknowns - by_pose @ np.linalg.lstsq(by_pose, unknowns, rcond=None)[0]
         information.append(alone.T @ alone)
         gradients.append((alone * missing[:, None]).reshape(-1, 2, alone.shape[1]).sum(axis=1))
-    return Normal(np.array(information), tuple(gradients), _cost(bundle, views))
+    return Normal(np.array(information), tuple(gradients), _Together.of(views).cost(bundle))
 
 
-def _cost(bundle: Bundle, views: Sequence[Observed]) -> float:
-    total = 0.0
-    for pose, view in zip(bundle.poses, views, strict=True):
-        with np.errstate(over="ignore", invalid="ignore"):
-            total += float(view.weights @ np.sum(residuals(bundle.camera, pose, view) ** 2, axis=1))
-    return total
-
-
-def _weighted(camera: Camera, pose: Pose, view: Observed, free: NDArray[np.intp]) -> tuple[Array, Array, Array]:
+def _weighted(bundle: Bundle, views: _Together, free: NDArray[np.intp]) -> tuple[Array, Array, Array]:
     """Derivatives (2N, F) and (2N, 6) and residuals (2N,), each row times the root of its weight."""
-    uv, by_camera, by_pose = linearise(camera, pose, view.points)
-    root = np.sqrt(np.repeat(view.weights, 2))
+    uv, by_camera, by_pose = linearise_turned(bundle.camera, *views.turned(bundle.poses))
+    root = np.sqrt(np.repeat(views.corners.weights, 2))
     columns = root[:, None]
     return (
         by_camera.reshape(-1, 10)[:, free] * columns,
         by_pose.reshape(-1, 6) * columns,
-        (view.uv - uv).ravel() * root,
+        (views.corners.uv - uv).ravel() * root,
     )
 
 
-def _blocks(bundle: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> list[_Block]:
+def _blocks(bundle: Bundle, views: _Together, free: NDArray[np.intp]) -> _Blocks:
+    weighted = _weighted(bundle, views, free)
     blocks = []
-    for pose, view in zip(bundle.poses, views, strict=True):
-        camera, posing, missing = _weighted(bundle.camera, pose, view, free)
-        blocks.append(
-            _Block(camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing)
-        )
-    return blocks
+    for part in views.parts:
+        camera, posing, missing = (rows[2 * part.start : 2 * part.stop] for rows in weighted)
+        blocks.append((camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing))
+    return _Blocks(*(np.array(each) for each in zip(*blocks, strict=True)))
 
 
-def _step(current: Bundle, blocks: Sequence[_Block], free: NDArray[np.intp]) -> Bundle | None:
+def _step(current: Bundle, blocks: _Blocks, free: NDArray[np.intp]) -> Bundle | None:
     """The bundle one Gauss–Newton step further, or None where there is no such step."""
     parameters = parameters_of(current.camera)
     change = np.zeros(len(free))
     try:
         if len(free):
-            reduced = [block.reduced() for block in blocks]
-            information = np.sum([part for part, _ in reduced], axis=0)
+            information, gradient = blocks.reduced()
             scale = 1 / np.sqrt(np.maximum(np.diag(information), 1e-300))
-            gradient = np.sum([part for _, part in reduced], axis=0)
             change = scale * np.linalg.solve(information * np.outer(scale, scale), scale * gradient)
         parameters[free] += change
-        steps = [np.linalg.solve(block.pose, block.pose_gradient - block.mixed.T @ change) for block in blocks]
-        poses = tuple(moved(pose, np.asarray(step)) for pose, step in zip(current.poses, steps, strict=True))
+        steps = np.linalg.solve(blocks.pose, (blocks.pose_gradient - change @ blocks.mixed)[:, :, None])
+        poses = all_moved(current.poses, np.asarray(steps[:, :, 0], dtype=np.float64))
         return Bundle(camera_of(parameters, current.camera.image_size), poses)
     except (np.linalg.LinAlgError, ValueError):
         return None  # singular, or a focal length below zero: the caller damps more

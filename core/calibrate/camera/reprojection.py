@@ -6,6 +6,8 @@ in rad, applied in front of the rotation, and a shift of the translation in mm: 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from scipy.spatial.transform import Rotation
 
@@ -27,8 +29,16 @@ def camera_of(parameters: Array, image_size: tuple[int, int]) -> Camera:
 
 def moved(pose: Pose, step: Array) -> Pose:
     """Change a pose by a small step (6,): rotation vector in rad, then shift in mm."""
-    turn = Rotation.from_rotvec(step[:3]).as_matrix()
-    return Pose(turn @ pose.rotation, pose.translation + step[3:])
+    return all_moved([pose], step[None])[0]
+
+
+def all_moved(poses: Sequence[Pose], steps: Array) -> tuple[Pose, ...]:
+    """Change each of V poses by its own of small `steps` (V, 6), as `moved` does."""
+    turns = Rotation.from_rotvec(steps[:, :3]).as_matrix()
+    return tuple(
+        Pose(turn @ pose.rotation, pose.translation + step[3:])
+        for pose, turn, step in zip(poses, turns, steps, strict=True)
+    )
 
 
 def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, Array]:
@@ -40,7 +50,14 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
     per mm.
     """
     turned = points @ pose.rotation.T
-    position = turned + pose.translation
+    return linearise_turned(camera, turned, turned + pose.translation)
+
+
+def linearise_turned(camera: Camera, turned: Array, position: Array) -> tuple[Array, Array, Array]:
+    """As `linearise`, of points (N, 3) that poses turned but did not shift, and of their `position` (N, 3).
+
+    The poses may be many: what each changes is what it does to its own points.
+    """
     inverse_z = 1 / position[:, 2]
     xy = position[:, :2] * inverse_z[:, None]
     distorted = camera.distort(xy)
@@ -49,11 +66,11 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
 
     by_camera = np.concatenate([_by_matrix(distorted), affine @ _by_distortion(xy)], axis=2)
 
-    by_position = np.zeros((len(points), 2, 3))
+    by_position = np.zeros((len(turned), 2, 3))
     by_position[:, 0, 0] = by_position[:, 1, 1] = inverse_z
     by_position[:, :, 2] = -xy * inverse_z[:, None]
     by_position = affine @ camera.distort_jacobian(xy) @ by_position
-    by_pose = np.empty((len(points), 2, 6))
+    by_pose = np.empty((len(turned), 2, 6))
     (x, y, z), (a, b, c) = turned.T[:, :, None], np.moveaxis(by_position, 2, 0)
     by_pose[:, :, 0] = y * c - z * b  # a · (ω × X) = ω · (X × a); np.cross takes twice as long
     by_pose[:, :, 1] = z * a - x * c
