@@ -41,4 +41,17 @@ def tukey_weights(residuals: Array, limit: float | Array = TUKEY) -> Array:
 
 def mad_sd(residuals: Array) -> float:
     """Standard deviation of residuals about zero by their median absolute value: outliers up to a half do not count."""
-    return float(MAD_TO_SD * np.median(np.abs(residuals)))
+    return MAD_TO_SD * median(np.abs(residuals))
+
+
+def median(values: Array) -> float:
+    """Median of values of any shape, NaN if one is: that of NumPy to the last bit, which takes 30 µs to begin."""
+    ordered = np.array(values, dtype=np.float64).ravel()
+    count = len(ordered)
+    if not count:
+        return float("nan")
+    low, high = (count - 1) // 2, count // 2
+    ordered.partition((low, high, count - 1))  # NaN is last
+    if np.isnan(ordered[-1]):
+        return float("nan")
+    return float(ordered[high] if low == high else (ordered[low] + ordered[high]) / 2)

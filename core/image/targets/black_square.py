@@ -17,7 +17,7 @@ from core.image.targets.target_view import TargetNotFound, TargetView
 from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
-from core.model.robust import mad_sd
+from core.model.robust import mad_sd, median
 
 SYSTEMATIC_PX = 0.005
 """What is left on perfect pictures, RMS per coordinate."""
@@ -155,7 +155,7 @@ def _near_running_median(level: Array) -> NDArray[np.bool_]:
     """Where `level` (N,) stays near its own running median."""
     known = np.where(np.isfinite(level), level, np.nanmedian(level) if np.isfinite(level).any() else 0.0)
     away = known - median_filter(known, size=max(15, len(known) // 2), mode="nearest")
-    scale = max(mad_sd(away - np.median(away)), 0.5)
+    scale = max(mad_sd(away - median(away)), 0.5)
     usual: NDArray[np.bool_] = np.isfinite(level) & (np.abs(away) < 5 * scale)
     return usual
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from core.image.targets.picture import level_quantiles, without_stripes
 from core.model.arrays import Array
+from core.model.robust import median
 
 STRIPE_WIDTHS = (1, 7, 13, 21)
 """Widths in pixels of the bright lines taken out before looking, in turn (1: none is)."""
@@ -106,17 +107,14 @@ def _dark_on_light(picture: NDArray[np.uint8], quad: Array, contrast: float) -> 
     """Whether the inside is dark throughout and lighter ground lies beyond every side, by the picture's contrast."""
     centre = quad.mean(axis=0)
     shares = np.linspace(0.15, 0.85, 25)[:, None]
-    levels: list[Array] = []
-    outside: list[float] = []
-    for start, end in zip(quad, np.roll(quad, -1, axis=0), strict=True):
-        side = start + shares * (end - start)
-        out = np.array([end[1] - start[1], start[0] - end[0]]) / np.linalg.norm(end - start)
-        reach = max(3.0, 0.04 * float(np.linalg.norm(end - start)))
-        outside.append(float(np.median(_levels(picture, side + reach * out))))
-        levels += [_levels(picture, side - reach * out), _levels(picture, centre + 0.4 * (side - centre))]
-    inside = np.concatenate(levels)
-    step = min(outside) - float(np.median(inside))
-    return step > 0.15 * contrast and float(np.mean(inside < min(outside) - 0.4 * step)) > 0.8
+    along = np.roll(quad, -1, axis=0) - quad
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    outwards = np.maximum(3.0, 0.04 * length) * np.column_stack([along[:, 1], -along[:, 0]]) / length
+    sides = quad[:, None] + shares * along[:, None]
+    outside = min(map(median, _levels(picture, sides + outwards[:, None])))
+    inside = _levels(picture, np.stack([sides - outwards[:, None], centre + 0.4 * (sides - centre)]))
+    step = outside - median(inside)
+    return step > 0.15 * contrast and float(np.mean(inside < outside - 0.4 * step)) > 0.8
 
 
 def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Array) -> bool:
@@ -140,7 +138,8 @@ def _mostly_dark(picture: NDArray[np.uint8], opened: NDArray[np.uint8], quad: Ar
 
 
 def _levels(picture: NDArray[np.uint8], uv: Array) -> Array:
-    u, v = np.rint(uv).astype(int).T
+    """Grey levels (…) at the pixels nearest to `uv` (…, 2), of the border beyond it."""
+    u, v = np.moveaxis(np.rint(uv).astype(int), -1, 0)
     levels: Array = picture[v.clip(0, picture.shape[0] - 1), u.clip(0, picture.shape[1] - 1)].astype(np.float64)
     return levels
 

@@ -11,7 +11,7 @@ from scipy.ndimage import map_coordinates, spline_filter
 
 from core.image.targets.picture import Picture
 from core.model.arrays import Array
-from core.model.robust import mad_sd, tukey_weights
+from core.model.robust import mad_sd, median, tukey_weights
 
 STEP = 0.5
 """Distance of a profile's samples, in pixels."""
@@ -133,7 +133,7 @@ def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line
     weight = np.ones(len(xy))
     for _ in range(15):
         distance = (xy - middle) @ normal
-        scale = max(mad_sd(distance - np.median(distance)), floor)
+        scale = max(mad_sd(distance - median(distance)), floor)
         weight = tukey_weights(distance, 4.7 * scale)
         if np.count_nonzero(weight) < 10:
             return None
