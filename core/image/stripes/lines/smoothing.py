@@ -123,9 +123,12 @@ class _Fits:
         usable &= np.linalg.det(normal_matrix) > 1e-6 * np.maximum(moments[0], 1e-300) ** 3
         normal_matrix[~usable] = np.eye(3)
         inverse = np.linalg.inv(normal_matrix)
-        coefficients = np.einsum("nik,knj->inj", inverse, target)
-        shift = np.einsum("ni,ni->n", coefficients[0] - line.uv, line.normal)
-        curvature = 2 * np.abs(np.einsum("ni,ni->n", coefficients[2], line.normal)) / half_length**2
+        place, bend = (
+            row[:, :1] * target[0] + row[:, 1:2] * target[1] + row[:, 2:] * target[2]
+            for row in (inverse[:, 0], inverse[:, 2])
+        )
+        shift = np.einsum("ni,ni->n", place - line.uv, line.normal)
+        curvature = 2 * np.abs(np.einsum("ni,ni->n", bend, line.normal)) / half_length**2
         repeats = np.maximum(1.0, line.correlation_px / np.maximum(spacing, 1e-9))
         sigma = np.sqrt(repeats * inverse[:, 0, 0])
         lopsided = np.minimum(arc - arc[first], arc[last - 1] - arc) < SYMMETRIC_SHARE * half_length
