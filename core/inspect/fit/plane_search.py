@@ -120,18 +120,18 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
     sample, area = _even_sample(cloud, rng)
     if len(sample) < FEWEST_POINTS:
         return None
-    points, normals = cloud.points[sample], cloud.normals[sample]
-    candidates = _hypotheses(points, normals, rng)
-    votes = np.array([_vote(points, normals, area, n, d, tolerance) for n, d in candidates])
+    faced = _Faced.of(cloud.points[sample], cloud.normals[sample])
+    candidates = _hypotheses(faced.points, faced.normals, rng)
+    votes = np.array([_vote(faced, area, n, d, tolerance) for n, d in candidates])
     finalists = []
     for index in np.argsort(-votes, kind="stable")[:FINALISTS]:
         normal, distance = candidates[index]
         for _ in range(4):
-            near = _near(points, normals, normal, distance, tolerance)
+            near = faced.near(normal, distance, tolerance)
             if near.sum() < 6:
                 break
-            normal, distance = _mean_plane(points[near], area[near])
-        finalists.append((_vote(points, normals, area, normal, distance, tolerance), normal, distance))
+            normal, distance = _mean_plane(faced.points[near], area[near])
+        finalists.append((_vote(faced, area, normal, distance, tolerance), normal, distance))
     for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
         on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
         region = Region.of(cloud.points, on, normal, margin_mm)
@@ -140,13 +140,33 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
     return None
 
 
-def _vote(points: Array, normals: Array, area: Array, normal: Array, distance: float, tolerance: float) -> float:
+@dataclass(frozen=True, eq=False, slots=True)
+class _Faced:
+    """Points (N, 3) and, where known, the normals (N, 3) there; `least` (N,) of each must lie along a plane's."""
+
+    points: Array
+    normals: Array
+    least: Array
+
+    @classmethod
+    def of(cls, points: Array, normals: Array) -> _Faced:
+        return cls(points, normals, LIKE_NORMALS * np.linalg.norm(normals, axis=1))
+
+    def near(self, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
+        """Which points lie within `tolerance` of the plane and do not face elsewhere."""
+        close = np.abs(self.points @ normal - distance) < tolerance
+        elsewhere = np.abs(self.normals @ normal) < self.least
+        near: NDArray[np.bool_] = close & ~elsewhere
+        return near
+
+
+def _vote(faced: _Faced, area: Array, normal: Array, distance: float, tolerance: float) -> float:
     """The area in mm² that a plane explains, the less of it the farther it is away (MSAC).
 
     A plane that slants through stairs has as much within the tolerance as one of them, but little close by.
     """
-    near = _near(points, normals, normal, distance, tolerance)
-    return float(area[near] @ (1 - ((points[near] @ normal - distance) / tolerance) ** 2))
+    near = faced.near(normal, distance, tolerance)
+    return float(area[near] @ (1 - ((faced.points[near] @ normal - distance) / tolerance) ** 2))
 
 
 def _even_sample(cloud: Cloud, rng: np.random.Generator) -> tuple[NDArray[np.int64], Array]:
@@ -184,16 +204,8 @@ def _hypotheses(points: Array, normals: Array, rng: np.random.Generator) -> list
     return hypotheses
 
 
-def _near(points: Array, normals: Array, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
-    """Which points lie within `tolerance` of the plane and do not face elsewhere."""
-    close = np.abs(points @ normal - distance) < tolerance
-    elsewhere = np.abs(normals @ normal) < LIKE_NORMALS * np.linalg.norm(normals, axis=1)
-    near: NDArray[np.bool_] = close & ~elsewhere
-    return near
-
-
 def _on_plane(cloud: Cloud, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
-    return _near(cloud.points, cloud.normals, normal, distance, tolerance)
+    return _Faced.of(cloud.points, cloud.normals).near(normal, distance, tolerance)
 
 
 def _mean_plane(points: Array, weights: Array) -> tuple[Array, float]:
