@@ -11,7 +11,7 @@ Zhang, Z., IEEE Trans. PAMI 22 (2000) 1330–1334, §3.2, doi:10.1109/34.888718.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -82,7 +82,7 @@ class Normal:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Together:
+class _StackedViews:
     """All views' corners behind one another: NumPy is quicker on all of them at once than on each view in turn.
 
     `view` (N,): the view that each corner is of; `parts`: each view's corners.
@@ -93,11 +93,11 @@ class _Together:
     parts: tuple[slice, ...]
 
     @classmethod
-    def of(cls, views: Sequence[Observed]) -> _Together:
+    def of(cls, views: Sequence[Observed]) -> _StackedViews:
         corners = Observed(
-            np.concatenate([np.zeros((0, 3)), *(view.points for view in views)]),
-            np.concatenate([np.zeros((0, 2)), *(view.uv for view in views)]),
-            np.concatenate([np.zeros(0), *(view.weights for view in views)]),
+            np.concatenate([view.points for view in views]),
+            np.concatenate([view.uv for view in views]),
+            np.concatenate([view.weights for view in views]),
         )
         counts = [len(view.uv) for view in views]
         ends = np.cumsum(counts).tolist()
@@ -107,20 +107,33 @@ class _Together:
     def turned(self, poses: Sequence[Pose]) -> tuple[Array, Array]:
         """The points (N, 3) turned by their view's pose, and shifted by it as well, in mm."""
         points = self.corners.points
-        turned = np.concatenate(
-            [np.zeros((0, 3)), *(points[part] @ pose.rotation.T for part, pose in zip(self.parts, poses, strict=True))]
-        )
-        shift = np.array([pose.translation for pose in poses]).reshape(-1, 3)
-        return turned, turned + shift[self.view]
+        turned = np.concatenate([points[part] @ pose.rotation.T for part, pose in zip(self.parts, poses, strict=True)])
+        return turned, turned + np.array([pose.translation for pose in poses])[self.view]
 
-    def cost(self, bundle: Bundle) -> float:
-        """The weighted sum of squared residuals; not finite where a point is not in front of the camera."""
+    def residuals(self, bundle: Bundle) -> Array:
+        """Observed − predicted (N, 2) in pixels; infinite in views of which a point is not in front of the camera."""
         _, position = self.turned(bundle.poses)
         with np.errstate(all="ignore"):
             missing = self.corners.uv - bundle.camera.project(position)
-            missing[np.isin(self.view, self.view[position[:, 2] < _NEAREST_MM])] = np.inf
-            squares = np.sum(missing**2, axis=1)
+        missing[np.isin(self.view, self.view[position[:, 2] < _NEAREST_MM])] = np.inf
+        return missing
+
+    def cost(self, bundle: Bundle) -> float:
+        """The weighted sum of squared residuals; not finite where a point is not in front of the camera."""
+        with np.errstate(over="ignore", invalid="ignore"):
+            squares = np.sum(self.residuals(bundle) ** 2, axis=1)
             return sum(float(self.corners.weights[part] @ squares[part]) for part in self.parts)
+
+    def weighted(self, bundle: Bundle, free: NDArray[np.intp]) -> Iterator[tuple[Array, Array, Array]]:
+        """Of each view, derivatives (2N, F) and (2N, 6) and residuals (2N,), each row times the root of its weight."""
+        uv, by_camera, by_pose = linearise_turned(bundle.camera, *self.turned(bundle.poses))
+        root = np.sqrt(np.repeat(self.corners.weights, 2))
+        by_camera = by_camera.reshape(-1, 10)[:, free] * root[:, None]
+        by_pose = by_pose.reshape(-1, 6) * root[:, None]
+        missing = (self.corners.uv - uv).ravel() * root
+        for part in self.parts:
+            rows = slice(2 * part.start, 2 * part.stop)
+            yield by_camera[rows], by_pose[rows], missing[rows]
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -165,13 +178,13 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
     `free` are the indices (F,) of the camera's free parameters in CAMERA_PARAMETERS; none means that only the poses
     are found. Stops when a step gains less than `tolerance` of the cost.
     """
-    together = _Together.of(views)
-    current, cost = start, together.cost(start)
+    stacked = _StackedViews.of(views)
+    current, cost = start, stacked.cost(start)
     damping: float = _FIRST_DAMPING
-    blocks = _blocks(current, together, free)
+    blocks = _blocks(current, stacked, free)
     for _ in range(_MOST_ITERATIONS):
         proposal = _step(current, blocks.damped(damping), free)
-        proposed = np.inf if proposal is None else together.cost(proposal)
+        proposed = np.inf if proposal is None else stacked.cost(proposal)
         if proposal is None or not proposed <= cost:
             damping *= _DAMPING_FACTOR
             if damping > _MOST_DAMPING:
@@ -181,7 +194,7 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
         damping = max(damping / _DAMPING_FACTOR, _LEAST_DAMPING)
         if gain <= tolerance * cost:
             break
-        blocks = _blocks(current, together, free)
+        blocks = _blocks(current, stacked, free)
     return current
 
 
@@ -189,10 +202,7 @@ def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.i
     """Minimise with Huber's weights about a scale from the median residual: a start among outliers for `refine`."""
     current = start
     for _ in range(_HUBER_ROUNDS):
-        lengths = [
-            np.linalg.norm(residuals(current.camera, pose, view), axis=1) * np.sqrt(view.weights)
-            for pose, view in zip(current.poses, views, strict=True)
-        ]
+        lengths = residual_lengths(current, views)
         limit = _HUBER_LIMIT * max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, _LEAST_SCALE_PX)
         weighted = [
             replace(view, weights=view.weights * huber_weights(length, limit))
@@ -203,11 +213,8 @@ def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.i
 
 
 def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
-    """Observed − predicted (N, 2) in pixels; infinite for points that are not in front of the camera."""
-    position = pose.apply(view.points)
-    if np.any(position[:, 2] < _NEAREST_MM):
-        return np.full(view.uv.shape, np.inf)
-    return np.asarray(view.uv - camera.project(position), dtype=np.float64)
+    """Observed − predicted (N, 2) in pixels; infinite if a point is not in front of the camera."""
+    return _StackedViews.of([view]).residuals(Bundle(camera, (pose,)))
 
 
 def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
@@ -226,36 +233,23 @@ def normal_equations(
     `target_changes`, (N, 3, B) for each view, are the derivatives of its target points by B further unknowns common to
     all views, which stand behind the camera's.
     """
+    stacked = _StackedViews.of(views)
     information, gradients = [], []
-    for index, (pose, view) in enumerate(zip(bundle.poses, views, strict=True)):
-        unknowns, by_pose, missing = _weighted(Bundle(bundle.camera, (pose,)), _Together.of([view]), free)
+    for index, (unknowns, by_pose, missing) in enumerate(stacked.weighted(bundle, free)):
         if target_changes is not None:
-            by_target = by_pose.reshape(-1, 2, 6)[..., 3:] @ pose.rotation @ target_changes[index]
+            by_target = by_pose.reshape(-1, 2, 6)[..., 3:] @ bundle.poses[index].rotation @ target_changes[index]
             unknowns = np.hstack([unknowns, by_target.reshape(len(unknowns), -1)])
         alone = unknowns - by_pose @ np.linalg.lstsq(by_pose, unknowns, rcond=None)[0]
         information.append(alone.T @ alone)
         gradients.append((alone * missing[:, None]).reshape(-1, 2, alone.shape[1]).sum(axis=1))
-    return Normal(np.array(information), tuple(gradients), _Together.of(views).cost(bundle))
+    return Normal(np.array(information), tuple(gradients), stacked.cost(bundle))
 
 
-def _weighted(bundle: Bundle, views: _Together, free: NDArray[np.intp]) -> tuple[Array, Array, Array]:
-    """Derivatives (2N, F) and (2N, 6) and residuals (2N,), each row times the root of its weight."""
-    uv, by_camera, by_pose = linearise_turned(bundle.camera, *views.turned(bundle.poses))
-    root = np.sqrt(np.repeat(views.corners.weights, 2))
-    columns = root[:, None]
-    return (
-        by_camera.reshape(-1, 10)[:, free] * columns,
-        by_pose.reshape(-1, 6) * columns,
-        (views.corners.uv - uv).ravel() * root,
-    )
-
-
-def _blocks(bundle: Bundle, views: _Together, free: NDArray[np.intp]) -> _Blocks:
-    weighted = _weighted(bundle, views, free)
-    blocks = []
-    for part in views.parts:
-        camera, posing, missing = (rows[2 * part.start : 2 * part.stop] for rows in weighted)
-        blocks.append((camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing))
+def _blocks(bundle: Bundle, views: _StackedViews, free: NDArray[np.intp]) -> _Blocks:
+    blocks = [
+        (camera.T @ camera, camera.T @ posing, posing.T @ posing, camera.T @ missing, posing.T @ missing)
+        for camera, posing, missing in views.weighted(bundle, free)
+    ]
     return _Blocks(*(np.array(each) for each in zip(*blocks, strict=True)))
 
 

@@ -120,18 +120,18 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
     sample, area = _even_sample(cloud, rng)
     if len(sample) < FEWEST_POINTS:
         return None
-    faced = _Faced.of(cloud.points[sample], cloud.normals[sample])
-    candidates = _hypotheses(faced.points, faced.normals, rng)
-    votes = np.array([_vote(faced, area, n, d, tolerance) for n, d in candidates])
+    oriented = _OrientedPoints.of(cloud.points[sample], cloud.normals[sample])
+    candidates = _hypotheses(oriented.points, oriented.normals, rng)
+    votes = np.array([_vote(oriented, area, n, d, tolerance) for n, d in candidates])
     finalists = []
     for index in np.argsort(-votes, kind="stable")[:FINALISTS]:
         normal, distance = candidates[index]
         for _ in range(4):
-            near = faced.near(normal, distance, tolerance)
+            near = oriented.near(normal, distance, tolerance)
             if near.sum() < 6:
                 break
-            normal, distance = _mean_plane(faced.points[near], area[near])
-        finalists.append((_vote(faced, area, normal, distance, tolerance), normal, distance))
+            normal, distance = _mean_plane(oriented.points[near], area[near])
+        finalists.append((_vote(oriented, area, normal, distance, tolerance), normal, distance))
     for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
         on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
         region = Region.of(cloud.points, on, normal, margin_mm)
@@ -141,7 +141,7 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class _Faced:
+class _OrientedPoints:
     """Points (N, 3) and, where known, the normals (N, 3) there; `least` (N,) of each must lie along a plane's."""
 
     points: Array
@@ -149,7 +149,7 @@ class _Faced:
     least: Array
 
     @classmethod
-    def of(cls, points: Array, normals: Array) -> _Faced:
+    def of(cls, points: Array, normals: Array) -> _OrientedPoints:
         return cls(points, normals, LIKE_NORMALS * np.linalg.norm(normals, axis=1))
 
     def near(self, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
@@ -160,13 +160,13 @@ class _Faced:
         return near
 
 
-def _vote(faced: _Faced, area: Array, normal: Array, distance: float, tolerance: float) -> float:
+def _vote(oriented: _OrientedPoints, area: Array, normal: Array, distance: float, tolerance: float) -> float:
     """The area in mm² that a plane explains, the less of it the farther it is away (MSAC).
 
     A plane that slants through stairs has as much within the tolerance as one of them, but little close by.
     """
-    near = faced.near(normal, distance, tolerance)
-    return float(area[near] @ (1 - ((faced.points[near] @ normal - distance) / tolerance) ** 2))
+    near = oriented.near(normal, distance, tolerance)
+    return float(area[near] @ (1 - ((oriented.points[near] @ normal - distance) / tolerance) ** 2))
 
 
 def _even_sample(cloud: Cloud, rng: np.random.Generator) -> tuple[NDArray[np.int64], Array]:
@@ -205,7 +205,7 @@ def _hypotheses(points: Array, normals: Array, rng: np.random.Generator) -> list
 
 
 def _on_plane(cloud: Cloud, normal: Array, distance: float, tolerance: float) -> NDArray[np.bool_]:
-    return _Faced.of(cloud.points, cloud.normals).near(normal, distance, tolerance)
+    return _OrientedPoints.of(cloud.points, cloud.normals).near(normal, distance, tolerance)
 
 
 def _mean_plane(points: Array, weights: Array) -> tuple[Array, float]:
