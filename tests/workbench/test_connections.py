@@ -1,4 +1,4 @@
-"""What crashes a window is not written: loose connections, threads beside Qt's, event loops within others.
+"""What crashes a window is not written: loose connections, threads beside Qt's, event loops within others, items.
 
 Lambdas are connected only to signals of what the same object has made, and what is gone with it.
 
@@ -144,6 +144,12 @@ def hazards(tree: ast.AST) -> set[str]:
 def test_threads_and_garbage_are_touched_only_where_it_is_explained(path: Path) -> None:
     explained = EXPLAINED.get(path.relative_to(ROOT).as_posix())
     assert hazards(ast.parse(path.read_text(encoding="utf-8"))) == ({explained[0]} if explained else set())
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.rglob("*.py")), ids=lambda path: path.relative_to(ROOT).as_posix())
+def test_lists_are_models_not_items_that_are_made_anew(path: Path) -> None:
+    used = {node.id for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))) if isinstance(node, ast.Name)}
+    assert not used & {"QListWidget", "QTreeWidget", "QTableWidget"}
 
 
 def loops_at_close(tree: ast.AST) -> Iterator[tuple[int, str]]:

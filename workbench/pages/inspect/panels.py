@@ -10,8 +10,7 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QListWidget,
-    QListWidgetItem,
+    QListView,
     QPushButton,
     QToolButton,
     QWidget,
@@ -23,7 +22,7 @@ from workbench.language import sentence, text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
 from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
-from workbench.pages.inspect.picks import Mode, Pick
+from workbench.pages.inspect.picks import Mode, Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import PicksFacts, picks_buttons
 from workbench.pages.words import wording
@@ -33,6 +32,7 @@ from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say_notes
+from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 from workbench.views.lists.value_rows import ValueRows, Verdict
 
 if TYPE_CHECKING:
@@ -246,7 +246,8 @@ class PicksPanel(QWidget):
             "point": QPushButton(icon("mdi6.crosshairs-gps"), tr("Pick points")),
             "distance": QPushButton(icon("mdi6.ruler"), tr("Measure distance")),
         }
-        self.list = QListWidget()
+        self.list, self._model = QListView(), TreeModel(self)
+        self.list.setModel(self._model)
         self.remove = QPushButton(icon("mdi6.playlist-remove"), tr("Remove"))
         self.clear = QPushButton(icon("mdi6.close"), tr("Remove all"))
         self.list.setAccessibleName(tr("Picked points and distances"))
@@ -270,7 +271,7 @@ class PicksPanel(QWidget):
         in_column(above, self.frame, self.list, below, self.help, on=self)
         self.remove.clicked.connect(self._remove)
         self.clear.clicked.connect(lambda: presenter.picks.clear())
-        self.list.currentRowChanged.connect(lambda _: self._show_buttons())
+        self.list.selectionModel().currentChanged.connect(lambda: self._show_buttons())
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -278,22 +279,20 @@ class PicksPanel(QWidget):
         for mode, button in self.tools.items():
             button.setChecked(picks.mode == mode)
         names = [item.name for item in picks.items]
-        frame, row = self._presenter.frame, self.list.currentRow()
+        frame = self._presenter.frame
         if names != self._names or self._frame is None or not frame.same_as(self._frame):
-            row = row if names == self._names else len(names) - 1
+            newest = names[-1] if names and names != self._names else ""
             self._names, self._frame = names, frame
             self.frame.setText(tr("x, y, z: {frame}", frame=tr(FRAME_NAMES[frame.kind])))
-            self.list.clear()
-            for item in picks.items:
-                lines = words.pick_lines(item, frame) if isinstance(item, Pick) else words.span_lines(item, frame)
-                self.list.addItem(QListWidgetItem("\n".join(lines)))
-            self.list.setCurrentRow(row)
+            self._model.set_rows([TreeRow(item.name, (Cell(_pick_text(item, frame)),)) for item in picks.items])
+            if newest:
+                self.list.setCurrentIndex(self._model.index_of(newest))
         self._show_buttons()
 
     def _show_buttons(self) -> None:
         for widget in (self.frame, self.list, self.remove, self.clear):
             widget.setVisible(bool(self._names))
-        chosen = 0 <= self.list.currentRow() < len(self._names)
+        chosen = self.list.currentIndex().isValid()
         can = picks_buttons(PicksFacts(self._presenter.scan.buttons.use, bool(self._names), chosen))
         tips: dict[Mode, str] = {
             "point": tr("Click points in 3D: x, y, z in mm in the frame of the view, with picture and pixel"),
@@ -305,6 +304,10 @@ class PicksPanel(QWidget):
         enable(self.clear, can.clear, tr("Take all points and distances off the list"))
 
     def _remove(self) -> None:
-        row = self.list.currentRow()
-        if 0 <= row < len(self._names):
-            self._presenter.picks.remove(self._names[row])
+        name = self._model.key(self.list.currentIndex())
+        if name:
+            self._presenter.picks.remove(name)
+
+
+def _pick_text(item: Pick | Span, frame: ViewFrame) -> str:
+    return "\n".join(words.pick_lines(item, frame) if isinstance(item, Pick) else words.span_lines(item, frame))

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
-from PySide6.QtCore import QSize, Qt, QTimer
+from PySide6.QtCore import QModelIndex, QSize, Qt, QTimer
 from PySide6.QtGui import QAction, QKeySequence
 from PySide6.QtWidgets import (
     QApplication,
@@ -13,8 +14,7 @@ from PySide6.QtWidgets import (
     QGridLayout,
     QHBoxLayout,
     QLabel,
-    QListWidget,
-    QListWidgetItem,
+    QListView,
     QPushButton,
     QSizePolicy,
     QWidget,
@@ -26,6 +26,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon
 from workbench.views.layouts import STRETCH, in_column, in_row
 from workbench.views.lists.notice_list import Banner
+from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 
 
 class WelcomePage(QWidget):
@@ -34,7 +35,7 @@ class WelcomePage(QWidget):
     def __init__(self, projects: ProjectActions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._projects = projects
-        self.banner = Banner()
+        self.banner, self._listed = Banner(), TreeModel(self)
         self._refreshing = Refresh(self.refresh, self)  # a project may be forgotten by an action of the list itself
         title = QLabel("Trisect")
         title.setStyleSheet("font-size: 34px; font-weight: 300;")
@@ -120,14 +121,15 @@ class WelcomePage(QWidget):
 
     def refresh(self) -> None:
         """Show the recent projects."""
-        self.recent.clear()
-        for path in self._projects.bench.settings.recent:
-            item = QListWidgetItem(f"{path.name}\n{path.parent}")
-            item.setData(Qt.ItemDataRole.UserRole, path)
-            item.setToolTip(tr("Open {path}", path=path))
-            self.recent.addItem(item)
-        self.recent.setVisible(self.recent.count() > 0)
-        self._none.setVisible(self.recent.count() == 0)
+        recent = self._projects.bench.settings.recent
+        self._listed.set_rows(
+            [
+                TreeRow(str(path), (Cell(f"{path.name}\n{path.parent}", tr("Open {path}", path=path)),))
+                for path in recent
+            ]
+        )
+        self.recent.setVisible(bool(recent))
+        self._none.setVisible(not recent)
 
     def _show_sample(self) -> None:
         preparing = self._projects.sample.preparing
@@ -135,16 +137,17 @@ class WelcomePage(QWidget):
         self.sample.setText(tr("Preparing the sample …") if preparing else tr("Open sample"))
         self.sample.setToolTip(tr("It is being prepared; the status bar says how far it is.") if preparing else "")
 
-    def _recent_list(self) -> QListWidget:
+    def _recent_list(self) -> QListView:
         """One click or Enter opens; Delete or the menu leaves a project out of the list."""
-        listed = QListWidget()
+        listed = QListView()
+        listed.setModel(self._listed)
         listed.setAccessibleName(tr("Recent projects"))
         listed.setHorizontalScrollBarPolicy(Qt.ScrollBarPolicy.ScrollBarAlwaysOff)
         listed.setTextElideMode(Qt.TextElideMode.ElideMiddle)
         listed.setSpacing(2)
         listed.setFrameShape(QFrame.Shape.NoFrame)
-        listed.itemActivated.connect(self._open_recent)
-        listed.itemClicked.connect(self._open_recent)
+        listed.activated.connect(self._open_recent)
+        listed.clicked.connect(self._open_recent)
         forget = QAction(tr("Leave out of this list"), listed)
         forget.setShortcut(QKeySequence(QKeySequence.StandardKey.Delete))
         forget.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
@@ -153,15 +156,15 @@ class WelcomePage(QWidget):
         listed.setContextMenuPolicy(Qt.ContextMenuPolicy.ActionsContextMenu)
         return listed
 
-    def _open_recent(self, item: QListWidgetItem) -> None:
+    def _open_recent(self, index: QModelIndex) -> None:
         """Once the click is over: opening a project changes this list."""
-        path = item.data(Qt.ItemDataRole.UserRole)
+        path = Path(self._listed.key(index))
         QTimer.singleShot(0, self, lambda: self._projects.open_project(path))
 
     def _forget(self) -> None:
-        item = self.recent.currentItem()
-        if item is not None:
-            self._projects.bench.settings.forget(item.data(Qt.ItemDataRole.UserRole))
+        path = self._listed.key(self.recent.currentIndex())
+        if path:
+            self._projects.bench.settings.forget(Path(path))
 
     def _link(self, symbol: str, text: str, help_text: str, do: Callable[[], object]) -> QCommandLinkButton:
         link = QCommandLinkButton(text, help_text)

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, Qt
+from PySide6.QtCore import QEvent, QModelIndex, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
     QFrame,
     QLabel,
-    QListWidget,
-    QListWidgetItem,
+    QListView,
     QPlainTextEdit,
     QPushButton,
     QSplitter,
@@ -20,6 +19,7 @@ from workbench.language import tr
 from workbench.theme import icon
 from workbench.views.common import IconLabel, dress_edged
 from workbench.views.layouts import STRETCH, in_column, in_row
+from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 
 SYMBOLS = {
     "info": ("mdi6.information-outline", "accent"),
@@ -33,7 +33,10 @@ class NoticeList(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._list = QListWidget()
+        self._notices: list[tuple[TreeRow, str, str]] = []
+        self._list = QListView()
+        self._model = TreeModel(self)
+        self._list.setModel(self._model)
         self._list.setAccessibleName(tr("Messages"))
         self._list.setWordWrap(True)
         self._details = QPlainTextEdit()
@@ -51,32 +54,32 @@ class NoticeList(QWidget):
         split.addWidget(self._details)
         split.setSizes([600, 300])
         in_row((split, 1), buttons, on=self, margins=(6, 4, 6, 4))
-        self._list.currentItemChanged.connect(lambda item, _: self._show(item))
+        self._list.selectionModel().currentChanged.connect(self._show)
 
     def add(self, level: str, text: str, details: str, when: str) -> None:
         """Append a message and show it."""
         symbol, colour = SYMBOLS[level]
-        item = QListWidgetItem(icon(symbol, colour=colour), f"{when}   {text}")
-        item.setData(Qt.ItemDataRole.UserRole, (text, details))
-        self._list.addItem(item)
-        self._list.scrollToItem(item)
-        self._list.setCurrentItem(item)
+        row = TreeRow(str(len(self._notices)), (Cell(f"{when}   {text}", icon=icon(symbol, colour=colour)),))
+        self._notices.append((row, text, details))
+        self._model.set_rows([row for row, _, _ in self._notices])
+        self._list.setCurrentIndex(self._model.index_of(row.key))
 
     def count(self) -> int:
         """How many messages are listed."""
-        return self._list.count()
+        return len(self._notices)
 
-    def _show(self, item: QListWidgetItem | None) -> None:
-        self._details.setPlainText(item.data(Qt.ItemDataRole.UserRole)[1] if item else "")
+    def _show(self, index: QModelIndex) -> None:
+        self._details.setPlainText(self._notices[index.row()][2] if index.isValid() else "")
 
     def _copy(self) -> None:
-        item = self._list.currentItem()
-        if item is not None:
-            QGuiApplication.clipboard().setText("\n".join(part for part in item.data(Qt.ItemDataRole.UserRole) if part))
+        index = self._list.currentIndex()
+        if index.isValid():
+            _, text, details = self._notices[index.row()]
+            QGuiApplication.clipboard().setText("\n".join(part for part in (text, details) if part))
 
     def _clear(self) -> None:
-        self._list.clear()
-        self._details.clear()
+        self._model.set_rows(())
+        self._notices = []
 
 
 class Banner(QFrame):

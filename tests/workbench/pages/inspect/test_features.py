@@ -21,6 +21,7 @@ from core.inspect.shown.deviation_map import bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import plain
 from tests.inspect.plan.toy_kind import toy
+from tests.workbench.cells import icon_of, place, shown, tip
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.places import moved, places
@@ -214,7 +215,7 @@ def test_features_that_are_only_read_again_are_not_said_to_be_measured(presenter
     model.open(model.folder)
     qtbot.waitUntil(lambda: features.measuring)
     page.refreshing.at_once()
-    assert page.features.list.topLevelItem(0).text(1) == "reading …"
+    assert shown(page.features.list, 0, 1) == "reading …"
 
 
 def test_a_plan_measured_once_is_measured_anew_when_it_changes(presenter, features, measuring, qtbot):
@@ -360,16 +361,16 @@ def test_the_chosen_feature_stays_in_sight_as_the_list_becomes_lower(page, featu
     features.choose(features.plan.names[10])
     page.refresh()
     page.features.fit(600)
-    qtbot.waitUntil(lambda: rows.viewport().rect().contains(rows.visualItemRect(rows.currentItem()).center()))
+    qtbot.waitUntil(lambda: rows.viewport().rect().contains(rows.visualRect(rows.currentIndex()).center()))
 
 
 def test_with_no_feature_chosen_none_looks_chosen(page, features, presenter):
     presenter.feature.add("plane")
     page.refreshing.at_once()
-    assert [item.text(0) for item in page.features.list.selectedItems()] == ["plane 1"]
+    assert [row.data() for row in page.features.list.selectionModel().selectedRows()] == ["plane 1"]
     features.choose("")
     page.refreshing.at_once()
-    assert page.features.list.selectedItems() == [] and page.features.list.currentItem() is None
+    assert not page.features.list.selectedIndexes() and not page.features.list.currentIndex().isValid()
 
 
 def test_without_features_the_panel_is_one_button(page):
@@ -471,15 +472,15 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     )
     features.put_plan(plan, "three")
     page.refreshing.at_once()
-    assert page.features.list.topLevelItem(0).text(1) == "not measured"
+    assert shown(page.features.list, 0, 1) == "not measured"
     measured(features, qtbot)
-    ball, top, lost = (page.features.list.topLevelItem(row) for row in range(3))
+    listed, (ball, top, lost) = page.features.list, range(3)
     page.refreshing.at_once()
-    assert (ball.child(0).text(0), ball.child(0).text(1)) == ("diameter", "50.012 ± 0.024 mm")
-    assert "Conformity is proven" in ball.child(0).toolTip(1) and not ball.icon(1).isNull()
-    assert top.text(1) == "50.012 ± 0.024 mm" and top.icon(1).isNull()
-    assert lost.text(1) == "cannot be measured" and "no points there" in lost.toolTip(1)
-    assert (top.text(0), lost.text(0)) == ("top, flatness", "lost"), "what the number is of"
+    assert (shown(listed, ball, 0, 0), shown(listed, ball, 1, 0)) == ("diameter", "50.012 ± 0.024 mm")
+    assert "Conformity is proven" in tip(listed, ball, 1, 0) and not icon_of(listed, ball, 1).isNull()
+    assert shown(listed, top, 1) == "50.012 ± 0.024 mm" and icon_of(listed, top, 1) is None
+    assert shown(listed, lost, 1) == "cannot be measured" and "no points there" in tip(listed, lost, 1)
+    assert (shown(listed, top), shown(listed, lost)) == ("top, flatness", "lost"), "what the number is of"
     assert page.features.list.verticalScrollBar().maximum() == 0, "all rows are seen"
 
 
@@ -499,16 +500,16 @@ def test_old_values_stay_marked_while_only_what_an_edit_concerns_is_measured_aga
     presenter.feature.set_value("margin_mm", 0.5)
     page.refreshing.at_once()
     assert features.measuring
-    top, table, height = (page.features.list.topLevelItem(row) for row in range(3))
+    listed, (top, table, height) = page.features.list, range(3)
     for one in (top, height):
-        assert one.text(1) == "50.012 ± 0.024 mm" and "Out of date" in one.toolTip(1)
-        assert "Conformity is proven" not in one.toolTip(1)
+        assert shown(listed, one, 1) == "50.012 ± 0.024 mm" and "Out of date" in tip(listed, one, 1)
+        assert "Conformity is proven" not in tip(listed, one, 1)
     assert features.result("top") is None and features.result("height") is None
     assert features.result("table") is before
-    assert "Conformity is proven" in table.toolTip(1) and "Out of date" not in table.toolTip(1)
+    assert "Conformity is proven" in tip(listed, table, 1) and "Out of date" not in tip(listed, table, 1)
     qtbot.waitUntil(lambda: features.shown is not None and not features.measuring)
     page.refreshing.at_once()
-    assert "Conformity is proven" in page.features.list.topLevelItem(0).toolTip(1)
+    assert "Conformity is proven" in tip(listed, top, 1)
     assert features.outdated("top") is None
     undo(features)
     assert features.outdated("top") is not None, "what was measured last is of the plan that was undone"
@@ -556,17 +557,17 @@ def test_measured_features_push_no_section(page, features, presenter, measuring,
 def test_no_row_of_the_list_is_marked_when_no_feature_is_chosen(page, features, presenter, qtbot):
     presenter.feature.add("plane")
     page.refreshing.at_once()
-    assert page.features.list.selectedItems()
+    assert page.features.list.selectedIndexes()
     features.choose("")
     page.refreshing.at_once()
-    assert not page.features.list.selectedItems() and page.features.list.currentItem() is None
+    assert not page.features.list.selectedIndexes() and not page.features.list.currentIndex().isValid()
 
 
 def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter, page, features, qtbot):
     presenter.feature.add("plane")
     presenter.feature.add("sphere")
     measured(features, qtbot)
-    page.features.list.setCurrentItem(page.features.list.topLevelItem(0))
+    page.features.list.setCurrentIndex(place(page.features.list, 0))
     page.refreshing.at_once()
     assert features.chosen == "plane 1" and (Marks, "feature") in page.surface.scene._scene.items
     page.tabs.setCurrentWidget(page.picture)
@@ -757,7 +758,7 @@ def test_a_kind_that_is_registered_is_in_the_menu_has_a_form_and_is_measured(toy
     presenter.feature.set_value("limits upper spread", 60.0)
     assert features.plan.features[0].limits_of("spread").upper == 60.0
     measured(features, qtbot)
-    qtbot.waitUntil(lambda: page.features.list.topLevelItem(0).childCount() == 2)
+    qtbot.waitUntil(lambda: page.features.list.model().rowCount(place(page.features.list, 0)) == 2)
 
 
 def test_an_edit_in_the_form_is_an_edit_of_the_plan(presenter, page, features, qtbot):
@@ -808,21 +809,16 @@ def lie(presenter, qtbot):
     return presenter.features
 
 
-def item_named(page, name):
-    tree = page.features.list
-    return next(
-        tree.topLevelItem(row)
-        for row in range(tree.topLevelItemCount())
-        if tree.topLevelItem(row).data(0, Qt.ItemDataRole.UserRole) == name
-    )
+def row_named(page, name):
+    return page.features.list.model().index_of(name)
 
 
 def test_what_is_asked_of_a_lie_stands_as_a_control_frame_in_list_and_form_with_its_datum(lie, page):
     asked = Frame("parallelism", ("0.05", "A"))
-    assert item_named(page, "lie").data(0, FRAMES_ROLE) == [asked]
-    assert item_named(page, "lie").text(0) == "lie"
-    assert item_named(page, "base").data(0, FRAMES_ROLE)[0] == Frame(None, ("A",))
-    assert not item_named(page, "other").data(0, FRAMES_ROLE)
+    assert row_named(page, "lie").data(FRAMES_ROLE) == [asked]
+    assert row_named(page, "lie").data() == "lie"
+    assert row_named(page, "base").data(FRAMES_ROLE)[0] == Frame(None, ("A",))
+    assert not row_named(page, "other").data(FRAMES_ROLE)
     lie.choose("lie")
     page.refresh()
     assert page.features.form.frames.frames == (asked,)
@@ -870,12 +866,11 @@ def test_a_control_frame_is_drawn_in_its_own_size(qapp):
 
 def test_a_name_is_whole_in_the_list_where_its_kind_has_no_room_beside_it(lie, page):
     tree = page.features.list
-    item = item_named(page, "other")
-    assert item.text(0) == "other, flatness"
-    index, delegate = tree.indexFromItem(item), tree.itemDelegateForColumn(0)
+    index, delegate = row_named(page, "other"), tree.itemDelegateForColumn(0)
+    assert index.data() == "other, flatness"
     for width, words in ((400, "other, flatness"), (70, "other")):
         option = QStyleOptionViewItem()
         option.widget, option.rect = tree, QRect(0, 0, width, 20)
         delegate.initStyleOption(option, index)
         assert option.text == words
-    assert "other flatness" in item.toolTip(0)
+    assert "other flatness" in index.data(Qt.ItemDataRole.ToolTipRole)

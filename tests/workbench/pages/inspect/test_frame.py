@@ -15,6 +15,7 @@ from core.inspect.shown.clicked_faces import ClickedFace, ClickedFaces
 from core.inspect.shown.shown_features import ShownFeature, ShownInspection
 from core.inspect.shown.view_frame import FrameKind
 from core.model import Pose
+from tests.workbench.cells import shown
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.settings import AppSettings
@@ -68,7 +69,7 @@ def place_parts(page, qtbot, plan=PLACED):
 
 def listed(page):
     """x, y, z of the picked point as they stand in the list, and what stands over them."""
-    words = page.picks.list.item(0).text().split("\n")[0].replace("\N{MINUS SIGN}", "-").split()
+    words = shown(page.picks.list, 0).split("\n")[0].replace("\N{MINUS SIGN}", "-").split()
     return [float(words[words.index(name) + 1]) for name in "xyz"], page.picks.frame.text()
 
 
@@ -134,11 +135,11 @@ def test_the_ends_of_a_distance_are_listed_in_the_frame_of_the_view(page, qtbot)
     for number in (5, 6):
         page.surface.scene.point_picked.emit(number, None)
     page.refreshing.at_once()
-    inside = page.picks.list.item(0).text()
+    inside = shown(page.picks.list, 0)
     first = POSE.inverse().apply(page.presenter.scan.view.points[5])
     assert f"({', '.join(f'{c:.1f}' for c in first)})".replace("-", "\N{MINUS SIGN}") in inside
     press(page, qtbot)
-    seen = page.picks.list.item(0).text()
+    seen = shown(page.picks.list, 0)
     assert seen.split("\n")[0] == inside.split("\n")[0], "the distance is the same"
     assert seen != inside
 

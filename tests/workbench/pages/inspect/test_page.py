@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QPoint, Qt
+from PySide6.QtCore import QModelIndex, QPoint, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from core.errors import InputError
 from core.messages import plain
+from tests.workbench.cells import shown as text_in
 from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.places import moved, places
 from workbench.pages.inspect.presenter import InspectPresenter
@@ -186,7 +187,7 @@ def test_what_is_picked_is_chosen_before_it_is_removed(shown, qtbot):
         p.picks.pick(point)
     shown.refreshing.at_once()
     assert panel.remove.isEnabled() and panel.clear.isEnabled()
-    panel.list.setCurrentRow(-1)
+    panel.list.setCurrentIndex(QModelIndex())
     assert stands_as(panel.remove, "Choose a point or a distance in the list first.") and panel.clear.isEnabled()
     press(qtbot, panel.clear)
     shown.refreshing.at_once()
@@ -394,7 +395,7 @@ def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
     assert shown.surface.hint.text().startswith("Click points of the surface")
     shown.surface.scene.point_picked.emit(7, shown.presenter.scan.view.points[7])
     shown.refreshing.at_once()
-    text = shown.picks.list.item(0).text()
+    text = text_in(shown.picks.list, 0)
     assert not shown.picks.list.isHidden()
     assert text.startswith("P1   x ") and " mm\n± 0.0" in text and "(sd)" in text and "px" in text
     assert "P1" in {name for _, name in shown.surface.scene._scene.items}
@@ -403,7 +404,7 @@ def test_picked_points_stand_in_the_list_and_in_the_view(shown, qtbot):
     assert shown.presenter.picks.mode == "" and not shown.picks.tools["point"].isChecked()
     press(qtbot, shown.picks.remove)
     shown.refreshing.at_once()
-    assert shown.picks.list.count() == 0
+    assert shown.picks.list.model().rowCount() == 0
     assert "P1" not in {name for _, name in shown.surface.scene._scene.items}
 
 
@@ -416,7 +417,7 @@ def test_a_click_on_the_cloud_picks_the_point_under_it(shown, qtbot):
     shown.refreshing.at_once()
     qtbot.mouseClick(scene._canvas, LEFT, pos=QPoint(round(x), round(y)))
     shown.refreshing.at_once()
-    qtbot.waitUntil(lambda: shown.picks.list.count() == 1)
+    qtbot.waitUntil(lambda: shown.picks.list.model().rowCount() == 1)
 
 
 def test_a_distance_is_drawn_between_its_ends(shown, qtbot):
@@ -426,11 +427,11 @@ def test_a_distance_is_drawn_between_its_ends(shown, qtbot):
     for point in (0, 1):
         shown.surface.scene.point_picked.emit(point, shown.presenter.scan.view.points[point])
     shown.refreshing.at_once()
-    assert ", u = 0.0" in shown.picks.list.item(0).text()
+    assert ", u = 0.0" in text_in(shown.picks.list, 0)
     assert "D1" in {name for _, name in shown.surface.scene._scene.items}
     press(qtbot, shown.picks.clear)
     shown.refreshing.at_once()
-    assert shown.picks.list.count() == 0
+    assert shown.picks.list.model().rowCount() == 0
 
 
 # ---- regions

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.files.study.study_file import study_path
 from core.translations import language
 from tests.study.grr_tables import AIAG
+from tests.workbench.cells import place, shown
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from workbench.language import choose, tr
@@ -75,8 +76,8 @@ def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presente
     tab.window().refreshing.at_once()
     assert tab.table.table.verticalScrollBar().maximum() == 0, "no scrolling within what scrolls"
     assert tab.list.height() < 120, "one study takes no room of many"
-    assert tab.stack.currentIndex() == 0 and tab.list.topLevelItem(0).text(1) == "10 parts × 3 operators × 3 repeats"
-    words = tab.list.fontMetrics().horizontalAdvance(tab.list.topLevelItem(0).text(0))
+    assert tab.stack.currentIndex() == 0 and shown(tab.list, 0, 1) == "10 parts × 3 operators × 3 repeats"
+    words = tab.list.fontMetrics().horizontalAdvance(shown(tab.list, 0))
     assert tab.list.columnWidth(0) > words + tab.list.style().pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth) + 8
     assert tab.rows.text_of("%GRR of the total") == "27.9 %" and tab.rows.text_of("ndc") == "4"
     assert len(tab.table.rows()) == 7 and "gauge R&R" in tab.table.copied()
@@ -145,7 +146,7 @@ def test_the_head_over_the_ticks_has_room_beside_a_short_kind(tab, studies, qtbo
     studies.write("value\n" + "\n".join(f"{50 + 0.001 * (k % 7):.3f}" for k in range(25)))
     studies.finish()
     qtbot.waitUntil(lambda: bool(studies.all))
-    qtbot.waitUntil(lambda: tab.list.topLevelItemCount() == 1)
+    qtbot.waitUntil(lambda: tab.list.model().rowCount() == 1)
     header = tab.list.header()
     assert header.sectionSize(0) >= header.sectionSizeHint(0)
 
@@ -191,14 +192,14 @@ def test_the_type1_study_of_the_repeats_is_kept_ticked_unticked_removed_and_expo
     kept = studies.all[0]
     tab.window().refreshing.at_once()
     assert (kept.kind, kept.included) == ("type1", True)
-    item = tab.list.topLevelItem(0)
-    item.setCheckState(0, Qt.CheckState.Unchecked)
+    row, ticks = place(tab.list, 0), Qt.ItemDataRole.CheckStateRole
+    tab.list.model().setData(row, Qt.CheckState.Unchecked, ticks)
     tab.window().refreshing.at_once()
-    assert tab.list.topLevelItem(0) is item, "an item that tells of its tick is not deleted meanwhile"
+    assert shown(tab.list, 0, role=ticks) is Qt.CheckState.Unchecked
     assert not studies.all[0].included
     undo(presenter)
     tab.window().refreshing.at_once()
-    assert studies.all[0].included and tab.list.topLevelItem(0).checkState(0) is Qt.CheckState.Checked
+    assert studies.all[0].included and shown(tab.list, 0, role=ticks) is Qt.CheckState.Checked
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "mine.json")
     tab.window().refreshing.at_once()
     tab.buttons["export"].click()

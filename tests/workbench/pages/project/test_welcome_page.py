@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QWidget
 
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
+from tests.workbench.cells import place
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.actions import ProjectActions
@@ -35,7 +36,7 @@ def page(hand_bench: Bench, qtbot: Any) -> Iterator[WelcomePage]:
 
 def listed(page: WelcomePage) -> list[Path]:
     page._refreshing.at_once()
-    return [page.recent.item(row).data(Qt.ItemDataRole.UserRole) for row in range(page.recent.count())]
+    return [Path(page._listed.key(place(page.recent, row))) for row in range(page.recent.model().rowCount())]
 
 
 def with_recent(page: WelcomePage, *folders: Path) -> None:
@@ -60,7 +61,7 @@ def test_recent_projects_are_listed_newest_first_and_open_by_one_click(
     first, second = tmp_path / "first", tmp_path / "second"
     with_recent(page, first, second)
     assert listed(page) == [second, first]
-    where = page.recent.visualItemRect(page.recent.item(1)).center()
+    where = page.recent.visualRect(place(page.recent, 1)).center()
     qtbot.mouseClick(page.recent.viewport(), Qt.MouseButton.LeftButton, pos=where)
     qtbot.waitUntil(lambda: page._projects.model.folder == first)
     assert listed(page) == [first, second]
@@ -71,12 +72,12 @@ def test_enter_opens_and_delete_leaves_out(page: WelcomePage, qtbot: Any, tmp_pa
     with_recent(page, first, second)
     page.activateWindow()
     page.recent.setFocus()
-    page.recent.setCurrentRow(1)
+    page.recent.setCurrentIndex(place(page.recent, 1))
     qtbot.waitUntil(page.recent.hasFocus)
     qtbot.keyClick(page.recent, Qt.Key.Key_Delete)
     assert listed(page) == [second]
     assert (first / "project.json").exists(), "only the list forgets it"
-    page.recent.setCurrentRow(0)
+    page.recent.setCurrentIndex(place(page.recent, 0))
     qtbot.keyClick(page.recent, Qt.Key.Key_Return)
     qtbot.waitUntil(lambda: page._projects.model.folder == second)
 

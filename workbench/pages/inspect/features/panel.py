@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from PySide6.QtCore import Qt, Signal
-from PySide6.QtGui import QAction, QKeySequence, QResizeEvent, QShortcut
+from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
     QHeaderView,
@@ -15,8 +15,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QSizePolicy,
     QToolButton,
-    QTreeWidget,
-    QTreeWidgetItem,
     QWidget,
 )
 
@@ -35,6 +33,7 @@ from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
 from workbench.views.layouts import TwoLines, enable, in_column, in_row, muted, say
+from workbench.views.lists.tree_model import Cell, TreeList, TreeRow
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
 if TYPE_CHECKING:
@@ -73,7 +72,7 @@ class FeaturesPanel(QWidget):
         self._page_height = LOW_PAGE
         self._frames: dict[str, Frame] = {}
         self._datums: dict[str, Frame] = {}
-        self.list, self.add, self.measure = _List(), QPushButton(), QPushButton()
+        self.list, self.add, self.measure = _List((tr("Feature"), tr("Value ± U"))), QPushButton(), QPushButton()
         self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
         self.state, self.notes = TwoLines(steady=True), muted()
@@ -111,8 +110,6 @@ class FeaturesPanel(QWidget):
     # ---- the list
 
     def _make_list(self) -> None:
-        self.list.setColumnCount(2)
-        self.list.setHeaderLabels([tr("Feature"), tr("Value ± U")])
         self.list.setAccessibleName(tr("Features"))
         self.list.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
         self.list.setIndentation(14)
@@ -122,7 +119,7 @@ class FeaturesPanel(QWidget):
         header.setStretchLastSection(False)
         header.setSectionResizeMode(0, QHeaderView.ResizeMode.Stretch)
         header.setSectionResizeMode(1, QHeaderView.ResizeMode.ResizeToContents)
-        self.list.currentItemChanged.connect(self._chosen)
+        self.list.chosen.connect(self._features.choose)
         for keys, does in (
             (QKeySequence(QKeySequence.StandardKey.Delete), self._remove),
             (QKeySequence("Alt+Up"), lambda: self._features.move(self._features.chosen, -1)),
@@ -133,31 +130,17 @@ class FeaturesPanel(QWidget):
             shortcut.activated.connect(does)
 
     def _show_list(self) -> None:
-        """All items anew where anything in them has changed; the one chosen is marked, and no other."""
+        """The feature chosen is marked, and no other."""
         features = self._features
         results = [(features.result(name), features.outdated(name)) for name in features.plan.names]
         shown = (features.plan, results, features.measuring)
         if shown != self._shown:
             self._shown = shown
             self._frames, self._datums = words.asked_frames(features.plan), words.datum_frames(features.plan)
-            self.list.blockSignals(True)
-            self.list.clear()
-            self.list.addTopLevelItems([self._item(spec.name, kind_of(spec)) for spec in features.plan.features])
-            self.list.expandAll()
-            self.list.blockSignals(False)
+            self.list.set_rows([self._feature_row(spec.name, kind_of(spec)) for spec in features.plan.features])
             if features.plan.features:
                 self._fit_list()
-        names = features.plan.names
-        wanted = self.list.topLevelItem(names.index(features.chosen)) if features.chosen in names else None
-        current = self.list.currentItem()
-        if wanted != (current and (current.parent() or current)):
-            self.list.blockSignals(True)
-            self.list.setCurrentItem(wanted)  # type: ignore[arg-type]  # none: nothing looks chosen
-            self.list.blockSignals(False)
-        elif wanted is None and current is not None:
-            self.list.blockSignals(True)
-            self.list.selectionModel().clear()
-            self.list.blockSignals(False)
+        self.list.choose(features.chosen)
 
     def _fit_list(self) -> None:
         """As high as the page lets it be, whatever is in it: results that come push nothing below them."""
@@ -169,67 +152,54 @@ class FeaturesPanel(QWidget):
         rows = ROWS - math.ceil(missing / row) + round(SHARE * beyond / row)
         self.list.setFixedHeight(header + frame + min(max(rows, FEWEST_ROWS), MOST_ROWS) * row)
 
-    def _item(self, name: str, kind: FeatureKind) -> QTreeWidgetItem:
+    def _feature_row(self, name: str, kind: FeatureKind) -> TreeRow:
         outdated = self._features.outdated(name)
         result = outdated or self._features.result(name)
         rows = () if result is None else result.rows
         text = words.value(rows[0]) if len(rows) == 1 else ""
         frames = [self._frames[row.name] for row in rows if row.name in self._frames] if text else []
         named = text and not frames  # the symbol says what it is
-        item = QTreeWidgetItem(
-            [tr("{name}, {kind}", name=name, kind=words.short_name(rows[0], name)) if named else name, text]
-        )
-        item.setData(0, Qt.ItemDataRole.UserRole, name)
-        item.setData(0, FRAMES_ROLE, [*([self._datums[name]] if name in self._datums else []), *frames])
-        item.setData(0, SHORT_ROLE, name if named else "")  # its icon says the kind as well
-        item.setIcon(0, icon(kind.icon))
-        item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        below = [self._row(words.short_name(row, name), row, name) for row in rows] if len(rows) > 1 else []
+        mark: QIcon | None = None
         tips = [tr(kind.title)]
         if result is None:
-            item.setText(1, self._state())
+            text = self._state()
         elif result.problem:
-            item.setText(1, tr("cannot be measured"))
-            item.setIcon(1, icon("mdi6.alert-outline", colour="warn"))
+            text, mark = tr("cannot be measured"), icon("mdi6.alert-outline", colour="warn")
             tips.append(text_of(result.problem))
         else:
             tips += [words.used(result), *(words.tip(row) for row in rows)]
-            self._mark(item, words.verdict(result))
-            if not rows:
-                item.setText(1, tr("has been measured"))
-            item.addChildren(below)
+            text, mark = text or ("" if rows else tr("has been measured")), _verdict_icon(words.verdict(result))
         if outdated is not None:
             tips = [tips[0], tr("Out of date: the feature, or one that it rests on, was changed.")]
-            for one in (item, *below):
-                self._mark_outdated(one, tips[1])
-        for column in (0, 1):
-            item.setToolTip(column, "\n".join(tip for tip in tips if tip))
-        return item
+        tip = "\n".join(tip for tip in tips if tip)
+        feature = Cell(
+            tr("{name}, {kind}", name=name, kind=words.short_name(rows[0], name)) if named else name,
+            tip,
+            icon(kind.icon),
+            more={
+                FRAMES_ROLE: [*([self._datums[name]] if name in self._datums else []), *frames],
+                SHORT_ROLE: name if named else "",  # its icon says the kind as well
+            },
+        )
+        below = rows if len(rows) > 1 else ()
+        return TreeRow(
+            name,
+            (feature, self._value(text, tip, mark, outdated is not None)),
+            tuple(self._row_below(row, name, tips[-1] if outdated else "") for row in below),
+        )
 
-    def _row(self, text: str, row: Characteristic, name: str) -> QTreeWidgetItem:
-        item = QTreeWidgetItem([text, words.value(row)])
-        item.setData(0, Qt.ItemDataRole.UserRole, name)
-        item.setData(0, FRAMES_ROLE, [self._frames[row.name]] if row.name in self._frames else [])
-        item.setTextAlignment(1, Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        self._mark(item, row.verdict)
-        for column in (0, 1):
-            item.setToolTip(column, words.tip(row))
-        return item
+    def _row_below(self, row: Characteristic, name: str, outdated: str) -> TreeRow:
+        tip = outdated or words.tip(row)
+        frames = [self._frames[row.name]] if row.name in self._frames else []
+        value = self._value(words.value(row), tip, _verdict_icon(row.verdict), bool(outdated))
+        return TreeRow(row.name, (Cell(words.short_name(row, name), tip, more={FRAMES_ROLE: frames}), value))
 
-    def _mark(self, item: QTreeWidgetItem, verdict: str) -> None:
-        if verdict:
-            symbol, colour = VERDICT_ICONS[verdict]
-            item.setIcon(1, icon(symbol, colour=colour))
-
-    def _mark_outdated(self, item: QTreeWidgetItem, tip: str) -> None:
-        """A value stays readable until there is a new one, but it has no verdict any more."""
-        item.setIcon(1, icon("mdi6.clock-outline", colour="muted"))
-        item.setForeground(1, self.palette().placeholderText())
-        for column in (0, 1):
-            item.setToolTip(column, tip)
-
-    def _chosen(self, item: QTreeWidgetItem | None) -> None:
-        self._features.choose("" if item is None else str(item.data(0, Qt.ItemDataRole.UserRole)))
+    def _value(self, text: str, tip: str, mark: QIcon | None, outdated: bool) -> Cell:
+        """One that is out of date stays readable until there is a new one, but it has no verdict any more."""
+        if not outdated:
+            return Cell(text, tip, mark, right=True)
+        faint = {int(Qt.ItemDataRole.ForegroundRole): self.palette().placeholderText()}
+        return Cell(text, tip, icon("mdi6.clock-outline", colour="muted"), right=True, more=faint)
 
     # ---- the buttons
 
@@ -307,7 +277,14 @@ class FeaturesPanel(QWidget):
             self._features.remove(self._features.chosen)
 
 
-class _List(QTreeWidget):
+def _verdict_icon(verdict: str) -> QIcon | None:
+    if not verdict:
+        return None
+    symbol, colour = VERDICT_ICONS[verdict]
+    return icon(symbol, colour=colour)
+
+
+class _List(TreeList):
     """Keeps the chosen row in sight, however high it is made."""
 
     def resizeEvent(self, event: QResizeEvent) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import Qt
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import (
     QFrame,
@@ -12,8 +11,6 @@ from PySide6.QtWidgets import (
     QPushButton,
     QScrollArea,
     QStackedWidget,
-    QTreeWidget,
-    QTreeWidgetItem,
     QWidget,
 )
 
@@ -26,6 +23,7 @@ from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, Folding, UpAndDown, enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
+from workbench.views.lists.tree_model import Cell, TreeList, TreeRow
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.control import ControlPlot
 
@@ -49,7 +47,8 @@ class StudiesTab(QWidget):
         self._studies = studies
         self._shown: tuple[KeptStudy, ...] = ()
         self._shown_study: object = None
-        self.list, self.rows, self.table = QTreeWidget(), ValueRows(least_width=ROWS_PX), DataTable()
+        self.list, self.rows = TreeList((tr("In the report"), tr("Made of"))), ValueRows(least_width=ROWS_PX)
+        self.table = DataTable()
         self.charts = (ControlPlot(), ControlPlot())
         self.title, self.words, self.notes = QLabel(), muted(), muted()
         self.title.setObjectName("heading")
@@ -96,16 +95,12 @@ class StudiesTab(QWidget):
             ("type1", "mdi6.chart-bell-curve", tr("Keep type-1 of the repeats"), self._studies.keep_type1),
             ))  # fmt: skip
         column.addWidget(Folding(studies, of_parts, spacing=6, share=0))
-        self.list.setColumnCount(2)
-        self.list.setHeaderLabels([tr("In the report"), tr("Made of")])
         self.list.setAccessibleName(tr("Studies"))
         self.list.setObjectName("roomy")
         self.list.setRootIsDecorated(False)
         self.list.header().setSectionResizeMode(0, QHeaderView.ResizeMode.Fixed)
-        self.list.currentItemChanged.connect(lambda item: self._studies.choose(_id(item)))
-        self.list.itemChanged.connect(
-            lambda item: self._studies.include(_id(item), item.checkState(0) is Qt.CheckState.Checked)
-        )
+        self.list.chosen.connect(self._studies.choose)
+        self.list.ticked.connect(self._studies.include)
         column.addWidget(self.list)
         column.addLayout(self._row((
             ("remove", "mdi6.delete-outline", tr("Remove"), lambda: self._studies.remove(self._studies.chosen)),
@@ -133,27 +128,12 @@ class StudiesTab(QWidget):
     def _show_list(self) -> None:
         studies = self._studies
         if studies.all != self._shown:
-            before = [one.id for one in self._shown]
             self._shown = studies.all
-            self.list.blockSignals(True)
-            if before != [one.id for one in studies.all]:  # else a tick is on its way from one of the items
-                self.list.clear()
-                self.list.addTopLevelItems([QTreeWidgetItem() for _ in studies.all])
-            for number, one in enumerate(studies.all):
-                item = self.list.topLevelItem(number)
-                assert item is not None  # there is one for each
-                item.setText(0, words.kind_title(one.kind))
-                item.setText(1, text_of(one.title))
-                item.setData(0, Qt.ItemDataRole.UserRole, one.id)
-                item.setCheckState(0, Qt.CheckState.Checked if one.included else Qt.CheckState.Unchecked)
-                item.setToolTip(0, tr("Ticked studies are printed in the report"))
-                item.setToolTip(1, text_of(one.title))
-                if one.id == studies.chosen:
-                    self.list.setCurrentItem(item)
+            self.list.set_rows([_row_of(one) for one in studies.all])
+            self.list.choose(studies.chosen)
             # Qt's own width of a column forgets the room that the style leaves beside a box to tick.
             beside = self.list.sizeHintForColumn(0) + BESIDE_PX
             self.list.setColumnWidth(0, max(beside, self.list.header().sectionSizeHint(0)))
-            self.list.blockSignals(False)
         self._fit_list()
         self.list.setVisible(bool(studies.all))
         self.words.setText(
@@ -226,5 +206,6 @@ class StudiesTab(QWidget):
             self._studies.export(kept.id, path)
 
 
-def _id(item: QTreeWidgetItem | None) -> str:
-    return "" if item is None else str(item.data(0, Qt.ItemDataRole.UserRole))
+def _row_of(study: KeptStudy) -> TreeRow:
+    title, tip = text_of(study.title), tr("Ticked studies are printed in the report")
+    return TreeRow(study.id, (Cell(words.kind_title(study.kind), tip, ticked=study.included), Cell(title, title)))

@@ -1,0 +1,193 @@
+"""Rows of a list, each perhaps with rows below it, as a model: what stays keeps its place and stays chosen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import count
+from typing import Any
+
+from PySide6.QtCore import QAbstractItemModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
+from PySide6.QtGui import QIcon
+from PySide6.QtWidgets import QTreeView, QWidget
+
+_Index = QModelIndex | QPersistentModelIndex
+_NONE = QModelIndex()
+_TOP = 0
+"""What an index carries that has no row above it; others carry the number of that row."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cell:
+    """What a row says in one column; `ticked` is None where there is nothing to tick, `more` is shown by delegates."""
+
+    text: str
+    tip: str = ""
+    icon: QIcon | None = None
+    right: bool = False
+    ticked: bool | None = None
+    more: Mapping[int, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, slots=True)
+class TreeRow:
+    """A row; the one of the same `key` is the same row, whatever it says."""
+
+    key: str
+    cells: tuple[Cell, ...]
+    below: tuple[TreeRow, ...] = ()
+
+
+class TreeModel(QAbstractItemModel):
+    """Rows for a list or a tree, with or without titles."""
+
+    ticked = Signal(str, bool)
+    """Key of a row whose box was clicked, and whether it is to be ticked."""
+
+    def __init__(self, parent: QObject, titles: Sequence[str] = ("",)) -> None:
+        super().__init__(parent)
+        self._titles = tuple(titles)
+        self._rows: list[TreeRow] = []
+        self._numbers: list[int] = []
+        """Of each row its own for as long as it is there: an index of a row below knows by it which one is above."""
+        self._next = count(_TOP + 1)
+
+    def set_rows(self, rows: Sequence[TreeRow]) -> None:
+        """Show these: rows that were there say what they say now, others come or go."""
+        before, now = [row.key for row in self._rows], [row.key for row in rows]
+        first = _alike(before, now)
+        last = _alike(before[first:][::-1], now[first:][::-1])
+        if gone := len(before) - first - last:
+            self.beginRemoveRows(_NONE, first, first + gone - 1)
+            del self._rows[first : first + gone], self._numbers[first : first + gone]
+            self.endRemoveRows()
+        if come := len(now) - first - last:
+            self.beginInsertRows(_NONE, first, first + come - 1)
+            self._rows[first:first] = rows[first : first + come]
+            self._numbers[first:first] = [next(self._next) for _ in range(come)]
+            self.endInsertRows()
+        for number, row in enumerate(rows):
+            self._say(number, row)
+
+    def _say(self, number: int, row: TreeRow) -> None:
+        above, before, now = self.index(number, 0), len(self._rows[number].below), len(row.below)
+        if now < before:
+            self.beginRemoveRows(above, now, before - 1)
+        elif now > before:
+            self.beginInsertRows(above, before, now - 1)
+        self._rows[number] = row
+        if now < before:
+            self.endRemoveRows()
+        elif now > before:
+            self.endInsertRows()
+        last = len(self._titles) - 1
+        self.dataChanged.emit(above, self.index(number, last))
+        if now:
+            self.dataChanged.emit(self.index(0, 0, above), self.index(now - 1, last, above))
+
+    def key(self, index: _Index) -> str:
+        """Of the row that an index is of, or is below; "" for an index of nothing."""
+        if not index.isValid():
+            return ""
+        above = index.parent()
+        return self._rows[above.row() if above.isValid() else index.row()].key
+
+    def index_of(self, key: str) -> QModelIndex:
+        """Where the row of this key begins; an index of nothing if there is none."""
+        return next((self.index(number, 0) for number, row in enumerate(self._rows) if row.key == key), QModelIndex())
+
+    # ---- what Qt asks
+
+    def index(self, row: int, column: int, parent: _Index = _NONE) -> QModelIndex:
+        if not self.hasIndex(row, column, parent):
+            return QModelIndex()
+        return self.createIndex(row, column, self._numbers[parent.row()] if parent.isValid() else _TOP)
+
+    def parent(self, index: _Index) -> QModelIndex:  # type: ignore[override]  # QObject has another one of this name
+        if not index.isValid() or index.internalId() == _TOP:
+            return QModelIndex()
+        return self.createIndex(self._numbers.index(index.internalId()), 0, _TOP)
+
+    def rowCount(self, parent: _Index = _NONE) -> int:
+        if not parent.isValid():
+            return len(self._rows)
+        return len(self._rows[parent.row()].below) if parent.internalId() == _TOP and parent.column() == 0 else 0
+
+    def columnCount(self, parent: _Index = _NONE) -> int:
+        return len(self._titles)
+
+    def flags(self, index: _Index) -> Qt.ItemFlag:
+        ticks = index.isValid() and self._cell(index).ticked is not None
+        return super().flags(index) | (Qt.ItemFlag.ItemIsUserCheckable if ticks else Qt.ItemFlag.NoItemFlags)
+
+    def data(self, index: _Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        cell = self._cell(index)
+        match role:
+            case Qt.ItemDataRole.DisplayRole:
+                return cell.text
+            case Qt.ItemDataRole.ToolTipRole:
+                return cell.tip
+            case Qt.ItemDataRole.DecorationRole:
+                return cell.icon
+            case Qt.ItemDataRole.TextAlignmentRole if cell.right:
+                return Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter
+            case Qt.ItemDataRole.CheckStateRole if cell.ticked is not None:
+                return Qt.CheckState.Checked if cell.ticked else Qt.CheckState.Unchecked
+        return cell.more.get(role)
+
+    def setData(self, index: _Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
+        """A tick is asked for; it is there once `set_rows` says so."""
+        if role != Qt.ItemDataRole.CheckStateRole:
+            return False
+        self.ticked.emit(self.key(index), Qt.CheckState(value) == Qt.CheckState.Checked)
+        return True
+
+    def headerData(self, section: int, orientation: Qt.Orientation, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
+        if orientation is Qt.Orientation.Horizontal and role == Qt.ItemDataRole.DisplayRole:
+            return self._titles[section]
+        return None
+
+    def _cell(self, index: _Index) -> Cell:
+        above = index.parent()
+        row = self._rows[above.row()].below[index.row()] if above.isValid() else self._rows[index.row()]
+        return row.cells[index.column()]
+
+
+class TreeList(QTreeView):
+    """Shows such rows, those below others unfolded."""
+
+    chosen = Signal(str)
+    """Key of the row that someone went to, "" for none; not where the rows themselves changed."""
+    ticked = Signal(str, bool)
+    """As of the model."""
+
+    def __init__(self, titles: Sequence[str], parent: QWidget | None = None) -> None:
+        super().__init__(parent)
+        self._rows, self._showing = TreeModel(self, titles), False
+        self.setModel(self._rows)
+        self._rows.rowsInserted.connect(self.expandAll)
+        self._rows.ticked.connect(self.ticked)
+        self.selectionModel().currentChanged.connect(self._gone_to)
+
+    def set_rows(self, rows: Sequence[TreeRow]) -> None:
+        """Show these."""
+        self._showing = True
+        self._rows.set_rows(rows)
+        self._showing = False
+
+    def choose(self, key: str) -> None:
+        """Mark a row and no other, or none, for "" and what is not there; a row below it stays as it is."""
+        self._showing = True
+        if self._rows.key(self.currentIndex()) != key:
+            self.setCurrentIndex(self._rows.index_of(key))
+        self._showing = False
+
+    def _gone_to(self, index: QModelIndex) -> None:
+        if not self._showing:
+            self.chosen.emit(self._rows.key(index))
+
+
+def _alike(before: Sequence[str], now: Sequence[str]) -> int:
+    """How many keys from the first on are the same."""
+    together = min(len(before), len(now))
+    return next((place for place in range(together) if before[place] != now[place]), together)
