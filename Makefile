@@ -16,10 +16,11 @@ AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 SIDE_BY_SIDE := -n 2 $(AS_MODULES)
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
-# is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera.
+# is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera, so one
+# process of them runs beside the two of the others.
 BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
-ON_SCREEN   := -n 3 $(AS_MODULES)
+ON_SCREEN   := -n 1 $(AS_MODULES)
 
 # Files with proofs: to import all the others takes each process as long as a proof. Those of SCREEN_ONLY are proven
 # where they are tested.
@@ -32,7 +33,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test examples quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
+.PHONY: demo app test offscreen on_screen examples quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -46,11 +47,16 @@ compile: $(READY)         ## once, so that test processes do not all compile the
 test: $(READY)            ## format, lint, types, rooms, examples, every test; windows offscreen and on a virtual screen
 	@$(MAKE) --no-print-directory -j2 --output-sync=target check examples  # neither keeps two cores busy
 	@TRISECT_MADE_ONCE=$$(mktemp -d) && export TRISECT_MADE_ONCE && trap 'rm -rf "$$TRISECT_MADE_ONCE"' EXIT && trap 'exit 130' INT TERM; \
-	if command -v Xvfb >/dev/null; then set -x; \
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%) && \
-	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); \
-	else echo "Xvfb is not installed: windows are tested without a screen only"; \
+	if command -v Xvfb >/dev/null; then $(MAKE) --no-print-directory -j2 offscreen on_screen; \
+	else echo "Xvfb is not installed: windows are tested without a screen only"; set -x; \
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE); fi
+
+offscreen: $(READY)
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%)
+
+on_screen: $(READY)       # beside `offscreen`, so it is told in one piece when it ends
+	@{ set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); } > "$$TRISECT_MADE_ONCE/on_screen" 2>&1; \
+	passed=$$?; cat "$$TRISECT_MADE_ONCE/on_screen"; exit $$passed
 
 examples: compile         ## those in the code's documentation and in the manual
 	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
