@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.remaining import USUAL_S, Remaining, in_words
+from core.remaining import USUAL_S, Remaining
 from core.translations import languages, own_name
 from workbench import first_measurement
 from workbench.bench import Bench
@@ -50,7 +50,7 @@ from workbench.views.layouts import Elided, UpAndDown, enable, in_column, in_row
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
-from workbench.views.task_bar import StatusBar, TaskBar
+from workbench.views.task_bar import StatusBar, TaskBar, time_left
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
 from workbench.work import jobs
 from workbench.work.jobs import name_of
@@ -350,6 +350,7 @@ class MainWindow(QMainWindow):
         self.bench.settings.language_changed.connect(self._on_language)
         lane = self.bench.measuring
         lane.task_started.connect(self._task_started)
+        lane.task_progressed.connect(self._task_progressed)
         lane.task_ended.connect(self._task_ended)
         self.task_bar.cancel_pressed.connect(self.cancel_task)
         self.operator.stop.connect(self.cancel_task)
@@ -499,14 +500,12 @@ class MainWindow(QMainWindow):
     def _task_started(self, task: Task) -> None:
         self._task = task
         self._stage = ""
-        usual = USUAL_S.get(name_of(task.job), {})
-        self._remaining = Remaining(usual, self.bench.settings.stage_seconds(task.label))
-        task.progressed.connect(self._task_progressed)
-        task.done.connect(self._task_done)
+        name = name_of(task.job)
+        self._remaining = Remaining(USUAL_S.get(name, {}), self.bench.settings.stage_seconds(name))
         self.task_bar.begin(task.label)
         self._refreshing.soon()
 
-    def _task_progressed(self, stage: str, done: int, total: int) -> None:
+    def _task_progressed(self, _: Task, stage: str, done: int, total: int) -> None:
         self._stage = stage
         self._remaining.tell(stage, done, total)
         self._show_progress()
@@ -514,17 +513,14 @@ class MainWindow(QMainWindow):
     def _show_progress(self) -> None:
         if self._task is None or self._task.cancelling:
             return
-        left = self._remaining.left
-        words = tr("about {time} left", time=in_words(left)) if left is not None else ""
+        words = time_left(self._remaining.left)
         self.task_bar.progress(self._task.label, tr(self._stage), self._remaining.share, words)
         self.operator.show_progress(tr(self._stage), self._remaining.share, words)
 
-    def _task_done(self, _: Any) -> None:
-        if self._task is not None:
-            self.bench.settings.keep_stage_seconds(self._task.label, self._remaining.finish())
-
     def _task_ended(self, task: Task) -> None:
         if task is self._task:
+            if task.succeeded:
+                self.bench.settings.keep_stage_seconds(name_of(task.job), self._remaining.finish())
             self._task = None
             self.task_bar.end()
             self._refreshing.soon()

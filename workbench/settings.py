@@ -114,14 +114,14 @@ class AppSettings(QObject):
         """Save a window's or splitter's geometry."""
         self._store.setValue(f"layout/{name}", state)
 
-    def stage_seconds(self, label: str) -> dict[str, float]:
-        """How long each stage of a job with this label took last time; the guess for the next time."""
-        stored = self._store.value(f"stages/{label}", {})
+    def stage_seconds(self, job: str) -> dict[str, float]:
+        """How long each stage of the job of this name took last time; the guess for the next time."""
+        stored = self._store.value(f"stages/{job}", {})
         return {str(k): float(v) for k, v in stored.items()} if isinstance(stored, dict) else {}
 
-    def keep_stage_seconds(self, label: str, seconds: dict[str, float]) -> None:
+    def keep_stage_seconds(self, job: str, seconds: dict[str, float]) -> None:
         """Remember how long the stages of a job took; of those it did without, what was known before."""
-        self._store.setValue(f"stages/{label}", {**self.stage_seconds(label), **seconds})
+        self._store.setValue(f"stages/{job}", {**self.stage_seconds(job), **seconds})
 
     def _keep_recent(self, paths: list[Path]) -> None:
         self._store.setValue("recent", [str(path) for path in paths[:RECENT]])

@@ -17,6 +17,7 @@ class HandLane(QObject):
     """Runs jobs a moment later, one after another. `answers` replaces functions; `held` are those that wait."""
 
     task_started = Signal(object)
+    task_progressed = Signal(object, str, int, int)
     task_ended = Signal(object)
 
     def __init__(self, name: str) -> None:
@@ -62,7 +63,7 @@ class HandLane(QObject):
         if on_cancelled:
             task.cancelled.connect(on_cancelled)
         if replace_waiting:
-            for old in [entry for entry in self.waiting[1:] if (entry[0].label, entry[1]) == (label, job)]:
+            for old in [entry for entry in self.waiting[1:] if entry[0].answers(receiver, job)]:
                 self.waiting.remove(old)
                 old[0].conclude(Kind.CANCELLED)
         self.waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))

@@ -1,10 +1,12 @@
 """What crashes a window is not written: loose connections, threads beside Qt's, event loops within others, items.
 
-Lambdas are connected only to signals of what the same object has made, and what is gone with it.
+Lambdas, and functions within functions, are connected only to signals of what the same object has made, and what is
+gone with it.
 
-A lambda has no receiver that Qt knows: the connection stays until the sender goes. On a sender that outlives the page
+They have no receiver that Qt knows: the connection stays until the sender goes. On a sender that outlives the page
 it would be called for a page that is deleted, and the program would crash. So a sender is either the object itself, an
-attribute that its class makes, or made in the same function; for any other, a method of a QObject is connected.
+attribute that its class makes, or made in the same function; for any other, a method of a QObject is connected. A task
+outlives its page, but tells nothing once the receiver it was run for is gone: that is to be the object itself.
 """
 
 from __future__ import annotations
@@ -49,9 +51,15 @@ def assigned(node: ast.AST) -> Iterator[tuple[str, ast.expr]]:
             yield from ((ast.unparse(name), part.iter) for name in names)
 
 
+RUNS = {"run", "run_quick", "run_long"}
+"""Methods of lanes and of the bench that begin a task for the receiver that is given first."""
+
+
 def makes(value: ast.expr) -> bool:
-    """Whether the expression makes something, alone or many of them."""
-    return any(isinstance(part, ast.Call) for part in ast.walk(value))
+    """Whether the expression makes something of the object's own, alone or many of them."""
+    calls = [part for part in ast.walk(value) if isinstance(part, ast.Call)]
+    tasks = [one for one in calls if isinstance(one.func, ast.Attribute) and one.func.attr in RUNS]
+    return bool(calls) and all(one.args and ast.unparse(one.args[0]) == "self" for one in tasks)
 
 
 def holds_own(cls: ast.ClassDef | None, function: ast.FunctionDef, value: ast.expr) -> bool:
@@ -82,7 +90,9 @@ def connections(path: Path) -> Iterator[tuple[int, str]]:
             ):
                 continue
             slot = node.args[0] if node.args else None
+            within = {one.name for one in ast.walk(function) if isinstance(one, ast.FunctionDef)} - {function.name}
             loose = isinstance(slot, ast.Lambda) or (isinstance(slot, ast.Call) and "partial" in ast.unparse(slot.func))
+            loose = loose or (isinstance(slot, ast.Name) and slot.id in within)
             if not loose or not isinstance(node.func.value, ast.Attribute):
                 continue
             sender = ast.unparse(node.func.value.value)
@@ -108,8 +118,21 @@ def test_the_rule_sees_a_sender_that_outlives_its_receiver(tmp_path: Path) -> No
         "            action = Action(text)\n"
         "            action.triggered.connect(lambda _=False: 4)\n"
         "        presenter.live.started.connect(partial(print, 5))\n"
+        "        def ended():\n"
+        "            pass\n"
+        "        model.ended.connect(ended)\n"
+        "        mine = presenter.lane.run(self, 'job')\n"
+        "        mine.ended.connect(ended)\n"
+        "        others = presenter.lane.run(presenter, 'job')\n"
+        "        others.ended.connect(ended)\n"
     )
-    assert list(connections(source)) == [(5, "self.model"), (6, "presenter"), (10, "presenter.live")]
+    assert list(connections(source)) == [
+        (5, "self.model"),
+        (6, "presenter"),
+        (10, "presenter.live"),
+        (13, "model"),
+        (17, "others"),
+    ]
 
 
 EXPLAINED = {

@@ -5,8 +5,19 @@ from __future__ import annotations
 from PySide6.QtCore import QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QStatusBar, QWidget
 
+from core.remaining import in_words
 from workbench.language import named, tr
 from workbench.views.layouts import Elided, enable
+
+LONG_S = (59.0, 59 * 60.0)
+"""Seconds left whose words are as long as any: what stands beside them does not move when they change."""
+ROOM_PX = 2
+"""Beside the words, for what Qt rounds."""
+
+
+def time_left(seconds: float | None) -> str:
+    """How long a job still takes, in words; none while nothing is known."""
+    return "" if seconds is None else tr("about {time} left", time=in_words(seconds))
 
 
 class StatusBar(QStatusBar):
@@ -65,6 +76,8 @@ class TaskBar(QWidget):
         self._label.setText(label)
         self._bar.setRange(0, 0)
         self._left.setText("")
+        words = (*(time_left(seconds) for seconds in LONG_S), tr("stopping …"))
+        self._left.setMinimumWidth(max(map(self._left.fontMetrics().horizontalAdvance, words)) + ROOM_PX)
         enable(self.cancel, "", tr("Stop this job"))
         self._clock.start()
         self.show()

@@ -27,7 +27,8 @@ STOP_WITHIN_MS = 900
 class Task(QObject):
     """One job on its way, and whom its answer is for.
 
-    One of `done`, `failed`, `cancelled` comes at last, unless the receiver is gone by then; `ended` comes in any case.
+    One of `done`, `failed`, `cancelled` comes at last, then `ended`. All are for the receiver: once it is deleted,
+    nothing of the task is told any more, so whatever it connects is safe. The lane tells others of all tasks.
     """
 
     progressed = Signal(str, int, int)
@@ -41,7 +42,8 @@ class Task(QObject):
     def __init__(self, lane: Lane, receiver: QObject, number: int, job: Job, label: str) -> None:
         super().__init__(lane)
         self.number, self.job, self.label = number, job, label
-        self.cancelling = self.unwanted = False
+        self.cancelling = self.succeeded = False
+        self._receiver = id(receiver)  # not kept: it goes when its owner lets it go
         receiver.destroyed.connect(self._receiver_gone)
 
     @property
@@ -61,12 +63,15 @@ class Task(QObject):
         """Tell a running job that the last view has been shown and the next one is welcome."""
         self.lane.post(self, Kind.SHOWN)
 
+    def answers(self, receiver: QObject, job: Job) -> bool:
+        """Whether it is this job for this receiver."""
+        return (self._receiver, self.job) == (id(receiver), job)
+
     def conclude(self, kind: Kind, value: Any = None) -> None:
-        """The job is over: tell the answer to its receiver, if that is still there."""
+        """The job is over: tell the answer to its receiver."""
+        self.succeeded = kind is Kind.DONE and not self.cancelling
         try:
-            if self.unwanted:
-                pass
-            elif kind is Kind.DONE and not self.cancelling:
+            if self.succeeded:
                 self.done.emit(value)
             elif kind is Kind.FAILED:
                 self.failed.emit(value)
@@ -76,13 +81,14 @@ class Task(QObject):
             self.ended.emit()
 
     def _receiver_gone(self) -> None:
-        self.unwanted = True
+        self.blockSignals(True)
 
 
 class Lane(QObject):
     """A process that runs one job after another; started when it is first needed, or by `prepare`."""
 
     task_started = Signal(object)
+    task_progressed = Signal(object, str, int, int)
     task_ended = Signal(object)
 
     def __init__(
@@ -144,8 +150,8 @@ class Lane(QObject):
         Parameters
         ----------
         receiver
-            Whom the answer is for: once it is deleted, none of the three functions is called any more. The job itself
-            goes on: what it writes is wanted all the same.
+            Whom the answer is for: once it is deleted, none of the three functions is called any more, nor what else
+            was connected to the task. The job itself goes on: what it writes is wanted all the same.
         label
             What the status bar says while it runs.
         on_done, on_failed, on_cancelled
@@ -154,7 +160,7 @@ class Lane(QObject):
             Keywords the function takes and what it gets for them: "progress" (default), "watch", "channel", or the
             "memory" of the process, in which one job may leave something for the next.
         replace_waiting
-            Drop waiting ones of this job with the same label: only the newest matters.
+            Drop those of this job that wait for the same receiver: only the newest matters.
         """
         self._numbers += 1
         task = Task(self, receiver, self._numbers, job, label)
@@ -164,7 +170,7 @@ class Lane(QObject):
         if on_cancelled:
             task.cancelled.connect(on_cancelled)
         if replace_waiting:
-            for waiting in [one for one, other, *_ in self._waiting if (one.label, other) == (label, job)]:
+            for waiting in [one for one, *_ in self._waiting if one.answers(receiver, job)]:
                 self.cancel(waiting)
         self._waiting.append((task, job, args, {"progress": "progress"} if offers is None else offers))
         self._next()
@@ -245,6 +251,7 @@ class Lane(QObject):
             kind, value = Kind.FAILED, Failure.of(error)
         if kind == Kind.PROGRESS:
             task.progressed.emit(*value)
+            self.task_progressed.emit(task, *value)
         elif kind == Kind.EVENT:
             task.reported.emit(value)
         elif kind == Kind.VIEW:

@@ -65,14 +65,19 @@ def test_a_job_gives_its_result_and_tells_its_progress(qtbot: Any, lane: Lane) -
 def test_an_answer_whose_receiver_is_gone_is_dropped_and_the_job_is_done_all_the_same(qtbot: Any, lane: Lane) -> None:
     got: list[Any] = []
     receiver, other = QObject(), QObject()
+    other.setObjectName("other")
+    heard: set[str] = set()
     for one in (receiver, other):
-        lane.run(one, job("double"), 21, label="double", on_done=got.append, on_failed=got.append)
+        task = lane.run(one, job("double"), 21, label="double", on_done=got.append, on_failed=got.append)
+        for signal in (task.progressed, task.ended):
+            signal.connect(lambda *_, one=one: heard.add(one.objectName()))
     lane.run(receiver, job("refuse"), label="refuse", on_done=got.append, on_failed=got.append)
     ended: list[str] = []
     lane.task_ended.connect(lambda task: ended.append(task.label))
     shiboken6.delete(receiver)
     finish(qtbot, lane)
     assert got == [42]
+    assert heard == {"other"}, "nothing is told of what was connected for a receiver that is gone"
     assert ended == ["double", "double", "refuse"]
 
 
@@ -91,7 +96,7 @@ def test_jobs_run_in_the_order_they_were_given(qtbot: Any, lane: Lane) -> None:
     assert [value for _, value in answers.got] == [2, 4, 6]
 
 
-def test_only_the_newest_waiting_job_of_a_label_is_run_if_asked(qtbot: Any, lane: Lane) -> None:
+def test_only_the_newest_waiting_job_for_a_receiver_is_run_if_asked(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     for value in (1, 2, 3):
         answers.run(lane, "double", value, replace_waiting=True)
@@ -111,11 +116,12 @@ def test_a_job_finds_what_the_one_before_left_in_the_memory_until_the_process_is
     assert [value for kind, value in answers.got if kind == "done"][-2:] == [1, None]
 
 
-def test_another_job_of_the_same_label_keeps_waiting(qtbot: Any, lane: Lane) -> None:
-    answers = Answers()
+def test_another_job_and_the_same_for_another_receiver_keep_waiting(qtbot: Any, lane: Lane) -> None:
+    answers, other = Answers(), QObject()
     answers.run(lane, "double", 1)
     answers.run(lane, "double", 2)
     lane.run(lane, job("refuse"), label="double", on_done=lambda _: None, replace_waiting=True)
+    lane.run(other, job("double"), 3, label="double", on_done=lambda _: None, replace_waiting=True)
     finish(qtbot, lane)
     assert answers.got == [("done", 2), ("done", 4)]
 

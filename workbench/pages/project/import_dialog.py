@@ -208,12 +208,12 @@ class ImportDialog(QDialog):
             view.clear(text_of(problem))
 
         self._bench.quick.run(
-            self,
+            view,
             jobs.DISPLAY_PICTURE,
             path,
             None,
             _PREVIEW_PX,
-            label=f"{tr('Reading the picture')} {int(view is self.off)}",
+            label=tr("Reading the picture"),
             on_done=show,
             on_failed=tell,
             replace_waiting=True,
