@@ -104,6 +104,11 @@ class Message:
     def __reduce__(self) -> tuple[Any, ...]:
         return _restored, (self.code, self.text, self.many, dict(self.values))
 
+    @property
+    def is_sentence(self) -> bool:
+        """Whether it stands by itself; else it is a part of one, in English without a full stop."""
+        return self.text.endswith(".")
+
     def _parts(self) -> tuple[Any, ...]:
         return self.code, str(self), dict(self.values)
 

@@ -190,13 +190,20 @@ def telling_in(trees: Sequence[ast.Module]) -> frozenset[str]:
 def cuts(tree: ast.Module, telling: Collection[str]) -> Iterator[tuple[int, str]]:
     """Line and source of each place where a text in the reader's language is looked at or taken apart."""
     for function in (node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef)):
-        tried = [
+        nodes = list(ast.walk(function))
+        tried: list[ast.Attribute | ast.Subscript] = [
             node.func
-            for node in ast.walk(function)
+            for node in nodes
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in CUTS
         ]
+        tried += [node for node in nodes if isinstance(node, ast.Subscript) and "[-" in ast.unparse(node)]  # its end
         given = assigned_in(function) if tried else {}
         yield from ((one.lineno, ast.unparse(one)) for one in tried if tells(one.value, telling, given))
+        for node in nodes:
+            if isinstance(node, ast.Compare):
+                sides = [node.left, *node.comparators]
+                if any(isinstance(side, ast.Call) and called(side) in TELLING for side in sides):
+                    yield node.lineno, ast.unparse(node)
 
 
 def test_no_logic_looks_at_a_shown_text():
@@ -218,6 +225,10 @@ def test_no_logic_looks_at_a_shown_text():
         ("shown_name(row, words).strip().removeprefix('a')", True),
         ("text = tr('a') if x else ''; text.startswith('a')", True),
         ("f'{tr(kind)} …'.replace(' ', '')", True),
+        ("x = tr('a')[-1:] in '.'", True),
+        ("x = text == tr('a')", True),
+        ("x = 'a' in text_of(note)", True),
+        ("x = tr('a') if y == 'a' else ''", False),
         ("path.name.partition('.')", False),
         ("name.removeprefix('a')", False),
         ("tr('a').strip()", False),

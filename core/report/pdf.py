@@ -13,6 +13,7 @@ from reportlab.lib.utils import ImageReader
 from reportlab.pdfgen.canvas import Canvas
 from reportlab.platypus import BaseDocTemplate, Flowable, Frame, PageTemplate
 
+from core.messages import capital
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
@@ -255,7 +256,7 @@ def _typeset(
 def _subject(look: ReportLook, content: ReportContent) -> str:
     found = content.characteristics
     what = shown_name(found[0], look.words) if len(found) == 1 else look.words("Inspection" if found else "Point cloud")
-    what = what[:1].upper() + what[1:]
+    what = capital(what)
     return look.words("{what} of {part}", what=what, part=content.part) if content.part else what
 
 

@@ -16,7 +16,7 @@ from reportlab.pdfgen.canvas import Canvas
 from core.errors import InputError
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.charuco import dictionary_of
-from core.messages import Message, label
+from core.messages import Message, capital, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.layout.style import ACCENT, INK, MUTED, SANS, ReportLook, color, prepare_reportlab
 from core.report.wording import ENGLISH, target_in_words
@@ -218,7 +218,7 @@ def _draw_rulers(canvas: Any) -> None:
 def _draw_words(canvas: Any, target: Target, paper: SheetPaper, layout: SheetLayout, title: str) -> None:
     """What it is and how to print it, below the ruler."""
     left, width = (EDGE_MM + SIDE_MM) * mm, (layout.width_mm - 2 * EDGE_MM - SIDE_MM) * mm
-    parts = [f"{target_in_words(target)[:1].upper()}{target_in_words(target)[1:]}"]
+    parts = [capital(target_in_words(target))]
     parts += [target.dictionary_id] if isinstance(target, Charuco) else []
     name = f"{title[:MOST_TITLE]} · " if title else ""
     head = LOOK.text(f"{name}{', '.join(parts)}, on {paper}", "strong")

@@ -9,7 +9,7 @@ from reportlab.platypus import Flowable, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.uncertainty.coverage import effective_dof
-from core.messages import label
+from core.messages import capital, label
 from core.report.layout.blocks import ShareBar, heads, plain_table, ruled_table
 from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 from core.report.wording import decimals_of, shown_unit
@@ -63,7 +63,7 @@ def budget_table(look: ReportLook, one: Characteristic) -> Table:
         source = words.known(row.source)
         rows.append(
             [
-                look.text(source[:1].upper() + source[1:], "small"),
+                look.text(capital(source), "small"),
                 look.text(value, "number"),
                 look.say(row.distribution, "small"),
                 look.text(own, "number"),

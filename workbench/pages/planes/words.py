@@ -59,8 +59,8 @@ def notes(calibration: FanCalibration | None) -> str:
     """What else is to be said of a calibration, a sentence a line; the poses left out are listed by themselves."""
     if calibration is None:
         return ""
-    said = [text_of(note) for note in calibration.notes if note.code != "fan.poses_left_out"]
-    return "\n".join(sentence(note) if note[-1:] not in ".。" else note for note in said)
+    shown = [note for note in calibration.notes if note.code != "fan.poses_left_out"]
+    return "\n".join(text_of(note) if note.is_sentence else sentence(text_of(note)) for note in shown)
 
 
 def short_names(names: Sequence[str]) -> list[str]:

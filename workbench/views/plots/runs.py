@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 import pyqtgraph as pg
@@ -33,6 +34,14 @@ class _Runs:
     nominal: float | None
     tolerance: float | None
     k: float
+
+
+class _ReferenceLine(NamedTuple):
+    value: float
+    text: str
+    colour: str
+    style: Qt.PenStyle
+    words_below: bool
 
 
 class RunChart(Plot):
@@ -86,16 +95,15 @@ class RunChart(Plot):
         at = np.arange(1, count + 1)
         lines = self._reference_lines(runs)
         reach = [*(runs.values - np.nan_to_num(runs.U)), *(runs.values + np.nan_to_num(runs.U))]
-        reach += [y for y, *_ in lines]
+        reach += [line.value for line in lines]
         low, high = min(reach), max(reach)
         self._words_shown, self._reach = [], (low, high)
-        for y, text, colour, style in lines:
-            self._item.addItem(pg.InfiniteLine(y, angle=0, pen=self._pen(colour, 1.2, style)))
-            below = text == tr("lower limit") or (runs.mean == y and y < (runs.nominal or y))
-            below = below or (runs.nominal == y and y <= (runs.mean or -np.inf))
-            words = self._words(f"{text} {written(y, (high - low) / 200)} mm", colour, (1, 0 if below else 1))
+        for line in lines:
+            self._item.addItem(pg.InfiniteLine(line.value, angle=0, pen=self._pen(line.colour, 1.2, line.style)))
+            text = f"{line.text} {written(line.value, (high - low) / 200)} mm"
+            words = self._words(text, line.colour, (1, 0 if line.words_below else 1))
             words.setZValue(-1)  # their ground would hide half the width of the line
-            self._words_shown.append((words, y))
+            self._words_shown.append((words, line.value))
             self._item.addItem(words, ignoreBounds=True)
         self._place_words()
         bars = pg.ErrorBarItem(x=at, y=runs.values, height=2 * runs.U, beam=0.18, pen=self._pen(s.accent, 1.3))
@@ -116,16 +124,18 @@ class RunChart(Plot):
         for words, y in self._words_shown:
             words.setPos(end, y)
 
-    def _reference_lines(self, runs: _Runs) -> list[tuple[float, str, str, Qt.PenStyle]]:
+    def _reference_lines(self, runs: _Runs) -> list[_ReferenceLine]:
         s = shades()
-        lines: list[tuple[float, str, str, Qt.PenStyle]] = []
+        lines: list[_ReferenceLine] = []
         if runs.nominal is not None and runs.tolerance is not None:
-            lines.append((runs.nominal + runs.tolerance, tr("upper limit"), s.bad, _DASH))
-            lines.append((runs.nominal - runs.tolerance, tr("lower limit"), s.bad, _DASH))
+            lines.append(_ReferenceLine(runs.nominal + runs.tolerance, tr("upper limit"), s.bad, _DASH, False))
+            lines.append(_ReferenceLine(runs.nominal - runs.tolerance, tr("lower limit"), s.bad, _DASH, True))
         if runs.nominal is not None:
-            lines.append((runs.nominal, tr("nominal"), s.muted, Qt.PenStyle.SolidLine))
+            below = runs.mean is not None and runs.nominal <= runs.mean
+            lines.append(_ReferenceLine(runs.nominal, tr("nominal"), s.muted, Qt.PenStyle.SolidLine, below))
         if runs.mean is not None:
-            lines.append((runs.mean, tr("mean"), s.text, Qt.PenStyle.DotLine))
+            below = runs.nominal is not None and runs.mean < runs.nominal
+            lines.append(_ReferenceLine(runs.mean, tr("mean"), s.text, Qt.PenStyle.DotLine, below))
         return lines
 
     def _tip(self, x: float, y: float) -> str:
