@@ -45,7 +45,7 @@ STEPS: tuple[Step, ...] = (
         label("Project"),
         "mdi6.clipboard-text-outline",
         label("What is measured, by whom and for whom: the fields the report prints."),
-        "first-measurement",
+        "projects",
         ProjectPresenter,
         ProjectPage,
     ),

@@ -7,7 +7,7 @@ from importlib.resources import files
 from pathlib import Path
 
 from PySide6.QtCore import Qt, QUrl
-from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCursor, QTextDocument
+from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCharFormat, QTextCursor, QTextDocument
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
 from workbench.language import tr
@@ -19,6 +19,7 @@ MARGIN_PX = 24
 """Room around the text."""
 ABOVE_HEADING_PX = 18
 """Room above a heading, so that it is seen to belong to what follows."""
+_NOT_IN_ANCHORS = re.compile(r"[^\w-]")  # as MyST makes names of headings
 _DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphinx alone
 
 
@@ -58,15 +59,22 @@ class ManualPages(QTextBrowser):
         self.setMarkdown(_DIRECTIVE.sub("", path.read_text(encoding="utf-8")))
         self.document().setBaseUrl(QUrl(name))
         self.document().setDocumentMargin(MARGIN_PX)
-        self._space_headings()
+        self._dress_headings()
 
-    def _space_headings(self) -> None:
+    def _dress_headings(self) -> None:
+        """Space above them, and the names by which links know them, as Sphinx makes them."""
         block = self.document().begin().next()
         while block.isValid():
             if block.blockFormat().headingLevel():
+                cursor = QTextCursor(block)
                 spaced = QTextBlockFormat()
                 spaced.setTopMargin(ABOVE_HEADING_PX)
-                QTextCursor(block).mergeBlockFormat(spaced)
+                cursor.mergeBlockFormat(spaced)
+                named = QTextCharFormat()
+                named.setAnchor(True)
+                named.setAnchorNames([_NOT_IN_ANCHORS.sub("", block.text().lower().replace(" ", "-"))])
+                cursor.movePosition(QTextCursor.MoveOperation.NextCharacter, QTextCursor.MoveMode.KeepAnchor)
+                cursor.mergeCharFormat(named)
             block = block.next()
 
 
