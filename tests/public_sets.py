@@ -61,41 +61,41 @@ def found_by_sectors(target: Target, picture: Picture) -> bool:
 DETECTORS: tuple[Detector, ...] = (found_here, found_classic, found_by_sectors)
 
 
-def targets_row(found: RecordingSet, kind: str, target: Target, paths: Sequence[Path]) -> str:
+def targets_row(recording_set: RecordingSet, kind: str, target: Target, paths: Sequence[Path]) -> str:
     """How often each detector finds `target` in the pictures, at full size / halved."""
     counts = np.zeros((len(DETECTORS), 2), int)
     for path in paths:
-        full = _eight_bit(found.read_target(path))
+        full = _eight_bit(recording_set.read_target(path))
         half = np.asarray(cv2.resize(full, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA), np.uint8)
         counts += np.array([[detector(target, size) for size in (full, half)] for detector in DETECTORS])
-    return f"| {found.name}, {kind} | {len(paths)} | " + " | ".join(f"{a} / {b}" for a, b in counts) + " |"
+    return f"| {recording_set.name}, {kind} | {len(paths)} | " + " | ".join(f"{a} / {b}" for a, b in counts) + " |"
 
 
-def camera_row(found: RecordingSet) -> tuple[CameraCalibration, str]:
+def camera_row(recording_set: RecordingSet) -> tuple[CameraCalibration, str]:
     """The camera, its standard deviations, and the halves."""
-    seen, rng = see_views(found), np.random.default_rng(SEED)
-    whole = solve_camera(seen, tolerance=found.rig.camera_board)
+    seen, rng = see_views(recording_set), np.random.default_rng(SEED)
+    whole = solve_camera(seen, tolerance=recording_set.rig.camera_board)
     apart = []
     for _ in range(CAMERA_HALVES):
         a, b = (
-            solve_camera(seen, Options(excluded=left), tolerance=found.rig.camera_board)
+            solve_camera(seen, Options(excluded=left), tolerance=recording_set.rig.camera_board)
             for left in _halves([view.name for view in seen.found], rng)
         )
         apart.append(_apart(*(_parameters(one)[:, [0, 1, 3, 4]] for one in (a, b))))  # not the skew
     values, sd = _parameters(whole)
     shown = " | ".join(f"{v:.1f} ± {s:.1f}" for v, s in zip(values, sd, strict=True))
-    return whole, f"| {found.name} | {len(seen.found)} of {len(seen.views)} | {shown} | {_rms(apart):.2f} |"
+    return whole, f"| {recording_set.name} | {len(seen.found)} of {len(seen.views)} | {shown} | {_rms(apart):.2f} |"
 
 
-def planes_row(found: RecordingSet, calibration: CameraCalibration) -> str:
+def planes_row(recording_set: RecordingSet, calibration: CameraCalibration) -> str:
     """The light planes, how they foretell each pose, and the halves."""
     camera, rng = calibration.camera, np.random.default_rng(SEED)
-    poses = measure_poses(found, camera)
+    poses = measure_poses(recording_set, camera)
     usable = [pose for pose in poses if pose.reason is None]
 
     def solve(names: Iterable[str] = ()) -> FanCalibration:
         left = Options(excluded=frozenset(f"planes/{name}" for name in names))
-        return solve_planes(poses, camera, found.rig, left, calibration=calibration)
+        return solve_planes(poses, camera, recording_set.rig, left, calibration=calibration)
 
     whole = solve()
     apart = []
@@ -108,7 +108,7 @@ def planes_row(found: RecordingSet, calibration: CameraCalibration) -> str:
     used = sum(pose.used for pose in whole.poses)
     figures = f"{max(whole.rms_mm):.3f} mm | {whole.cross_validation_mm:.3f} mm | {_rms(apart):.2f}"
     told = ", ".join(note.code for note in whole.notes)
-    return f"| {found.name} | {used} of {len(poses)} | {figures} | {told} |"
+    return f"| {recording_set.name} | {used} of {len(poses)} | {figures} | {told} |"
 
 
 def _eight_bit(picture: NDArray[np.generic]) -> Picture:
@@ -144,22 +144,30 @@ def main() -> None:
     parser.add_argument("--targets-only", action="store_true", help="count the targets found, solve nothing")
     chosen = parser.parse_args()
     for folder in chosen.sets:
-        found = open_set(folder)
-        pictures: dict[str, tuple[Target, Sequence[Path]]] = {"camera": (found.rig.camera_target, found.camera)}
-        if found.planes:
-            on, off = [pair.on for pair in found.planes], [pair.off for pair in found.planes if pair.off is not None]
-            pictures |= {"laser on": (found.rig.plane_target, on), "laser off": (found.rig.plane_target, off)}
+        recording_set = open_set(folder)
+        pictures: dict[str, tuple[Target, Sequence[Path]]] = {
+            "camera": (recording_set.rig.camera_target, recording_set.camera)
+        }
+        if recording_set.planes:
+            on, off = (
+                [pair.on for pair in recording_set.planes],
+                [pair.off for pair in recording_set.planes if pair.off is not None],
+            )
+            pictures |= {
+                "laser on": (recording_set.rig.plane_target, on),
+                "laser off": (recording_set.rig.plane_target, off),
+            }
         for kind, (target, paths) in pictures.items():
-            print(targets_row(found, kind, target, paths), flush=True)
+            print(targets_row(recording_set, kind, target, paths), flush=True)
         if chosen.targets_only:
             continue
         try:
-            calibration, row = camera_row(found)
+            calibration, row = camera_row(recording_set)
             print(row, flush=True)
-            if found.planes:
-                print(planes_row(found, calibration), flush=True)
+            if recording_set.planes:
+                print(planes_row(recording_set, calibration), flush=True)
         except InputError as error:
-            print(f"| {found.name} | {error} |", flush=True)
+            print(f"| {recording_set.name} | {error} |", flush=True)
 
 
 if __name__ == "__main__":

@@ -234,8 +234,8 @@ def test_simulate_writes_a_set_that_can_be_opened(tmp_path):
         "simulate", "sphere", "--out", out, "--scale", 0.1, "--frames", 2, "--views", 1, "--poses", 1, "--seed", 5
     )
     assert said.code == 0, said.err
-    found = open_set(out)
-    assert (len(found.camera), len(found.planes), len(found.frames)) == (1, 1, 2)
+    recording_set = open_set(out)
+    assert (len(recording_set.camera), len(recording_set.planes), len(recording_set.frames)) == (1, 1, 2)
     assert not list(out.rglob("*truth*"))
     again = trisect("simulate", "sphere", "--out", out)
     assert again.code == 2
@@ -249,9 +249,9 @@ def test_simulate_takes_effects_of_real_rigs_from_a_file(tmp_path):
     effects.write_text("[sensor]\njpeg_quality = 70\n[room]\nflicker = 0.2\n")
     small = ("--scale", 0.1, "--frames", 1, "--views", 1, "--poses", 1)
     assert trisect("simulate", "block", "--out", out, *small, "--effects", effects, "--unstated").code == 0
-    found = open_set(out)
-    assert [path.suffix for path in found.frames] == [".jpg"]
-    assert found.rig.stability is None
+    recording_set = open_set(out)
+    assert [path.suffix for path in recording_set.frames] == [".jpg"]
+    assert recording_set.rig.stability is None
     effects.write_text("[sensors]\njpeg_quality = 70\n")
     assert (
         "'sensors' is not a field"

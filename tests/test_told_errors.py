@@ -77,8 +77,8 @@ def test_a_damaged_picture_of_the_camera_target(recorded):
 
 
 def test_a_damaged_picture_of_the_plane_target(recorded):
-    found = open_set(recorded)
-    (pose,) = measure_poses(found, Camera((40, 30), [[50, 0, 20], [0, 50, 15], [0, 0, 1]]))
+    recording_set = open_set(recorded)
+    (pose,) = measure_poses(recording_set, Camera((40, 30), [[50, 0, 20], [0, 50, 15], [0, 0, 1]]))
     assert str(pose.reason) == f"{recorded / 'planes' / 'p.png'}: the picture ends early"
     assert strange("ends early") in pseudo(pose.reason)
 

@@ -74,23 +74,23 @@ def run(
         If anything in the set keeps it from being measured; what was finished before stays, whole.
     """
     options = options or Options()
-    found = open_set(set_folder).seen_in(options.channel)
-    require_camera(found)
-    require_planes(found)
-    require_scan(found)
-    work = Workspace.open(found, out_folder, options.part)
+    recording_set = open_set(set_folder).seen_in(options.channel)
+    require_camera(recording_set)
+    require_planes(recording_set)
+    require_scan(recording_set)
+    work = Workspace.open(recording_set, out_folder, options.part)
     with alone_in(work.out):
         return _measured(work, options, progress, beside)
 
 
 def _measured(work: Workspace, options: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
-    found = work.found
+    recording_set = work.recording_set
     work.clear()
-    seen = _looking(found, options, progress, beside)
+    seen = _looking(recording_set, options, progress, beside)
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress, beside)
-    check = measure_check(found, camera.camera, options, progress, beside) if found.check else None
-    if check is not None and not check_step(work, options, progress, poses=check).passed and found.rig.readjust:
+    check = measure_check(recording_set, camera.camera, options, progress, beside) if recording_set.check else None
+    if check is not None and not check_step(work, options, progress, poses=check).passed and recording_set.rig.readjust:
         fan = _readjusted(work, fan, options, progress, check)
     if beside is not None:
         beside.submit(prepare_report, None)
@@ -98,7 +98,7 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
     frames, points, triangles = measured.scan.frames, len(measured.scan.cloud), len(measured.mesh.triangles)
     del seen, measured  # all else of it lies in the files
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
-    asked = found.rig.gauge is not None
+    asked = recording_set.rig.gauge is not None
     gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]
     report_step(work, progress, beside=beside)
     return RunResult(
@@ -126,10 +126,10 @@ def _readjusted(
 
 
 def _looking(
-    found: RecordingSet, options: Options, progress: Progress, beside: SecondProcess | None
+    recording_set: RecordingSet, options: Options, progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], SeenScan] | None:
     """Have the pictures of the scan looked at while camera and planes are calibrated."""
     if beside is None:
         return None
-    seen = beside.submit(look_at_scan, (replace(found, hashes={}, chosen={}), options), progress)
+    seen = beside.submit(look_at_scan, (replace(recording_set, hashes={}, chosen={}), options), progress)
     return lambda: beside.wait(seen, progress, "frames")

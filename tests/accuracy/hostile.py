@@ -133,8 +133,8 @@ def _told(out: Path) -> list[str]:
 
 def _opened(case: HostileCase, place: Path) -> RecordingSet:
     """The set, with what the case has stated."""
-    found = open_set(place)
-    return replace(found, rig=case.stated(found.rig))
+    recording_set = open_set(place)
+    return replace(recording_set, rig=case.stated(recording_set.rig))
 
 
 def calibration_in(folder: Path, case: HostileCase) -> Path:

@@ -72,8 +72,10 @@ def small(tmp_path_factory):
 
 def gauge_by(part, folder):
     """The thickness of the scan in a folder, if this is stated of the part."""
-    found = open_set(folder / "set")
-    gauge = gauge_step(Workspace.open(replace(found, rig=replace(found.rig, part=part)), folder / "out"))
+    recording_set = open_set(folder / "set")
+    gauge = gauge_step(
+        Workspace.open(replace(recording_set, rig=replace(recording_set.rig, part=part)), folder / "out")
+    )
     error, stated = gauge.thickness_mm - 50.0, part.material or "not stated"
     print(f"{stated}: {1e3 * error:+.0f} ± {1e3 * gauge.U_mm:.0f} µm, {gauge.verdict}")
     return gauge

@@ -24,17 +24,17 @@ FEWEST = 0.02
 """Share of the whole from which on a stage has a row of its own."""
 
 
-def detected_by_opencv(found: RecordingSet, filter_px: float, threshold: float) -> float:
+def detected_by_opencv(recording_set: RecordingSet, filter_px: float, threshold: float) -> float:
     """Processor time in s of decoding all pictures of a set, its corners, and Steger's points of its stripes."""
     began = time.process_time()
-    board = found.rig.camera_target
+    board = recording_set.rig.camera_target
     assert isinstance(board, Checkerboard)
-    for path in found.camera:
+    for path in recording_set.camera:
         assert cv2.findChessboardCornersSB(picture(path), (board.columns, board.rows))[0]
-    assert found.reference is not None
-    reference = picture(found.reference)
-    pairs = [(pair.on, picture(pair.off)) for pair in found.planes if pair.off is not None]
-    for path, dark in [*pairs, *((path, reference) for path in found.frames)]:
+    assert recording_set.reference is not None
+    reference = picture(recording_set.reference)
+    pairs = [(pair.on, picture(pair.off)) for pair in recording_set.planes if pair.off is not None]
+    for path, dark in [*pairs, *((path, reference) for path in recording_set.frames)]:
         difference = cv2.subtract(picture(path), dark, dtype=cv2.CV_32F)
         assert len(opencv_steger(np.asarray(difference), filter_px, threshold))
     return time.process_time() - began

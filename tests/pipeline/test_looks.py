@@ -42,10 +42,10 @@ def test_a_raw_frame_shows_the_centrelines_that_its_sites_of_the_lasers_colour_s
     sensor = SensorEffects(colour=True, raw=True)
     scenario = Scenario(scale=0.25, frames=4, camera_views=1, plane_poses=1, speckle=0.0, sensor=sensor)
     simulate_set(scenario, tmp_path / "set")
-    found = open_set(tmp_path / "set")
-    measured = look_at_scan((found, Options())).lines
+    recording_set = open_set(tmp_path / "set")
+    measured = look_at_scan((recording_set, Options())).lines
     for frame in measured.frames:
-        stages = frame_stages(found, frame.name)
+        stages = frame_stages(recording_set, frame.name)
         assert stages.picture.shape == measured.image_size[::-1]
         assert [piece.uv.tolist() for piece in stages.sweep] == [piece.uv.tolist() for piece in frame.centrelines]
         assert [piece.uv.tolist() for piece in stages.fan] == [piece.uv.tolist() for piece in measured.fan]

@@ -40,12 +40,12 @@ def test_a_set_holds_exactly_what_the_layout_says(block):
 
 
 def test_the_set_opens_as_any_other(block):
-    found = open_set(block)
-    assert found.rig.lines == 3
-    assert np.degrees(found.rig.angle) == pytest.approx(5.0)
-    assert found.rig.gauge.nominal_mm == 50.0
-    assert len(found.frames) == 5
-    assert [pair.off is not None for pair in found.planes] == [True, True]
+    recording_set = open_set(block)
+    assert recording_set.rig.lines == 3
+    assert np.degrees(recording_set.rig.angle) == pytest.approx(5.0)
+    assert recording_set.rig.gauge.nominal_mm == 50.0
+    assert len(recording_set.frames) == 5
+    assert [pair.off is not None for pair in recording_set.planes] == [True, True]
 
 
 def test_the_truth_is_beside_the_set_and_never_in_it(block):

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayou
 from workbench.language import tr
 from workbench.views.layouts import enable, keep_focus, resize_on_screen
 
-SIZE = (860, 900)
+SIZE = (980, 900)
 """Width and height of the manual's window at first, in pixels."""
 MARGIN_PX = 24
 """Room around the text."""

@@ -348,34 +348,34 @@ def gather_set(
     return found
 
 
-def require_camera(found: RecordingSet) -> None:
+def require_camera(recording_set: RecordingSet) -> None:
     """InputError unless the set has views of the camera target, and says what that is."""
-    require_tables(found.rig, found.rig_file, "camera_target")
-    if not found.camera:
+    require_tables(recording_set.rig, recording_set.rig_file, "camera_target")
+    if not recording_set.camera:
         raise InputError(
             Message("set.no_camera_pictures", "there are no pictures of the camera target"),
-            where=found.where("camera"),
+            where=recording_set.where("camera"),
             todo=Message("advice.record_views", "record ten or more"),
         )
 
 
-def require_planes(found: RecordingSet) -> None:
+def require_planes(recording_set: RecordingSet) -> None:
     """InputError unless the set has pictures of the plane target with the fan on, and says what both are."""
-    require_tables(found.rig, found.rig_file, "plane_target", "laser_fan")
-    if not found.planes:
+    require_tables(recording_set.rig, recording_set.rig_file, "plane_target", "laser_fan")
+    if not recording_set.planes:
         raise InputError(
             Message("set.no_plane_pictures", "there are no pictures of the plane target with the fan on"),
-            where=found.where("planes"),
+            where=recording_set.where("planes"),
             todo=Message("advice.record_poses", "record five or more poses"),
         )
 
 
-def require_scan(found: RecordingSet) -> None:
+def require_scan(recording_set: RecordingSet) -> None:
     """InputError unless the set has frames of a scan."""
-    if not found.frames:
+    if not recording_set.frames:
         raise InputError(
             Message("set.no_frames", "there are no frames of a scan"),
-            where=found.where("scan"),
+            where=recording_set.where("scan"),
             todo=Message("advice.record_sweeps", "record 30 or more sweep positions"),
         )
 
@@ -388,13 +388,15 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, {RIG: rig_hash})
 
 
-def _paths(found: RecordingSet, part: str) -> list[Path]:
+def _paths(recording_set: RecordingSet, part: str) -> list[Path]:
     """All pictures of one part."""
     if part == "camera":
-        return list(found.camera)
+        return list(recording_set.camera)
     if part == "scan":
-        return found.with_further([*([found.reference] if found.reference else []), *found.frames])
-    return found.pictures_of(found.check if part == CHECK else found.planes)
+        return recording_set.with_further(
+            [*([recording_set.reference] if recording_set.reference else []), *recording_set.frames]
+        )
+    return recording_set.pictures_of(recording_set.check if part == CHECK else recording_set.planes)
 
 
 def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
@@ -406,14 +408,14 @@ def _rig_hash(rig: Rig, places: Sequence[Path]) -> str:
     return hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()
 
 
-def excludable(found: RecordingSet) -> tuple[str, ...]:
+def excludable(recording_set: RecordingSet) -> tuple[str, ...]:
     """All that can be left out of a set: views and frames as files, poses (on and off together) by their name."""
-    views = (found.name_of(path) for path in found.camera)
-    frames = (found.name_of(path) for path in found.frames)
-    return (*views, *(f"planes/{pair.name}" for pair in found.planes), *frames)
+    views = (recording_set.name_of(path) for path in recording_set.camera)
+    frames = (recording_set.name_of(path) for path in recording_set.frames)
+    return (*views, *(f"planes/{pair.name}" for pair in recording_set.planes), *frames)
 
 
-def excluded_names(found: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
+def excluded_names(recording_set: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
     """The names in `typed` as the options want them: a pose may also be named by one of its pictures.
 
     Raises
@@ -421,10 +423,10 @@ def excluded_names(found: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
     InputError
         If there is no such picture in the set; names the nearest one.
     """
-    known = excludable(found)
+    known = excludable(recording_set)
     poses = {
-        found.name_of(path): f"planes/{pair.name}"
-        for pair in found.planes
+        recording_set.name_of(path): f"planes/{pair.name}"
+        for pair in recording_set.planes
         for path in (pair.on, pair.off)
         if path is not None
     }
@@ -433,7 +435,7 @@ def excluded_names(found: RecordingSet, typed: Iterable[str]) -> frozenset[str]:
         if name not in known:
             raise InputError(
                 Message("set.no_such_picture_to_leave_out", "there is no picture {name} to leave out", name=name),
-                where=found.name,
+                where=recording_set.name,
                 todo=_hint(name, known),
             )
     return frozenset(names)

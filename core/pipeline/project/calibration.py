@@ -43,9 +43,9 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
 
     What is found is kept in the project.
     """
-    found = project_set(folder, project)
-    seen = see_views(found, progress)
-    keep_views(folder, project, found, seen)
+    recording_set = project_set(folder, project)
+    seen = see_views(recording_set, progress)
+    keep_views(folder, project, recording_set, seen)
     return seen
 
 
@@ -68,9 +68,9 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
         If nothing can be written.
     """
     progress("keeping the calibration", 0, 1)
-    found = project_set(folder, project)
+    recording_set = project_set(folder, project)
     names = {view.name for view in calibration.views}
-    inputs = _hashes(found, (path for path in found.camera if found.name_of(path) in names))
+    inputs = _hashes(recording_set, (path for path in recording_set.camera if recording_set.name_of(path) in names))
     return keep_camera(folder, calibration, project.options, inputs)
 
 
@@ -80,9 +80,9 @@ def find_poses(folder: Path, project: Project, progress: Progress = silent) -> t
     What is found is kept in the project.
     """
     compile_ahead(progress)
-    found = project_set(folder, project)
-    poses = measure_poses(found, accepted_camera(folder, project), progress, project.options.plane_stripe)
-    keep_poses(folder, project, found, poses)
+    recording_set = project_set(folder, project)
+    poses = measure_poses(recording_set, accepted_camera(folder, project), progress, project.options.plane_stripe)
+    keep_poses(folder, project, recording_set, poses)
     return poses
 
 
@@ -133,15 +133,17 @@ def accept_fan(
             where="laser planes",
             todo=Message("advice.solve_laser_planes_again", "solve the laser planes again, then accept them"),
         )
-    found = project_set(folder, project)
+    recording_set = project_set(folder, project)
     names = {pose.name for pose in poses}
-    pictures = found.pictures_of(pair for pair in found.planes if pair.name in names)
+    pictures = recording_set.pictures_of(pair for pair in recording_set.planes if pair.name in names)
     settings = planes_settings(project.rig, project.options)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True
-    return keep_fan(folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(found, pictures))
+    return keep_fan(
+        folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(recording_set, pictures)
+    )
 
 
-def _hashes(found: RecordingSet, paths: Iterable[Path]) -> dict[str, str]:
+def _hashes(recording_set: RecordingSet, paths: Iterable[Path]) -> dict[str, str]:
     """SHA-256 of pictures by their names within the set."""
-    return {found.name_of(path): file_hash(path) for path in paths}
+    return {recording_set.name_of(path): file_hash(path) for path in paths}

@@ -47,10 +47,10 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
     InputError
         As `frame_stages`, or if an accepted calibration is damaged.
     """
-    found = project_set(folder, project)
+    recording_set = project_set(folder, project)
     camera, fan = accepted_calibration(folder, project)
-    settled = _settled(results_folder(folder), found.path_of(name), name, project)
-    return frame_stages(found, name, camera, fan, project.options, progress, settled)
+    settled = _settled(results_folder(folder), recording_set.path_of(name), name, project)
+    return frame_stages(recording_set, name, camera, fan, project.options, progress, settled)
 
 
 def accepted_calibration(

@@ -35,7 +35,7 @@ STRIPE_AT = 160.0
 
 
 def frame_stages(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     name: str,
     camera: Camera | None = None,
     fan: Fan | None = None,
@@ -67,12 +67,12 @@ def frame_stages(
         and no fan line in it.
     """
     options = options or Options()
-    path = found.path_of(name)
-    if path not in found.frames:
+    path = recording_set.path_of(name)
+    if path not in recording_set.frames:
         raise InputError(Message("project.no_such_frame", "there is no such frame in the recording"), where=name)
-    index = found.frames.index(path)
-    common = _common(_Recording.of(found, options, settled, progress))
-    picture = found.read(path)
+    index = recording_set.frames.index(path)
+    common = _common(_Recording.of(recording_set, options, settled, progress))
+    picture = recording_set.read(path)
     base, sites = common.shown.base, common.sites
     if picture.shape != base.shape:
         raise InputError(
@@ -142,20 +142,22 @@ class _Recording:
     progress: Progress = field(compare=False)
 
     @classmethod
-    def of(cls, found: RecordingSet, options: Options, settled: SettledScan | None, progress: Progress) -> _Recording:
-        reference = found.reference
+    def of(
+        cls, recording_set: RecordingSet, options: Options, settled: SettledScan | None, progress: Progress
+    ) -> _Recording:
+        reference = recording_set.reference
         written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
-        taken = tuple(taken_frames(found, options)) or found.frames
+        taken = tuple(taken_frames(recording_set, options)) or recording_set.frames
         seen = taken if reference is None else taken[:LOOK_AHEAD]
         return cls(
             reference,
             written,
             seen,
-            found.laser_channel("scan").channel,
-            found.sites("scan"),
+            recording_set.laser_channel("scan").channel,
+            recording_set.sites("scan"),
             options.stripe,
             settled,
-            found,
+            recording_set,
             options,
             progress,
         )

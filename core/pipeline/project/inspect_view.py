@@ -230,11 +230,11 @@ def _names(results: ProjectResults) -> tuple[str, ...]:
 def _pictures(folder: Path, project: Project, frames: tuple[FrameRecord, ...]) -> tuple[tuple[str, ...], str]:
     """Names of the scan's pictures that are there, and of the frame that shows most."""
     try:
-        found = project_set(folder, project)
+        recording_set = project_set(folder, project)
     except InputError:
         return (), ""  # a scan can be looked at without the pictures it was made from
-    reference = () if found.reference is None else (found.reference,)
-    names = tuple(found.name_of(path) for path in (*reference, *found.frames))
+    reference = () if recording_set.reference is None else (recording_set.reference,)
+    names = tuple(recording_set.name_of(path) for path in (*reference, *recording_set.frames))
     used = [frame for frame in frames if frame.used and frame.name in names]
     best = max(used, key=lambda frame: (frame.fan_lines_met, frame.points, -frame.index), default=None)
     return names, best.name if best is not None else (names[0] if names else "")

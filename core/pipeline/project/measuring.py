@@ -60,14 +60,14 @@ def measure_scan(
         If no calibration is accepted, there are no usable frames, or no sweep can be located.
     """
     compile_ahead(progress)
-    found = project_set(folder, project)
-    require_scan(found)
+    recording_set = project_set(folder, project)
+    require_scan(recording_set)
     results = make_inner_folder(folder, RESULTS)
     with noting_results(folder), staged(results, _OF_A_SCAN) as beside:
         put_in_place(folder, project.accepted, beside)
-        work = Workspace.open(found, beside, part_name(project))
+        work = Workspace.open(recording_set, beside, part_name(project))
         record_calibrations(work, folder, project)
-        measured = scan_step(work, project.options, progress, watch, earlier=_earlier(found, results, project))
+        measured = scan_step(work, project.options, progress, watch, earlier=_earlier(recording_set, results, project))
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(
@@ -78,7 +78,7 @@ def measure_scan(
         no_gauge=no_gauge,
         notes=notes,
         calibration_id=calibration_id,
-        files=Workspace(found, results).written(),
+        files=Workspace(recording_set, results).written(),
     )
 
 
@@ -97,9 +97,9 @@ def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -
         raise in_a_project(error) from error
 
 
-def _earlier(found: RecordingSet, results: Path, project: Project) -> Path | None:
+def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Path | None:
     """The scan whose features will do; None where nothing has changed since: then the pictures are to be looked at."""
-    before = Workspace(found, results)
+    before = Workspace(recording_set, results)
     try:
         settings, calibration = before.record().settings.get("scan"), before.calibration().id
     except InputError:

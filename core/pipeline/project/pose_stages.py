@@ -18,7 +18,7 @@ from core.progress import Progress, silent
 
 
 def pose_stages(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     pose: PoseFeatures,
     camera: Camera,
     fan: Fan | None = None,
@@ -33,15 +33,15 @@ def pose_stages(
         If the set has no such pose, or its picture cannot be read.
     """
     progress("pose", 0, 1)
-    pair = next((pair for pair in found.planes if pair.name == pose.name), None)
+    pair = next((pair for pair in recording_set.planes if pair.name == pose.name), None)
     if pair is None:
         raise InputError(
             Message("project.no_such_pose", "there is no such pose in the set"), where=f"planes/{pose.name}"
         )
-    picture = found.read(pair.on)
+    picture = recording_set.read(pair.on)
     corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
     stripes = numbered_stripes(pose, camera, fan)
-    ridge = ridge_of(found, pose, camera, stripe)
+    ridge = ridge_of(recording_set, pose, camera, stripe)
     progress("pose", 1, 1)
     shown = in_8_bit(picture, white_level(picture))
     return PoseStages(pose.name, shown, corners, stripes, locate(pose, camera).reason, pose.notes, ridge)

@@ -143,7 +143,11 @@ def _of_part(gauge: GaugeResult | None, project: Project) -> dict[str, Any]:
 
 
 def _counts(folder: Path, project: Project) -> dict[str, Any]:
-    found = project_set(folder, project)
-    pictures = {"views": ("camera", found.camera), "poses": ("planes", found.planes), "sweeps": ("scan", found.frames)}
+    recording_set = project_set(folder, project)
+    pictures = {
+        "views": ("camera", recording_set.camera),
+        "poses": ("planes", recording_set.planes),
+        "sweeps": ("scan", recording_set.frames),
+    }
     counts = {name: len(there) - len(project.options.excluded_in(part)) for name, (part, there) in pictures.items()}
-    return {**counts, "check_poses": len(found.check) - len(project.options.excluded_in(CHECK))}
+    return {**counts, "check_poses": len(recording_set.check) - len(project.options.excluded_in(CHECK))}

@@ -183,12 +183,12 @@ def _names(folder: Path) -> list[str]:
     return [f"{RESULTS}/{path.name}" for path in found if path.is_file() and path.name[0] != "."]
 
 
-def _inputs(inputs: Iterable[tuple[str, str]], found: RecordingSet, progress: Progress) -> list[Message]:
+def _inputs(inputs: Iterable[tuple[str, str]], recording_set: RecordingSet, progress: Progress) -> list[Message]:
     problems = []
     listed = list(inputs)
     for name, digest in steps(listed, progress, "comparing", len(listed)):
         try:
-            now = found.hashes[RIG] if name == RIG else file_hash(found.path_of(name))
+            now = recording_set.hashes[RIG] if name == RIG else file_hash(recording_set.path_of(name))
         except InputError:
             problems.append(Message("verify.missing", "{name} is missing", name=name))
             continue

@@ -45,8 +45,8 @@ def artefact_step(
         If the set has no scan, no such length was measured in it or it is not said which, it is of another calibration
         or was corrected by a master, or the history cannot be written.
     """
-    found = work.found
-    require_scan(found)
+    recording_set = work.recording_set
+    require_scan(recording_set)
     calibration = work.calibration()
     check_calibration(work.path("scan"), read_scan(work.path("scan")).calibration_id, calibration)
     if artefact.kind == "block" and not characteristic:
@@ -57,13 +57,13 @@ def artefact_step(
         check_calibration(path, file.calibration_id, calibration)
         length = _chosen(lengths_of(file, artefact.kind), artefact, characteristic, path)
         characteristic = length.name
-    when = taken_at(found.frames)
+    when = taken_at(recording_set.frames)
     check = ArtefactCheck(artefact, length.value, length.u, when.astimezone().date(), characteristic)
-    celsius = found.rig.air.scanned if celsius is None else celsius
-    ids = (calibration.id, frames_id(found, work.record()))
-    outside = history_of(found.rig, calibration.id).beyond(PastCheck.of_measured(check, when, ids, celsius))
+    celsius = recording_set.rig.air.scanned if celsius is None else celsius
+    ids = (calibration.id, frames_id(recording_set, work.record()))
+    outside = history_of(recording_set.rig, calibration.id).beyond(PastCheck.of_measured(check, when, ids, celsius))
     check = replace(check, outside=outside)
-    keep_check(history_name(found.rig, calibration.id), PastCheck.of_measured(check, when, ids, celsius))
+    keep_check(history_name(recording_set.rig, calibration.id), PastCheck.of_measured(check, when, ids, celsius))
     return check
 
 
@@ -75,9 +75,9 @@ def lengths_of(file: InspectionFile, kind: ArtefactKind) -> tuple[Characteristic
     )
 
 
-def frames_id(found: RecordingSet, record: RunRecord) -> str:
+def frames_id(recording_set: RecordingSet, record: RunRecord) -> str:
     """Twelve hex digits that name the frames by what was in them when they were measured."""
-    text = "\n".join(record.inputs.get(found.name_of(path), "") for path in found.frames)
+    text = "\n".join(record.inputs.get(recording_set.name_of(path), "") for path in recording_set.frames)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
 
 

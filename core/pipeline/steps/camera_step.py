@@ -46,7 +46,9 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     options = options or Options()
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
-        calibration = solve_camera(see_views(work.found, progress), options, progress, work.found.rig.camera_board)
+        calibration = solve_camera(
+            see_views(work.recording_set, progress), options, progress, work.recording_set.rig.camera_board
+        )
         log.settings.update(solved_for(calibration))
         log.notes.extend(calibration.notes)
         write_camera(log.path("camera"), calibration)
@@ -59,7 +61,7 @@ def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
     return {"skew": bool(found[SKEW]), "k3": bool(found[K3])}  # a skew left at 0 is uncertain all the same
 
 
-def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
+def see_views(recording_set: RecordingSet, progress: Progress = silent) -> SeenViews:
     """Look for the target in every view, a few pictures at a time.
 
     Raises
@@ -67,7 +69,7 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
     InputError
         If there are no pictures of it, or they differ in depth.
     """
-    require_camera(found)
+    require_camera(recording_set)
 
     def look(item: tuple[str, Picture | Message]) -> tuple[SeenView, NDArray[np.int64] | None]:
         name, picture = item
@@ -76,21 +78,25 @@ def see_views(found: RecordingSet, progress: Progress = silent) -> SeenViews:
         size = (picture.shape[1], picture.shape[0])
         try:
             with stage(progress, "camera views"):
-                return SeenView(name, detect(found.rig.camera_target, picture, name), size=size), standing_out(picture)
+                return SeenView(name, detect(recording_set.rig.camera_target, picture, name), size=size), standing_out(
+                    picture
+                )
         except InputError as error:
             return SeenView(name, reason=error.what, size=size), None
 
     seen: list[SeenView] = []
     bright: list[NDArray[np.int64]] = []
-    total = len(found.camera)
+    total = len(recording_set.camera)
     progress("camera views", 0, total)
-    looked = ordered_map(look, found.stream(found.camera), idle=lambda: progress("camera views", len(seen), total))
+    looked = ordered_map(
+        look, recording_set.stream(recording_set.camera), idle=lambda: progress("camera views", len(seen), total)
+    )
     for one, places in looked:
         seen.append(one)
         if places is not None:
             bright.append(places)
         progress("camera views", len(seen), total)
-    return SeenViews(tuple(seen), str(found.where("camera")), len(hot_pixels(bright)))
+    return SeenViews(tuple(seen), str(recording_set.where("camera")), len(hot_pixels(bright)))
 
 
 def solve_camera(

@@ -78,45 +78,49 @@ def check_step(
         If a calibration is missing or wrong, or no picture shows target and stripes.
     """
     options = options or Options()
-    found = work.found
-    if not found.check:
+    recording_set = work.recording_set
+    if not recording_set.check:
         raise InputError(
             Message("check.no_pictures", "there are no pictures of an interim check"),
-            where=found.where(CHECK) if CHECK in found.folders else found.rig_file.parent / CHECK,
+            where=recording_set.where(CHECK)
+            if CHECK in recording_set.folders
+            else recording_set.rig_file.parent / CHECK,
             todo=Message("advice.record_check", "hold the plane target into the fan and record one to three pictures"),
         )
     calibration = work.calibration()
     camera, fan = calibration.camera.camera, calibration.fan
-    found = fresh_check(found, calibration.fan)
+    recording_set = fresh_check(recording_set, calibration.fan)
     if celsius is not None:
-        found = replace(found, rig=replace(found.rig, air=replace(found.rig.air, checked=celsius)))
-    if not found.check:
+        recording_set = replace(
+            recording_set, rig=replace(recording_set.rig, air=replace(recording_set.rig.air, checked=celsius))
+        )
+    if not recording_set.check:
         raise InputError(
             Message(
                 "check.made_readjustment",
                 "camera and fan were re-adjusted by these very pictures: they are no check of it",
             ),
-            where=work.found.where(CHECK),
+            where=work.recording_set.where(CHECK),
             todo=Message("advice.record_check_anew", "record one to three new pictures"),
         )
     with work.step("check") as log:
-        deviations, evidence, checked, change = judged(found, calibration, options, progress, poses=poses)
+        deviations, evidence, checked, change = judged(recording_set, calibration, options, progress, poses=poses)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and all(reason.code != NO_STRIPE_NEAR for reason in reasons):
             raise InputError(
                 Message("check.nothing_seen", "no picture shows target and stripes: {reason}", reason=reasons[0]),
-                where=found.where(CHECK),
+                where=recording_set.where(CHECK),
                 todo=Message("check.advice", "hold the target where all lines meet it; else calibrate again"),
             )
-        nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
-        paths = check_paths(found)
+        nominal = None if recording_set.rig.gauge is None else recording_set.rig.gauge.nominal_mm
+        paths = check_paths(recording_set)
         check = InterimCheck(
-            calibration.id, found.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
+            calibration.id, recording_set.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
         )  # fmt: skip
-        celsius = found.rig.air.checked
-        past, spread = PastCheck.of(check, celsius), charted_spread(found, calibration, check.taken_at)
-        stated = change_at_check(found, calibration.fan, check.taken_at)
+        celsius = recording_set.rig.air.checked
+        past, spread = PastCheck.of(check, celsius), charted_spread(recording_set, calibration, check.taken_at)
+        stated = change_at_check(recording_set, calibration.fan, check.taken_at)
         sees: _OfStep | None = None
         if check.used:
             by = step_errors(checked, camera, fan.fan, deviations, check.step_mm)
@@ -128,9 +132,9 @@ def check_step(
             check = sees.told(check, reckoned(stated.stability, spread)[0])
         log.notes.append(check.sentence)
         log.notes.extend(() if sees is None else sees.notes_on_what_is_open(check))
-        log.notes.extend(_kept(found, past))
-        log.notes.extend(() if spread is None else (_charted(spread, found),))
-        log.notes.extend(stated_validity(found.rig))
+        log.notes.extend(_kept(recording_set, past))
+        log.notes.extend(() if spread is None else (_charted(spread, recording_set),))
+        log.notes.extend(stated_validity(recording_set.rig))
         log.notes.extend(change.left_out)
         log.notes.extend(note for pose in checked for note in pose.located.features.notes)
         write_check(log.path("check"), check)
@@ -175,12 +179,12 @@ class _OfStep(NamedTuple):
         )
 
 
-def check_paths(found: RecordingSet) -> list[Path]:
+def check_paths(recording_set: RecordingSet) -> list[Path]:
     """The pictures of the check."""
-    return found.pictures_of(found.check)
+    return recording_set.pictures_of(recording_set.check)
 
 
-def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:
+def fresh_check(recording_set: RecordingSet, fan: FanCalibration) -> RecordingSet:
     """The set without those pictures of its check by which camera and fan were re-adjusted: what they know is in these.
 
     The same pictures are known by what is in them.
@@ -191,14 +195,14 @@ def fresh_check(found: RecordingSet, fan: FanCalibration) -> RecordingSet:
         used |= set(known.hashes.values())
         known = known.before
     if not used:
-        return found
-    return replace(found, check=tuple(pair for pair in found.check if file_hash(pair.on) not in used))
+        return recording_set
+    return replace(recording_set, check=tuple(pair for pair in recording_set.check if file_hash(pair.on) not in used))
 
 
-def _kept(found: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
+def _kept(recording_set: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
     """Keep a check in the rig's history; what that says of it, or why it could not be kept."""
     try:
-        history = keep_check(history_name(found.rig, past.calibration_id), past)
+        history = keep_check(history_name(recording_set.rig, past.calibration_id), past)
     except InputError as error:
         return (Message("check.not_kept", "The check is not in the rig's history: {reason}", reason=error.message),)
     outside = history.beyond(past)
@@ -206,7 +210,7 @@ def _kept(found: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
 
 
 def since_calibration(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     calibration: Calibration,
     options: Options,
     progress: Progress = silent,
@@ -229,11 +233,11 @@ def since_calibration(
     InputError
         If the check's pictures have another size than the camera's.
     """
-    found = fresh_check(found, calibration.fan)
-    apart = _days_apart(found)
+    recording_set = fresh_check(recording_set, calibration.fan)
+    apart = _days_apart(recording_set)
     if apart <= SAME_DAY:
-        return judged(found, calibration, options, progress, of_measured, poses, at_scan=True).change
-    change = judged(replace(found, check=()), calibration, options, progress, of_measured, at_scan=True).change
+        return judged(recording_set, calibration, options, progress, of_measured, poses, at_scan=True).change
+    change = judged(replace(recording_set, check=()), calibration, options, progress, of_measured, at_scan=True).change
     other_day = Message(
         "check.another_day",
         "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
@@ -243,50 +247,52 @@ def since_calibration(
     return replace(change, left_out=(other_day,))
 
 
-def _days_apart(found: RecordingSet) -> float:
+def _days_apart(recording_set: RecordingSet) -> float:
     """Days between the pictures of the check and those measured; 0 where one of them is missing."""
-    if not found.check or not found.frames:
+    if not recording_set.check or not recording_set.frames:
         return 0.0
-    apart = taken_at([pair.on for pair in found.check]) - taken_at(found.frames)
+    apart = taken_at([pair.on for pair in recording_set.check]) - taken_at(recording_set.frames)
     return abs(apart.total_seconds()) / 86_400.0
 
 
-def _stated(found: RecordingSet, fan: FanCalibration) -> StatedChange:
+def _stated(recording_set: RecordingSet, fan: FanCalibration) -> StatedChange:
     """How far the rig may have changed since its calibration, or since a re-adjustment.
 
     On the day of its pictures a re-adjustment is what a check is: they show the rig as it was in the scan, but for what
     warmth and time have changed since.
     """
-    if fan.readjusted is not None and not found.check and _readjusted_on_the_day(found, fan):
-        return StatedChange(change_since_check(found, fan.readjusted.taken_at), assumed=False)
-    return change_at_scan(found, fan)
+    if fan.readjusted is not None and not recording_set.check and _readjusted_on_the_day(recording_set, fan):
+        return StatedChange(change_since_check(recording_set, fan.readjusted.taken_at), assumed=False)
+    return change_at_scan(recording_set, fan)
 
 
-def _readjusted_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
-    if fan.readjusted is None or not found.frames:
+def _readjusted_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> bool:
+    if fan.readjusted is None or not recording_set.frames:
         return False
-    apart = abs(taken_at(found.frames) - fan.readjusted.taken_at).total_seconds() / 86_400.0
+    apart = abs(taken_at(recording_set.frames) - fan.readjusted.taken_at).total_seconds() / 86_400.0
     return apart <= SAME_DAY
 
 
-def checked_on_the_day(found: RecordingSet, fan: FanCalibration) -> bool:
+def checked_on_the_day(recording_set: RecordingSet, fan: FanCalibration) -> bool:
     """Whether pictures show the rig on the day of the scan: those of a check, or those it was re-adjusted by."""
-    fresh = fresh_check(found, fan)
-    return _days_apart(fresh) <= SAME_DAY if fresh.check else _readjusted_on_the_day(found, fan)
+    fresh = fresh_check(recording_set, fan)
+    return _days_apart(fresh) <= SAME_DAY if fresh.check else _readjusted_on_the_day(recording_set, fan)
 
 
-def charted_spread(found: RecordingSet, calibration: Calibration, when: datetime | None = None) -> RigSpread | None:
+def charted_spread(
+    recording_set: RecordingSet, calibration: Calibration, when: datetime | None = None
+) -> RigSpread | None:
     """How much the rig changes, by the history of its checks before `when`; None where it does not say.
 
     Without `when` it is for the scan's frames, and None where there are none.
     """
-    if when is None and not found.frames:
+    if when is None and not recording_set.frames:
         return None
     fan = calibration.fan
-    stated = (_stated(found, fan) if when is None else change_at_check(found, fan, when)).stability
+    stated = (_stated(recording_set, fan) if when is None else change_at_check(recording_set, fan, when)).stability
     try:
-        history = history_of(found.rig, calibration.id)
-        return history.spread(calibration.id, when or taken_at(found.frames), stated)
+        history = history_of(recording_set.rig, calibration.id)
+        return history.spread(calibration.id, when or taken_at(recording_set.frames), stated)
     except InputError:
         return None  # doubt_of_the_day tells that it cannot be read
 
@@ -304,7 +310,7 @@ class Judged(NamedTuple):
 
 
 def judged(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     calibration: Calibration,
     options: Options,
     progress: Progress,
@@ -321,24 +327,26 @@ def judged(
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
     evidence = Evidence.none(len(deviations)) if of_measured is None else of_measured(deviations)
     checked: tuple[CheckedPose, ...] = ()
-    agree = _readjusted_on_the_day(found, calibration.fan)
-    if found.check:
-        names = {pair.name for pair in found.check}
-        seen = measure_check(found, camera, options, progress) if poses is None else poses
+    agree = _readjusted_on_the_day(recording_set, calibration.fan)
+    if recording_set.check:
+        names = {pair.name for pair in recording_set.check}
+        seen = measure_check(recording_set, camera, options, progress) if poses is None else poses
         seen = tuple(pose for pose in seen if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         agree = agrees(deviations, of_check)
         if at_scan:
-            of_check = loosened(of_check, deviations, change_since_check(found, taken_at(check_paths(found))))
+            of_check = loosened(
+                of_check, deviations, change_since_check(recording_set, taken_at(check_paths(recording_set)))
+            )
         evidence += of_check
-    stated = _stated(found, fan)
+    stated = _stated(recording_set, fan)
     change = judge(
         camera,
         fan.fan,
         deviations,
         evidence,
         stated.known,
-        charted_spread(found, calibration),
+        charted_spread(recording_set, calibration),
         stated.guess if agree else stability_by_pictures(deviations, evidence, stated.guess),
     )
     change = replace(change, checked=agree)
@@ -352,15 +360,15 @@ def judged(
     return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
-def assumed_stability(found: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
+def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
     """Notes on what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
     if change.spread is not None:
-        return (_charted(change.spread, found),)
-    since_check = notes_since_check(found.rig) if checked_on_the_day(found, fan) else ()
-    return (*_stated(found, fan).notes(found.rig, change.stability), *since_check)
+        return (_charted(change.spread, recording_set),)
+    since_check = notes_since_check(recording_set.rig) if checked_on_the_day(recording_set, fan) else ()
+    return (*_stated(recording_set, fan).notes(recording_set.rig, change.stability), *since_check)
 
 
-def _charted(spread: RigSpread, found: RecordingSet) -> Message:
+def _charted(spread: RigSpread, recording_set: RecordingSet) -> Message:
     """What the history of the rig's checks says of how much it changes."""
     values = {
         "times": spread.factor,
@@ -368,7 +376,7 @@ def _charted(spread: RigSpread, found: RecordingSet) -> Message:
         "first": spread.first.astimezone(),
         "last": spread.last.astimezone(),
     }
-    if found.rig.stability is not None or found.rig.drift != NO_DRIFT:
+    if recording_set.rig.stability is not None or recording_set.rig.drift != NO_DRIFT:
         return Message(
             "scan.stability_more_than_stated",
             "By checks on {days} days from {first} to {last} the rig changes by {times:.2f} times what is assumed of a "
@@ -385,7 +393,7 @@ def _charted(spread: RigSpread, found: RecordingSet) -> Message:
 
 
 def measure_check(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     camera: Camera,
     options: Options,
     progress: Progress = silent,
@@ -398,7 +406,9 @@ def measure_check(
     InputError
         If their pictures have another size than the camera's.
     """
-    return measure_poses(replace(found, planes=found.check), camera, progress, options.plane_stripe, beside)
+    return measure_poses(
+        replace(recording_set, planes=recording_set.check), camera, progress, options.plane_stripe, beside
+    )
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

@@ -50,7 +50,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("cloud"), file.calibration_id, calibration)
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
-        cloud, spec, part = file.cloud, work.found.rig.gauge or GaugeSpec(), work.found.rig.part
+        cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         with movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
@@ -61,7 +61,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
                 progress=progress,
             )
         gauge = of_part(gauge, part)
-        if not checked_on_the_day(work.found, calibration.fan):
+        if not checked_on_the_day(work.recording_set, calibration.fan):
             gauge = replace(gauge, notes=(*gauge.notes, *notes_on_unchecked(gauge)))
         rule = None if gauge.rule is None else as_json(gauge.rule)
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
@@ -157,7 +157,7 @@ def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[Gau
     except InputError as error:
         why = Message("gauge.none_measured", "No thickness was measured: {reason}", reason=error.message)
         with work.step("gauge") as log:
-            log.settings[PART] = part_table(work.found.rig.part)
+            log.settings[PART] = part_table(work.recording_set.rig.part)
             log.notes.append(why)
         return None, why
 

@@ -38,7 +38,7 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 
 
 def kept_features(
-    scan: Path, found: RecordingSet, options: Options, camera: Camera, progress: Progress = silent
+    scan: Path, recording_set: RecordingSet, options: Options, camera: Camera, progress: Progress = silent
 ) -> ScanFeatures | None:
     """The features that `scan`, an earlier scan.npz, holds, if they are those of these pictures, settings and camera.
 
@@ -52,39 +52,42 @@ def kept_features(
         return None  # damaged: it will be replaced
     if not earlier.features_key:
         return None
-    take_hashes(found, _pictures(found, options), progress)
-    return earlier.features if earlier.features_key == features_key(found, options, camera) else None
+    take_hashes(recording_set, _pictures(recording_set, options), progress)
+    return earlier.features if earlier.features_key == features_key(recording_set, options, camera) else None
 
 
-def features_key(found: RecordingSet, options: Options, camera: Camera) -> str:
+def features_key(recording_set: RecordingSet, options: Options, camera: Camera) -> str:
     """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
 
     The camera's distortion is one of it: centrelines are crossed without it.
     """
-    pictures = [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in _pictures(found, options)]
+    pictures = [
+        (recording_set.name_of(path), recording_set.hashes.get(recording_set.name_of(path), ""))
+        for path in _pictures(recording_set, options)
+    ]
     rests_on = {
         "program": program_text(_SCAN_ROOMS),
-        "channel": found.laser_channel("scan").channel,
-        "mosaic": found.rig.mosaic,
+        "channel": recording_set.laser_channel("scan").channel,
+        "mosaic": recording_set.rig.mosaic,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
-        "frames": [found.name_of(path) for path in found.frames],
+        "frames": [recording_set.name_of(path) for path in recording_set.frames],
         "pictures": pictures,
     }
     return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
 
 
-def take_hashes(found: RecordingSet, pictures: Sequence[Path], progress: Progress = silent) -> None:
+def take_hashes(recording_set: RecordingSet, pictures: Sequence[Path], progress: Progress = silent) -> None:
     """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
     for path in steps(pictures, progress, "comparing the pictures", len(pictures)):
         with suppress(InputError):
-            found.hashes[found.name_of(path)] = file_hash(path)
+            recording_set.hashes[recording_set.name_of(path)] = file_hash(path)
 
 
-def _pictures(found: RecordingSet, options: Options) -> list[Path]:
+def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
     """The reference and the frames that are not left out by hand."""
-    frames = [path for path in found.frames if found.name_of(path) not in options.excluded]
-    return found.with_further(frames if found.reference is None else [found.reference, *frames])
+    frames = [path for path in recording_set.frames if recording_set.name_of(path) not in options.excluded]
+    return recording_set.with_further(frames if recording_set.reference is None else [recording_set.reference, *frames])
 
 
 @cache
@@ -101,36 +104,40 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 """The rooms that read the pictures for a calibration and make features of them."""
 
 
-def keep_views(project_folder: Path, project: Project, found: RecordingSet, seen: SeenViews) -> None:
+def keep_views(project_folder: Path, project: Project, recording_set: RecordingSet, seen: SeenViews) -> None:
     """Keep what the pictures of the camera's target showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
-        write_views(_path(project_folder, "camera"), _views_key(project, found), seen)
+        write_views(_path(project_folder, "camera"), _views_key(project, recording_set), seen)
 
 
-def kept_views(project_folder: Path, project: Project, found: RecordingSet, progress: Progress) -> SeenViews | None:
+def kept_views(
+    project_folder: Path, project: Project, recording_set: RecordingSet, progress: Progress
+) -> SeenViews | None:
     """What was kept, if it is of these very pictures and this target."""
-    take_hashes(found, found.camera, progress)
+    take_hashes(recording_set, recording_set.camera, progress)
     try:
-        return read_views(_path(project_folder, "camera"), _views_key(project, found))
+        return read_views(_path(project_folder, "camera"), _views_key(project, recording_set))
     except InputError:
         return None  # damaged: the pictures are still there
 
 
-def keep_poses(project_folder: Path, project: Project, found: RecordingSet, poses: Sequence[PoseFeatures]) -> None:
+def keep_poses(
+    project_folder: Path, project: Project, recording_set: RecordingSet, poses: Sequence[PoseFeatures]
+) -> None:
     """Keep what the pictures of the plate showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
-        write_poses(_path(project_folder, "planes"), _poses_key(project, found), poses)
+        write_poses(_path(project_folder, "planes"), _poses_key(project, recording_set), poses)
 
 
 def kept_poses(
-    project_folder: Path, project: Project, found: RecordingSet, progress: Progress
+    project_folder: Path, project: Project, recording_set: RecordingSet, progress: Progress
 ) -> tuple[PoseFeatures, ...]:
     """What was kept, if it is of these very pictures, this plate and this camera; else nothing."""
-    take_hashes(found, _pose_pictures(found), progress)
+    take_hashes(recording_set, _pose_pictures(recording_set), progress)
     try:
-        return read_poses(_path(project_folder, "planes"), _poses_key(project, found))
+        return read_poses(_path(project_folder, "planes"), _poses_key(project, recording_set))
     except InputError:
         return ()
 
@@ -139,26 +146,29 @@ def _path(project_folder: Path, step: str) -> Path:
     return project_folder / FOLDER / f"{step}-found.npz"
 
 
-def _views_key(project: Project, found: RecordingSet) -> str:
-    return _key(project, "camera", found, found.camera)
+def _views_key(project: Project, recording_set: RecordingSet) -> str:
+    return _key(project, "camera", recording_set, recording_set.camera)
 
 
-def _poses_key(project: Project, found: RecordingSet) -> str:
-    return _key(project, "planes", found, _pose_pictures(found), project.accepted.camera)
+def _poses_key(project: Project, recording_set: RecordingSet) -> str:
+    return _key(project, "planes", recording_set, _pose_pictures(recording_set), project.accepted.camera)
 
 
-def _pose_pictures(found: RecordingSet) -> list[Path]:
-    return found.pictures_of(found.planes)
+def _pose_pictures(recording_set: RecordingSet) -> list[Path]:
+    return recording_set.pictures_of(recording_set.planes)
 
 
-def _key(project: Project, step: str, found: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
+def _key(project: Project, step: str, recording_set: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
         "program": program_text(_CALIBRATION_ROOMS),
         "target": without_warmth(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
-        "channel": found.laser_channel(step).channel,
-        "mosaic": found.rig.mosaic,
+        "channel": recording_set.laser_channel(step).channel,
+        "mosaic": recording_set.rig.mosaic,
         "camera": camera,
-        "pictures": [(found.name_of(path), found.hashes.get(found.name_of(path), "")) for path in pictures],
+        "pictures": [
+            (recording_set.name_of(path), recording_set.hashes.get(recording_set.name_of(path), ""))
+            for path in pictures
+        ],
     }
     stripe = project.options.plane_stripe
     if step == "planes" and stripe is not None:

@@ -20,7 +20,7 @@ from core.pipeline.steps.workspace import RIDGES, Workspace
 
 
 def ridge_of(
-    found: RecordingSet, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
+    recording_set: RecordingSet, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
 ) -> NDArray[np.uint8] | None:
     """How strongly each pixel (H, W) of a pose without a straight stripe looks like `stripe`, the strongest white.
 
@@ -31,11 +31,11 @@ def ridge_of(
     InputError
         If a picture cannot be read.
     """
-    pair = next((pair for pair in found.planes if pair.name == pose.name), None)
+    pair = next((pair for pair in recording_set.planes if pair.name == pose.name), None)
     if pair is None or not shows_no_stripe(pose, camera):
         return None
-    off = None if pair.off is None else found.read(pair.off)
-    strength = stripe_strength(found.read(pair.on), off, stripe or USUAL_STRIPE)
+    off = None if pair.off is None else recording_set.read(pair.off)
+    strength = stripe_strength(recording_set.read(pair.on), off, stripe or USUAL_STRIPE)
     return in_8_bit(strength, float(strength.max()))
 
 
@@ -49,7 +49,7 @@ def write_ridges(
     InputError
         If nothing can be written there.
     """
-    ridges = {pose.name: ridge_of(work.found, pose, camera, stripe) for pose in poses}
+    ridges = {pose.name: ridge_of(work.recording_set, pose, camera, stripe) for pose in poses}
     shown = {name: ridge for name, ridge in ridges.items() if ridge is not None}
     work.put_ridges(shown)
     if not shown:

@@ -53,20 +53,20 @@ def planes_step(
         If camera.json is missing or wrong, the pictures have another size, or the poses do not determine the fan.
     """
     options = options or Options()
-    require_planes(work.found)
+    require_planes(work.recording_set)
     given = read_camera(work.path("camera"))
     camera = given.camera
     with work.step("planes") as log:
-        log.settings.update(planes_settings(work.found.rig, options))
-        log.settings.update(work.found.laser_channel("planes").settings)
-        poses = measure_poses(work.found, camera, progress, options.plane_stripe, beside)
+        log.settings.update(planes_settings(work.recording_set.rig, options))
+        log.settings.update(work.recording_set.laser_channel("planes").settings)
+        poses = measure_poses(work.recording_set, camera, progress, options.plane_stripe, beside)
         ridges = write_ridges(work, poses, camera, options.plane_stripe)
         try:
-            calibration = solve_planes(poses, camera, work.found.rig, options, progress, given)
+            calibration = solve_planes(poses, camera, work.recording_set.rig, options, progress, given)
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, options.accept_few_poses)
-        calibration, sizes = with_compared_sizes(calibration, work.found, camera)
+        calibration, sizes = with_compared_sizes(calibration, work.recording_set, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
@@ -91,7 +91,7 @@ def check_agreement(calibration: FanCalibration, decided: bool) -> None:
 
 
 def measure_poses(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     camera: Camera,
     progress: Progress = silent,
     stripe: StripeSettings | None = None,
@@ -106,16 +106,18 @@ def measure_poses(
     InputError
         If there are no poses, or their pictures have another size than the camera's.
     """
-    require_planes(found)
-    part = found.part_of(found.planes[0].on)  # an interim check has its pictures in a folder of its own
-    chosen = found.laser_channel(part)
-    measure = partial(_measure, replace(found, hashes={}), camera, stripe)
+    require_planes(recording_set)
+    part = recording_set.part_of(recording_set.planes[0].on)  # an interim check has its pictures in a folder of its own
+    chosen = recording_set.laser_channel(part)
+    measure = partial(_measure, replace(recording_set, hashes={}), camera, stripe)
     features: list[PoseFeatures] = []
-    total = len(found.planes)
+    total = len(recording_set.planes)
     progress("plane poses", 0, total)
-    poses = shared_map(measure, found.planes, beside, lambda: progress("plane poses", len(features), total), progress)
+    poses = shared_map(
+        measure, recording_set.planes, beside, lambda: progress("plane poses", len(features), total), progress
+    )
     for pose, hashes in poses:
-        found.hashes.update(hashes)
+        recording_set.hashes.update(hashes)
         features.append(pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
@@ -124,45 +126,51 @@ def measure_poses(
 
 
 def _measure(
-    found: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, /, *, progress: Progress
+    recording_set: RecordingSet,
+    camera: Camera,
+    stripe: StripeSettings | None,
+    pair: PlanePair,
+    /,
+    *,
+    progress: Progress,
 ) -> tuple[PoseFeatures, Mapping[str, str]]:
     """Target and stripes of one pose, and the hashes of its pictures."""
-    found = replace(found, hashes={})
-    return _pose_features(found, camera, stripe, pair, progress), found.hashes
+    recording_set = replace(recording_set, hashes={})
+    return _pose_features(recording_set, camera, stripe, pair, progress), recording_set.hashes
 
 
 def _pose_features(
-    found: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
+    recording_set: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
 ) -> PoseFeatures:
     try:
         with stage(progress, "decoding"):
-            on = found.read(pair.on)
-            off = found.read(pair.off) if pair.off is not None else None
-            beside = _beside(found, pair)
+            on = recording_set.read(pair.on)
+            off = recording_set.read(pair.off) if pair.off is not None else None
+            beside = _beside(recording_set, pair)
     except InputError as error:
         return PoseFeatures(pair.name, None, (), error.reason)
     check_size(pair.on, on.shape, camera)
     if off is not None and off.dtype != on.dtype:
         reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
         return PoseFeatures(pair.name, None, (), reason)
-    rig = found.rig
+    rig = recording_set.rig
     with stage(progress, "plane poses"):
         return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, beside)
 
 
-def _beside(found: RecordingSet, pair: PlanePair) -> Beside:
+def _beside(recording_set: RecordingSet, pair: PlanePair) -> Beside:
     """What there is of a pose beside its two pictures."""
-    channel = found.laser_channel(found.part_of(pair.on)).channel
+    channel = recording_set.laser_channel(recording_set.part_of(pair.on)).channel
     compression, further = compression_of(pair.on, channel), list[tuple[Picture, Picture | None]]()
     for number in FURTHER:
-        on = found.read_further(pair.on, number)
+        on = recording_set.read_further(pair.on, number)
         if on is not None:
-            further.append((on, None if pair.off is None else found.read_further(pair.off, number)))
-    sites = found.sites(found.part_of(pair.on))
+            further.append((on, None if pair.off is None else recording_set.read_further(pair.off, number)))
+    sites = recording_set.sites(recording_set.part_of(pair.on))
     if not is_difference(channel) and sites == ALL_SITES:
         return Beside(None, compression, further)
-    unlit = found.read_target(pair.off) if pair.off is not None else None
-    return Beside((found.read_target(pair.on), unlit), compression, further, sites)
+    unlit = recording_set.read_target(pair.off) if pair.off is not None else None
+    return Beside((recording_set.read_target(pair.on), unlit), compression, further, sites)
 
 
 def solve_planes(

@@ -74,7 +74,7 @@ def profile_step(
     InputError
         If a calibration is missing, a fan of one line is not told how the faces stand, or no picture gives a step.
     """
-    options, found = options or Options(), work.found
+    options, found = options or Options(), work.recording_set
     paths = _pictures(found, options)
     calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
@@ -166,15 +166,15 @@ def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:
     )
 
 
-def _pictures(found: RecordingSet, options: Options) -> list[Path]:
-    if found.reference is not None:
-        return [found.reference]
-    taken = taken_frames(found, options)
+def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
+    if recording_set.reference is not None:
+        return [recording_set.reference]
+    taken = taken_frames(recording_set, options)
     if taken:
         return taken
     raise InputError(
         Message("profile.no_pictures", "there are no pictures of the part under the fan"),
-        where=found.where("scan"),
+        where=recording_set.where("scan"),
         todo=Message("profile.advice_record", "record one or more, the hand-held laser off"),
     )
 

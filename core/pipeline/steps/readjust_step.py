@@ -30,7 +30,7 @@ from core.progress import Progress, silent
 
 
 def propose_readjustment(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     calibration: Calibration,
     options: Options,
     progress: Progress = silent,
@@ -45,33 +45,33 @@ def propose_readjustment(
     InputError
         If there is no check that was not used for it already, or `core.calibrate.readjustment.readjusted` refuses.
     """
-    found = fresh_check(found, calibration.fan)
-    if not found.check:
+    recording_set = fresh_check(recording_set, calibration.fan)
+    if not recording_set.check:
         raise InputError(
             Message("readjust.no_check", "a re-adjustment needs the pictures of a check"),
-            where=found.rig_file.parent / CHECK,
+            where=recording_set.rig_file.parent / CHECK,
             todo=Message("advice.record_check", "hold the plane target into the fan and record one to three pictures"),
         )
     camera, fan = calibration.camera, calibration.fan
-    seen = measure_check(found, camera.camera, options, progress) if poses is None else poses
-    deviations, evidence, checked, change = judged(found, calibration, options, progress, poses=seen)
+    seen = measure_check(recording_set, camera.camera, options, progress) if poses is None else poses
+    deviations, evidence, checked, change = judged(recording_set, calibration, options, progress, poses=seen)
     if (refused := nothing_changed(change.p)) is not None:
         raise refused
-    paths = check_paths(found)
+    paths = check_paths(recording_set)
     pictures = CheckPictures(
         squares=sum(pose.squares for pose in checked),
         freedom=sum(pose.freedom for pose in checked),
         poses=sum(pose.located.used for pose in checked),
         taken_at=taken_at(paths),
-        pictures_id=found.id_of(paths),
-        hashes={found.name_of(path): file_hash(path) for path in paths},
+        pictures_id=recording_set.id_of(paths),
+        hashes={recording_set.name_of(path): file_hash(path) for path in paths},
     )
-    stability = _prior(found, calibration, pictures.taken_at)
+    stability = _prior(recording_set, calibration, pictures.taken_at)
     moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, pictures, stability))
     there = moved.camera.camera
     left = calibration_deviations(moved.camera, moved.fan)
     again, _ = check_poses(seen, there, moved.fan, left)
-    nominal = None if found.rig.gauge is None else found.rig.gauge.nominal_mm
+    nominal = None if recording_set.rig.gauge is None else recording_set.rig.gauge.nominal_mm
     step_mm = nominal or STEP_MM
     here = step_errors(again, there, moved.fan.fan, (*left, _as_it_was(calibration)), step_mm)
     return ProposedReadjustment(
@@ -85,12 +85,15 @@ def propose_readjustment(
     )
 
 
-def _prior(found: RecordingSet, calibration: Calibration, when: datetime) -> Stability | None:
+def _prior(recording_set: RecordingSet, calibration: Calibration, when: datetime) -> Stability | None:
     """How far the rig may have changed: by its history where that is more than what is stated or assumed.
 
     A check that fails shows what quiet days before it have not: they make the prior no smaller.
     """
-    spread, stated = charted_spread(found, calibration, when), change_at_check(found, calibration.fan, when).stability
+    spread, stated = (
+        charted_spread(recording_set, calibration, when),
+        change_at_check(recording_set, calibration.fan, when).stability,
+    )
     if spread is None or (stated is None and spread.factor < 1):
         return stated
     return spread.stability
@@ -111,7 +114,7 @@ def readjust_step(
     InputError
         As `propose_readjustment`; then nothing has changed.
     """
-    proposed = propose_readjustment(work.found, work.calibration(), options or Options(), progress, poses)
+    proposed = propose_readjustment(work.recording_set, work.calibration(), options or Options(), progress, poses)
     with work.step(READJUST) as log:
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))

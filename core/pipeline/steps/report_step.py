@@ -114,12 +114,12 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
     """What the report says; InputError as `report_step`."""
     progress("report", 0, 1)
     content = results_content(work.out, work.part, work.record())
-    rig = work.found.rig
+    rig = work.recording_set.rig
     scan = None if content.profiles else read_scan(work.path("scan"))
     content = replace(
         content,
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
-        overlay=_overlay(work.found, scan, content.cloud) if scan else None,
+        overlay=_overlay(work.recording_set, scan, content.cloud) if scan else None,
         attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
         artefacts=_artefacts(work),
     )
@@ -137,10 +137,10 @@ def _artefacts(work: Workspace) -> tuple[ArtefactCheck, ...]:
     """Known artefacts that were measured with the same calibrations; none where the rig's history cannot be read."""
     calibration = work.calibration()
     try:
-        history = history_of(work.found.rig, calibration.id)
+        history = history_of(work.recording_set.rig, calibration.id)
     except InputError:
         return ()  # doubt_of_the_day has told it
-    return history.artefacts(calibration.id, taken_at(work.found.frames))
+    return history.artefacts(calibration.id, taken_at(work.recording_set.frames))
 
 
 def results_content(out: Path, part: str = "", record: RunRecord | None = None) -> ReportContent:
@@ -277,13 +277,13 @@ def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Mes
     return words
 
 
-def _overlay(found: RecordingSet, scan: ScanFile, cloud: Cloud) -> Overlay | None:
+def _overlay(recording_set: RecordingSet, scan: ScanFile, cloud: Cloud) -> Overlay | None:
     """The frame to show with what was found in it, or None if it is there no more."""
     if scan.shown is None:
         return None
     shown = scan.features.frames[scan.shown]
     try:
-        picture = found.read(found.path_of(shown.name))
+        picture = recording_set.read(recording_set.path_of(shown.name))
     except InputError:
         return None  # calibrations and clouds can be reported without the pictures they were made from
     lines = range(max(scan.fan_line, default=-1) + 1)

@@ -144,39 +144,39 @@ def _fan_seen(reference: ReferenceFeatures) -> Exposure:
 
 
 def _further_exposures(
-    found: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures
+    recording_set: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures
 ) -> dict[int, FurtherExposures]:
     """The further exposures of the frames by their number, those with a picture of the fan alone to go with them.
 
     That one is made of them where it is not there, as the first one's would be.
     """
-    of_number = {number: _exposures(found, options, looking, first, number) for number in FURTHER}
+    of_number = {number: _exposures(recording_set, options, looking, first, number) for number in FURTHER}
     return {number: each for number, each in of_number.items() if each is not None}
 
 
 def _exposures(
-    found: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
+    recording_set: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
 ) -> FurtherExposures | None:
     """Those of one number; None if there are none, or no picture of the fan alone."""
-    shots = {found.name_of(path): path for path in taken_frames(found, options)}
-    shots = {name: path for name, path in shots.items() if number in found.further.get(path, {})}
+    shots = {recording_set.name_of(path): path for path in taken_frames(recording_set, options)}
+    shots = {name: path for name, path in shots.items() if number in recording_set.further.get(path, {})}
     if not shots:
         return None
-    again = [found.further[path][number] for path in shots.values()]
-    sample = list(found.stream([again[i] for i in sample_indices(len(again))]))
+    again = [recording_set.further[path][number] for path in shots.values()]
+    sample = list(recording_set.stream([again[i] for i in sample_indices(len(again))]))
     pictures = [picture for _, picture in sample if not isinstance(picture, Message)]
-    base = None if found.reference is None else found.read_further(found.reference, number)
+    base = None if recording_set.reference is None else recording_set.read_further(recording_set.reference, number)
     if base is None:
         if len(pictures) < FEWEST_FOR_QUANTILE:
             return None
         base = quantile_reference(pictures)
-    sites = found.sites("scan")
+    sites = recording_set.sites("scan")
     reference = read_reference(sites.of(base), replace(looking, fan_stripe=None), first)
     stripe = choose_sweep_stripe(list(_seen_at(sites, sample[:LOOK_AHEAD])), reference)
 
     def read(name: str) -> Picture | None:
         try:
-            picture = found.read_further(shots[name], number) if name in shots else None
+            picture = recording_set.read_further(shots[name], number) if name in shots else None
         except InputError:
             return None  # damaged: the first exposure is there
         return None if picture is None else sites.of(picture)
@@ -189,11 +189,11 @@ def feature_options(options: Options) -> FeatureOptions:
     return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
 
 
-def stream_frames(found: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
+def stream_frames(recording_set: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
     """Every frame in the order of the recording; those left out by hand are not read."""
-    pictures = found.stream(taken_frames(found, options), times)
-    for path in found.frames:
-        name = found.name_of(path)
+    pictures = recording_set.stream(taken_frames(recording_set, options), times)
+    for path in recording_set.frames:
+        name = recording_set.name_of(path)
         if name in options.excluded:
             yield name, LEFT_OUT
             continue
@@ -201,23 +201,25 @@ def stream_frames(found: RecordingSet, options: Options, times: StageTimes | Non
         yield name, picture
 
 
-def require_frames(found: RecordingSet, options: Options) -> None:
+def require_frames(recording_set: RecordingSet, options: Options) -> None:
     """InputError if all frames are left out by hand."""
-    if not taken_frames(found, options):
+    if not taken_frames(recording_set, options):
         raise InputError(
-            Message("scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(found.frames)),
+            Message(
+                "scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(recording_set.frames)
+            ),
             where="scan",
             todo=Message("advice.take_some_in", "take some of them in again"),
         )
 
 
-def taken_frames(found: RecordingSet, options: Options) -> list[Path]:
+def taken_frames(recording_set: RecordingSet, options: Options) -> list[Path]:
     """The frames that are not left out by hand."""
-    return [path for path in found.frames if found.name_of(path) not in options.excluded]
+    return [path for path in recording_set.frames if recording_set.name_of(path) not in options.excluded]
 
 
 def reference_picture(
-    found: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
+    recording_set: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 
@@ -226,14 +228,14 @@ def reference_picture(
     InputError
         If there is none and the frames are too few to make one from, or it has another size than the camera's.
     """
-    if found.reference is not None:
-        reference = found.read(found.reference)
+    if recording_set.reference is not None:
+        reference = recording_set.read(recording_set.reference)
         if camera is not None:
-            check_size(found.reference, reference.shape, camera)
+            check_size(recording_set.reference, reference.shape, camera)
         return reference, []
-    taken = taken_frames(found, options)
+    taken = taken_frames(recording_set, options)
     sample = [taken[index] for index in sample_indices(len(taken))]
-    stream = steps(found.stream(sample), progress, "reference", len(sample))
+    stream = steps(recording_set.stream(sample), progress, "reference", len(sample))
     pictures = [picture for _, picture in stream if not isinstance(picture, Message)]
     if len(pictures) < FEWEST_FOR_QUANTILE:
         raise InputError(
@@ -242,7 +244,7 @@ def reference_picture(
                 "there is no reference.png, and {pictures} readable frames are too few to make one from",
                 pictures=len(pictures),
             ),
-            where=found.where("scan"),
+            where=recording_set.where("scan"),
             todo=Message("advice.record_reference", "record reference.png with the fan alone, or more frames"),
         )
     if camera is not None:

@@ -94,24 +94,24 @@ def scan_step(
         If a calibration is missing or wrong, there are no usable frames, or no sweep can be located.
     """
     options = options or Options()
-    found = work.found
-    require_scan(found)
-    require_frames(found, options)
+    recording_set = work.recording_set
+    require_scan(recording_set)
+    require_frames(recording_set, options)
     calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
     with work.step("scan") as log:
         log.settings.update(options.scan_settings)
-        features = kept_features(earlier, found, options, camera, progress) if earlier is not None else None
+        features = kept_features(earlier, recording_set, options, camera, progress) if earlier is not None else None
         if features is None or features.image_size != camera.image_size:
-            looked = seen() if seen else _look(found, calibration, options, progress, watch)
-            features = _features(found, looked, camera, progress)
-        log.settings.update(found.laser_channel("scan").settings)
-        solving = ReconstructOptions(options.method, options.sigma_cut_mm, found.rig.row_time_us)
+            looked = seen() if seen else _look(recording_set, calibration, options, progress, watch)
+            features = _features(recording_set, looked, camera, progress)
+        log.settings.update(recording_set.laser_channel("scan").settings)
+        solving = ReconstructOptions(options.method, options.sigma_cut_mm, recording_set.rig.row_time_us)
         with faults_first(features.notes):
             even, scan = reconstruct_twice(features, camera, fan, solving, progress)
         shaped = _begin((scan.cloud, camera.image_size), progress, beside)
         of_scan = partial(scan_evidence, even, scan, camera, fan) if options.method == Method.NETWORK else None
-        change = since_calibration(found, calibration, options, progress, of_scan, check)
+        change = since_calibration(recording_set, calibration, options, progress, of_scan, check)
         section = section_change(work, calibration, features.fan)
         deviations = change.deviations
         if section is not None:
@@ -131,13 +131,17 @@ def scan_step(
         if calibration.fan.readjusted is not None:
             said = (*said, calibration.fan.readjusted.note)
         notes = (*scan.notes, *said) if scan.moved else (*said, *scan.notes)
-        notes = (*notes, *assumed_stability(found, change, calibration.fan), *_assumed_shutter(found, scan))
+        notes = (
+            *notes,
+            *assumed_stability(recording_set, change, calibration.fan),
+            *_assumed_shutter(recording_set, scan),
+        )
         scan = replace(scan, notes=urgent_first(notes))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)
         said_first = (*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes)
-        log.notes.extend(urgent_first((*said_first, *_lost(found))))
-        file = _file(features, scan, calibration.id, features_key(found, options, camera))
+        log.notes.extend(urgent_first((*said_first, *_lost(recording_set))))
+        file = _file(features, scan, calibration.id, features_key(recording_set, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
             _write(log, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
     return Measured(scan, mesh)
@@ -198,9 +202,9 @@ def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Cent
     return () if note is None else (note,)
 
 
-def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:
+def _assumed_shutter(recording_set: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:
     """A note if nothing says how the camera reads its rows out, nor do the sweeps; those of a steady hand do not."""
-    if found.rig.row_time_us is not None or scan.read_out.moves:
+    if recording_set.rig.row_time_us is not None or scan.read_out.moves:
         return ()
     return (
         Message(
@@ -213,10 +217,10 @@ def _assumed_shutter(found: RecordingSet, scan: ScanResult) -> tuple[Message, ..
     )
 
 
-def _lost(found: RecordingSet) -> tuple[Message, ...]:
+def _lost(recording_set: RecordingSet) -> tuple[Message, ...]:
     """A note if frames were lost while a live scan was recorded."""
     try:
-        lost = lost_frames(read_log(found.frames[0].parent))
+        lost = lost_frames(read_log(recording_set.frames[0].parent))
     except InputError as error:
         return (error.message,)
     if not lost:
@@ -232,7 +236,7 @@ def _lost(found: RecordingSet) -> tuple[Message, ...]:
 
 
 def _look(
-    found: RecordingSet,
+    recording_set: RecordingSet,
     calibration: Calibration,
     options: Options,
     progress: Progress,
@@ -252,15 +256,17 @@ def _look(
 
         return show
 
-    return look_at_scan((found, options), progress=progress, camera=camera, watching=watching if watch else None)
+    return look_at_scan(
+        (recording_set, options), progress=progress, camera=camera, watching=watching if watch else None
+    )
 
 
-def _features(found: RecordingSet, seen: SeenScan, camera: Camera, progress: Progress) -> ScanFeatures:
+def _features(recording_set: RecordingSet, seen: SeenScan, camera: Camera, progress: Progress) -> ScanFeatures:
     """What the pictures show, with the crossings as this camera sees them."""
     width, height = seen.lines.image_size
     check_size(seen.reference, (height, width), camera)
-    found.hashes.update(seen.hashes)
-    found.chosen.update(seen.chosen)
+    recording_set.hashes.update(seen.hashes)
+    recording_set.chosen.update(seen.chosen)
     features = crossed(seen.lines, seen.averaged, FeatureOptions(camera=camera), progress)
     return replace(features, notes=(*seen.notes, *features.notes))
 

@@ -47,22 +47,22 @@ class StatedChange(NamedTuple):
         return (*_said(rig, self.since, stability), *rest)
 
 
-def change_at_scan(found: RecordingSet, fan: FanCalibration) -> StatedChange:
+def change_at_scan(recording_set: RecordingSet, fan: FanCalibration) -> StatedChange:
     """Until the frames were recorded."""
-    when = taken_at(found.frames) if found.frames else None
-    return _since_calibration(found, found.rig.air.scanned, when, fan)
+    when = taken_at(recording_set.frames) if recording_set.frames else None
+    return _since_calibration(recording_set, recording_set.rig.air.scanned, when, fan)
 
 
-def change_at_check(found: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:
+def change_at_check(recording_set: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:
     """Until the pictures of a check were taken."""
-    return _since_calibration(found, found.rig.air.checked, when, fan)
+    return _since_calibration(recording_set, recording_set.rig.air.checked, when, fan)
 
 
-def change_since_check(found: RecordingSet, checked: datetime) -> Stability:
+def change_since_check(recording_set: RecordingSet, checked: datetime) -> Stability:
     """Between the pictures of a check of the day and the frames; nothing where nothing is stated of warmth and time."""
-    air = found.rig.air
-    hours = 0.0 if not found.frames else (taken_at(found.frames) - checked) / _HOUR
-    return found.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
+    air = recording_set.rig.air
+    hours = 0.0 if not recording_set.frames else (taken_at(recording_set.frames) - checked) / _HOUR
+    return recording_set.rig.drift.over(apart(air.checked, air.scanned, hours, KELVINS_WITHIN_DAY))
 
 
 def notes_since_check(rig: Rig) -> tuple[Message, ...]:
@@ -81,18 +81,18 @@ def notes_since_check(rig: Rig) -> tuple[Message, ...]:
 
 
 def _since_calibration(
-    found: RecordingSet, celsius: float | None, when: datetime | None, fan: FanCalibration
+    recording_set: RecordingSet, celsius: float | None, when: datetime | None, fan: FanCalibration
 ) -> StatedChange:
-    rig = found.rig
-    since = apart(rig.air.calibrated, celsius, _hours(found, when, fan), USUAL_KELVINS)
+    rig = recording_set.rig
+    since = apart(rig.air.calibrated, celsius, _hours(recording_set, when, fan), USUAL_KELVINS)
     stability = stability_after(rig.stability, rig.drift, since)
     guessed = stability is not None and (rig.stability is None or any(_guessed(rig, since)))
     return StatedChange(stability, guessed, since)
 
 
-def _hours(found: RecordingSet, when: datetime | None, fan: FanCalibration) -> float | None:
+def _hours(recording_set: RecordingSet, when: datetime | None, fan: FanCalibration) -> float | None:
     """From the calibration to `when`: the older of camera and planes, or a re-adjustment; None where none can tell."""
-    made = [taken_at(there) for paths in (found.camera, [pair.on for pair in found.planes])
+    made = [taken_at(there) for paths in (recording_set.camera, [pair.on for pair in recording_set.planes])
             if (there := [path for path in paths if path.exists()])]  # fmt: skip
     if fan.readjusted is not None:
         made = [fan.readjusted.taken_at]

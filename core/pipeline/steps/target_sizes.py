@@ -34,7 +34,7 @@ _CAMERAS, _REFERENCE = (
 """What the plane target is seen beside."""
 
 
-def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
+def compare_targets(recording_set: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
     """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
 
     The other one is the reference target if rig.toml states one, else the camera's. None as well where it does not say
@@ -45,8 +45,8 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     InputError
         If a picture is damaged, or of another size than the camera's.
     """
-    rig = found.rig
-    paths = pictures_in(found.rig_file.parent / TARGETS)
+    rig = recording_set.rig
+    paths = pictures_in(recording_set.rig_file.parent / TARGETS)
     other = None if rig.reference is None else rig.reference.target
     if other is None and not rig.one_target and "camera_target" not in rig.unstated:
         other = rig.camera_target
@@ -55,8 +55,8 @@ def compare_targets(found: RecordingSet, camera: Camera) -> tuple[TargetRatio | 
     shown: list[tuple[TargetView, TargetView]] = []
     notes: list[Message] = []
     for path in paths:
-        picture = found.read_board(path)
-        found.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
+        picture = recording_set.read_board(path)
+        recording_set.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
         check_size(path, picture.shape, camera)
         name = f"{TARGETS}/{path.stem}"
         try:
@@ -98,7 +98,7 @@ def _without(seen: TargetView, picture: Picture) -> Picture:
 
 
 def with_compared_sizes(
-    fan: FanCalibration, found: RecordingSet, camera: Camera
+    fan: FanCalibration, recording_set: RecordingSet, camera: Camera
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
     """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
 
@@ -110,12 +110,12 @@ def with_compared_sizes(
     InputError
         As `compare_targets`.
     """
-    ratio, notes = compare_targets(found, camera)
+    ratio, notes = compare_targets(recording_set, camera)
     if ratio is None:
         return fan, notes
-    reference = found.rig.reference
-    board = found.rig.camera_board if reference is None else reference.board
-    stated = math.hypot(board.size_sd, found.rig.plane_board.size_sd)
+    reference = recording_set.rig.reference
+    board = recording_set.rig.camera_board if reference is None else reference.board
+    stated = math.hypot(board.size_sd, recording_set.rig.plane_board.size_sd)
     said = (*notes, ratio.note(stated, _CAMERAS if reference is None else _REFERENCE))
     if ratio.fit_p < NOT_FIXED:
         return fan, said

@@ -57,10 +57,10 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
     plane target that is assumed proves nothing on any day, nor does a calibration of the planes that had not settled.
     Neither does a target whose points lie off alike in all poses, before U contains what an artefact has left possible.
     """
-    found = work.found
-    when = taken_at(found.frames)
+    recording_set = work.recording_set
+    when = taken_at(recording_set.frames)
     try:
-        checks = history_of(found.rig, calibration.id).of_calibration(calibration.id)
+        checks = history_of(recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError as error:
         return Message(
             "validity.history_unreadable",
@@ -77,13 +77,13 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             "conformity; calibrate again.",
             date=nearest.taken_at.astimezone(),
         )
-    lapsed = _calibration_lapsed(found, work.record(), when) or _check_lapsed(found.rig, nearest, when)
+    lapsed = _calibration_lapsed(recording_set, work.record(), when) or _check_lapsed(recording_set.rig, nearest, when)
     if lapsed is not None or calibration.fan.scale_assumed:
         return lapsed or SIZE_UNCONFIRMED
     if any(note.code == NOT_CONVERGED.code for note in calibration.fan.notes):
         return UNSETTLED
     if _off_alike(calibration.fan):
-        nearest = _passed_artefact(found.rig, checks, when)
+        nearest = _passed_artefact(recording_set.rig, checks, when)
         if nearest is None or _left_possible(nearest) > calibration.fan.scale_sd:
             return POINTS_UNCONFIRMED
     return None
@@ -100,12 +100,12 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     fan = calibration.fan
     if not (fan.scale_assumed or _off_alike(fan)):
         return calibration
-    when = taken_at(work.found.frames)
+    when = taken_at(work.recording_set.frames)
     try:
-        checks = history_of(work.found.rig, calibration.id).of_calibration(calibration.id)
+        checks = history_of(work.recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError:
         return calibration  # doubt_of_the_day tells that it cannot be read
-    nearest = _passed_artefact(work.found.rig, checks, when)
+    nearest = _passed_artefact(work.recording_set.rig, checks, when)
     if nearest is None:
         return calibration
     left = _left_possible(nearest)
@@ -167,11 +167,11 @@ def stated_validity(rig: Rig) -> tuple[Message, ...]:
     )
 
 
-def _calibration_lapsed(found: RecordingSet, record: RunRecord, when: datetime) -> Message | None:
-    days = found.rig.validity.calibration_days
+def _calibration_lapsed(recording_set: RecordingSet, record: RunRecord, when: datetime) -> Message | None:
+    days = recording_set.rig.validity.calibration_days
     if days is None:
         return None
-    made = list(_made(found, record))
+    made = list(_made(recording_set, record))
     if not made:
         return Message(
             "validity.calibration_undated",
@@ -213,9 +213,9 @@ def _check_lapsed(rig: Rig, nearest: PastCheck | None, when: datetime) -> Messag
     )
 
 
-def _made(found: RecordingSet, record: RunRecord) -> Iterator[datetime]:
+def _made(recording_set: RecordingSet, record: RunRecord) -> Iterator[datetime]:
     """When the camera and the laser planes were calibrated, by their pictures or by the run, whichever is older."""
-    pictures = {"camera": found.camera, "planes": tuple(pair.on for pair in found.planes)}
+    pictures = {"camera": recording_set.camera, "planes": tuple(pair.on for pair in recording_set.planes)}
     for step, paths in pictures.items():
         known = [record.made_at[step]] if step in record.made_at else []
         if there := [path for path in paths if path.exists()]:

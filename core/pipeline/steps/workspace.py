@@ -123,20 +123,20 @@ class StepLog:
 class Workspace:
     """A recording set and the folder its results go to; `part` names the part if it is not named like the set."""
 
-    found: RecordingSet
+    recording_set: RecordingSet
     out: Path
     part: str = ""
 
     @classmethod
-    def open(cls, found: RecordingSet, out: Path, part: str = "") -> Workspace:
+    def open(cls, recording_set: RecordingSet, out: Path, part: str = "") -> Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
-        if found.contains(out):
+        if recording_set.contains(out):
             raise InputError(
                 Message("project.results_within_set", "the results cannot go into the recording set itself"),
                 where=out,
                 todo=Message("advice.results_into_set", "choose another --out"),
             )
-        return cls(found, make_folder(out), part)
+        return cls(recording_set, make_folder(out), part)
 
     def path(self, name: str) -> Path:
         """Where the result `name`, a key of FILES, lies."""
@@ -178,7 +178,7 @@ class Workspace:
         """What run.json says so far; a fresh record where there is none."""
         if self.path("run").exists():
             return read_run(self.path("run"))
-        return RunRecord(self.found.name, self.part or self.found.name, _now())
+        return RunRecord(self.recording_set.name, self.part or self.recording_set.name, _now())
 
     @contextmanager
     def step(self, name: str, *, measures: bool = True) -> Iterator[StepLog]:
@@ -200,7 +200,7 @@ class Workspace:
             yield log
             seconds = time.perf_counter() - started
             renew(self.out, beside, name, log.gone)
-            record = self.record().with_step(name, seconds, self.found.hashes, log.settings, log.notes)
+            record = self.record().with_step(name, seconds, self.recording_set.hashes, log.settings, log.notes)
             if self.part:
                 record = replace(record, part=self.part)
             if measures:

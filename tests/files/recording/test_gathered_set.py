@@ -139,23 +139,26 @@ def test_sizes_must_agree_within_a_part_only(scattered):
 
 
 def test_results_do_not_go_among_the_pictures(whole, scattered, tmp_path):
-    found = open_set(whole)
-    assert found.contains(whole)
-    assert found.contains(whole / "scan" / "..")
-    assert found.contains(whole / "scan")
-    assert not found.contains(whole / "results")
+    recording_set = open_set(whole)
+    assert recording_set.contains(whole)
+    assert recording_set.contains(whole / "scan" / "..")
+    assert recording_set.contains(whole / "scan")
+    assert not recording_set.contains(whole / "results")
     gathered = gather_set(default_rig(), *scattered)
     assert gathered.contains(scattered[1])
     assert not gathered.contains(tmp_path / "results")
 
 
 def test_names_to_leave_out_are_those_of_the_set(whole):
-    found = open_set(whole)
+    recording_set = open_set(whole)
     names = ("camera/a.png", "camera/b.png", "planes/p1", "planes/p2", "scan/f0.png", "scan/f1.png")
-    assert excludable(found) == names
-    assert excluded_names(found, names) == set(names)
-    assert excluded_names(found, []) == frozenset()
-    assert excluded_names(found, ["planes/p1.png", "planes/p1_off.png", "scan\\f0.png"]) == {"planes/p1", "scan/f0.png"}
+    assert excludable(recording_set) == names
+    assert excluded_names(recording_set, names) == set(names)
+    assert excluded_names(recording_set, []) == frozenset()
+    assert excluded_names(recording_set, ["planes/p1.png", "planes/p1_off.png", "scan\\f0.png"]) == {
+        "planes/p1",
+        "scan/f0.png",
+    }
 
 
 @pytest.mark.parametrize(("typed", "said"), [

@@ -52,8 +52,8 @@ def test_numbers_in_names_count_as_numbers_and_the_set_keeps_that_order(tmp_path
     assert sources(plan, "camera") == ["v1.png", "v2.png", "v10.png"]
     (tmp_path / "rig.toml").write_text(rig_to_toml(default_rig()))
     import_pictures(plan, tmp_path / "set", tmp_path / "rig.toml")
-    found = open_set(tmp_path / "set")
-    assert [path.name for path in found.camera] == ["0-v1.png", "1-v2.png", "2-v10.png"]
+    recording_set = open_set(tmp_path / "set")
+    assert [path.name for path in recording_set.camera] == ["0-v1.png", "1-v2.png", "2-v10.png"]
 
 
 def test_names_that_sort_well_are_kept(tmp_path):

@@ -82,11 +82,13 @@ def test_a_difference_shows_nothing_where_a_channel_is_saturated():
 
 
 def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path):
-    found = colour_set(tmp_path / "set", 'channel = "green"\n').seen_in("red-green")
-    assert [found.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + ["red-green"] * 2
-    colours = cv2.imread(str(found.planes[0].on))
-    assert (found.read(found.planes[0].on) == to_grey(colours, "red-green")).all()
-    assert (found.read_target(found.planes[0].on) == colours[:, :, 1]).all()
+    recording_set = colour_set(tmp_path / "set", 'channel = "green"\n').seen_in("red-green")
+    assert [recording_set.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + [
+        "red-green"
+    ] * 2
+    colours = cv2.imread(str(recording_set.planes[0].on))
+    assert (recording_set.read(recording_set.planes[0].on) == to_grey(colours, "red-green")).all()
+    assert (recording_set.read_target(recording_set.planes[0].on) == colours[:, :, 1]).all()
 
 
 def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):

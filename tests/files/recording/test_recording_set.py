@@ -35,41 +35,41 @@ def folder(tmp_path):
 def test_lists_everything_in_the_order_of_names(folder):
     (folder / "scan" / "notes.txt").write_text("not a picture")
     (folder / "scan" / "._frame_000.png").write_bytes(b"left by another system")
-    found = open_set(folder)
-    assert [p.name for p in found.camera] == ["a.png", "b.png"]
-    assert [(p.name, p.off and p.off.name) for p in found.planes] == [("p1", "p1_off.png"), ("p2", None)]
-    assert found.reference.name == "reference.png"
-    assert [p.name for p in found.frames] == [f"frame_{i:03d}.png" for i in range(6)]
+    recording_set = open_set(folder)
+    assert [p.name for p in recording_set.camera] == ["a.png", "b.png"]
+    assert [(p.name, p.off and p.off.name) for p in recording_set.planes] == [("p1", "p1_off.png"), ("p2", None)]
+    assert recording_set.reference.name == "reference.png"
+    assert [p.name for p in recording_set.frames] == [f"frame_{i:03d}.png" for i in range(6)]
 
 
 def test_frames_stream_in_order_with_hashes(folder):
-    found = open_set(folder)
-    stream = list(found.stream(found.frames))
+    recording_set = open_set(folder)
+    stream = list(recording_set.stream(recording_set.frames))
     assert [name for name, _ in stream] == [f"scan/frame_{i:03d}.png" for i in range(6)]
     assert [int(p[0, 0]) for _, p in stream] == list(range(6))
     data = (folder / "scan" / "frame_003.png").read_bytes()
-    assert found.hashes["scan/frame_003.png"] == hashlib.sha256(data).hexdigest()
+    assert recording_set.hashes["scan/frame_003.png"] == hashlib.sha256(data).hexdigest()
 
 
 def test_truncated_frame_among_good_ones_is_told_and_the_rest_go_on(folder):
     path = folder / "scan" / "frame_002.png"
     path.write_bytes(path.read_bytes()[:-20])
-    found = open_set(folder)
-    stream = list(found.stream(found.frames))
+    recording_set = open_set(folder)
+    stream = list(recording_set.stream(recording_set.frames))
     assert [isinstance(picture, Message) for _, picture in stream] == [False, False, True, False, False, False]
     assert (stream[2][0], str(stream[2][1])) == ("scan/frame_002.png", "the picture ends early")
     assert stream[2][1].code
 
 
 def test_streaming_reads_only_a_few_frames_ahead(folder, monkeypatch):
-    found = open_set(folder)
+    recording_set = open_set(folder)
     for frame in range(6, 40):
         write_picture(folder / "scan" / f"frame_{frame:03d}.png", picture(frame))
-    found = open_set(folder)
-    stream = found.stream(found.frames)
+    recording_set = open_set(folder)
+    stream = recording_set.stream(recording_set.frames)
     next(stream)
     stream.close()
-    assert len(found.hashes) <= 9
+    assert len(recording_set.hashes) <= 9
 
 
 def test_missing_folder_file_and_empty_set(tmp_path):
@@ -94,9 +94,9 @@ def test_missing_folder_file_and_empty_set(tmp_path):
 def test_a_part_without_pictures_is_named(folder, part, require, said):
     for path in (folder / part).iterdir():
         path.unlink()
-    found = open_set(folder)
+    recording_set = open_set(folder)
     with pytest.raises(InputError, match=said):
-        require(found)
+        require(recording_set)
 
 
 def test_a_reference_alone_is_no_scan(folder):
@@ -121,9 +121,9 @@ def test_sizes_are_known_for_every_kind_of_file(folder, suffix):
 
 def test_mixed_depths_name_the_odd_picture(folder):
     write_picture(folder / "scan" / "frame_003.png", picture(dtype=np.uint16))
-    found = open_set(folder)
+    recording_set = open_set(folder)
     with pytest.raises(InputError, match=r"frame_003\.png: the picture has 16 bit"):
-        list(found.stream(found.frames))
+        list(recording_set.stream(recording_set.frames))
 
 
 def test_off_picture_without_partner(folder):
@@ -144,20 +144,30 @@ def test_pictures_are_read_in_the_channel_of_their_step(tmp_path):
         (tmp_path / part).mkdir()
         cv2.imwrite(str(tmp_path / part / "a.png"), bgr)
     (tmp_path / "rig.toml").write_text('channel = "green"\n[channels]\ncamera = "blue"\nscan = "red"\n', "utf-8")
-    found = open_set(tmp_path)
-    assert [int(found.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [10, 20, 30]
+    recording_set = open_set(tmp_path)
+    assert [int(recording_set.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [
+        10,
+        20,
+        30,
+    ]
 
 
 def test_further_exposures_are_no_frames_views_or_poses(folder):
     before = open_set(folder)
     for name in ("scan/frame_002@2", "scan/reference@2", "planes/p1@2", "planes/p1_off@2", "scan/frame_002@3"):
         write_picture(folder / f"{name}.png", picture(3))
-    found = open_set(folder)
-    assert (found.camera, found.frames, found.reference) == (before.camera, before.frames, before.reference)
-    assert [(pair.name, pair.on, pair.off) for pair in found.planes] == [
+    recording_set = open_set(folder)
+    assert (recording_set.camera, recording_set.frames, recording_set.reference) == (
+        before.camera,
+        before.frames,
+        before.reference,
+    )
+    assert [(pair.name, pair.on, pair.off) for pair in recording_set.planes] == [
         (pair.name, pair.on, pair.off) for pair in before.planes
     ]
-    named = {one.name: {number: path.name for number, path in more.items()} for one, more in found.further.items()}
+    named = {
+        one.name: {number: path.name for number, path in more.items()} for one, more in recording_set.further.items()
+    }
     assert named == {
         "frame_002.png": {2: "frame_002@2.png", 3: "frame_002@3.png"},
         "reference.png": {2: "reference@2.png"},
@@ -168,13 +178,13 @@ def test_further_exposures_are_no_frames_views_or_poses(folder):
 
 def test_a_further_exposure_is_read_and_hashed_beside_the_first(folder):
     write_picture(folder / "scan" / "frame_002@2.png", picture(9))
-    found = open_set(folder)
-    assert int(found.read_further(found.frames[2], 2)[0, 0]) == 9
-    assert found.read_further(found.frames[2], 3) is None
-    assert found.read_further(found.frames[1], 2) is None
-    assert list(found.hashes) == ["rig.toml", "scan/frame_002@2.png"]
-    both = [found.frames[1], found.frames[2], folder / "scan" / "frame_002@2.png"]
-    assert found.with_further(found.frames[1:3]) == both
+    recording_set = open_set(folder)
+    assert int(recording_set.read_further(recording_set.frames[2], 2)[0, 0]) == 9
+    assert recording_set.read_further(recording_set.frames[2], 3) is None
+    assert recording_set.read_further(recording_set.frames[1], 2) is None
+    assert list(recording_set.hashes) == ["rig.toml", "scan/frame_002@2.png"]
+    both = [recording_set.frames[1], recording_set.frames[2], folder / "scan" / "frame_002@2.png"]
+    assert recording_set.with_further(recording_set.frames[1:3]) == both
 
 
 def test_a_further_exposure_without_its_first_is_refused(folder):
@@ -207,26 +217,30 @@ def raw_set(folder, **rig):
 
 
 def test_a_laser_in_raw_pictures_is_measured_at_the_sites_that_see_it(folder):
-    found = raw_set(folder, mosaic="RGGB")
+    recording_set = raw_set(folder, mosaic="RGGB")
     for part in ("planes", "scan"):
-        assert found.sites(part) == Sites(0, 0)
-        assert found.laser_channel(part).channel == "red"
-    frame = found.frames[0]
+        assert recording_set.sites(part) == Sites(0, 0)
+        assert recording_set.laser_channel(part).channel == "red"
+    frame = recording_set.frames[0]
     raw = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)
-    assert found.read(frame).shape == raw.shape
-    assert np.array_equal(found.sites("scan").of(found.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
+    assert recording_set.read(frame).shape == raw.shape
+    assert np.array_equal(
+        recording_set.sites("scan").of(recording_set.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1]
+    )
 
 
 def test_colours_interpolated_from_a_mosaic_that_is_stated_are_measured_where_they_were(folder):
-    found = raw_set(folder, mosaic="RGGB")
-    frame = found.frames[0]
+    recording_set = raw_set(folder, mosaic="RGGB")
+    frame = recording_set.frames[0]
     raw = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)
-    for path in (frame, *(path for pair in found.planes for path in (pair.on, pair.off) if path)):
+    for path in (frame, *(path for pair in recording_set.planes for path in (pair.on, pair.off) if path)):
         cv2.imwrite(str(path), cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), cv2.COLOR_BayerRGGB2BGR))
-    found = open_set(folder)
-    assert found.sites("planes") == Sites(0, 0)
-    assert np.array_equal(found.sites("planes").of(found.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
-    assert found.read_target(found.planes[0].on).shape == raw.shape
+    recording_set = open_set(folder)
+    assert recording_set.sites("planes") == Sites(0, 0)
+    assert np.array_equal(
+        recording_set.sites("planes").of(recording_set.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1]
+    )
+    assert recording_set.read_target(recording_set.planes[0].on).shape == raw.shape
 
 
 def test_the_stated_colour_of_a_laser_chooses_the_sites(folder):
@@ -235,19 +249,21 @@ def test_the_stated_colour_of_a_laser_chooses_the_sites(folder):
 
 
 def test_pictures_of_no_mosaic_are_looked_at_whole(folder):
-    found = raw_set(folder)
-    assert found.sites("scan") == ALL_SITES
-    assert found.read(found.frames[0]).dtype == np.uint8
+    recording_set = raw_set(folder)
+    assert recording_set.sites("scan") == ALL_SITES
+    assert recording_set.read(recording_set.frames[0]).dtype == np.uint8
 
 
 def test_a_target_is_looked_for_in_all_sites_of_a_raw_picture(folder):
-    found = raw_set(folder, mosaic="RGGB")
-    for board in (found.read(found.camera[0]), found.read_board(found.camera[0])):
+    recording_set = raw_set(folder, mosaic="RGGB")
+    for board in (recording_set.read(recording_set.camera[0]), recording_set.read_board(recording_set.camera[0])):
         assert board.shape == (60, 80)
         assert board.dtype == np.uint16
-    assert found.read_target(found.planes[0].on).dtype == np.uint16
+    assert recording_set.read_target(recording_set.planes[0].on).dtype == np.uint16
 
 
 def test_a_set_of_grey_pictures_whose_targets_are_stated_in_red_reads_them_as_they_are(folder):
-    found = raw_set(folder, channels=Channels(camera="red"))
-    assert np.array_equal(found.read_target(found.planes[0].on), found.read(found.planes[0].on))
+    recording_set = raw_set(folder, channels=Channels(camera="red"))
+    assert np.array_equal(
+        recording_set.read_target(recording_set.planes[0].on), recording_set.read(recording_set.planes[0].on)
+    )

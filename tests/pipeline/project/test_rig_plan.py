@@ -52,8 +52,12 @@ def test_what_a_measured_project_shows_of_its_rig_is_planned(
     assert design.focal_px == pytest.approx(float(np.sqrt(camera.matrix[0, 0] * camera.matrix[1, 1])), rel=1e-3)
     assert design.baseline_mm == pytest.approx(Design().baseline_mm, abs=3), "the simulated rig is the paper's"
     assert design.distance_mm == pytest.approx(Design().distance_mm, abs=5)
-    found = project_set(finished_project_folder, project)
-    assert (design.views, design.poses, design.sweeps) == (len(found.camera), len(found.planes), len(found.frames))
+    recording_set = project_set(finished_project_folder, project)
+    assert (design.views, design.poses, design.sweeps) == (
+        len(recording_set.camera),
+        len(recording_set.planes),
+        len(recording_set.frames),
+    )
     assert (design.camera_target, design.plane_target) == (project.rig.camera_target, project.rig.plane_target)
 
 
@@ -61,10 +65,10 @@ def test_pictures_left_out_do_not_count_and_a_stated_thickness_goes_before_a_mea
     planned: list[Design], finished_project_folder: Path
 ) -> None:
     project = cut(read_project(finished_project_folder).project)
-    found = project_set(finished_project_folder, project)
-    out = frozenset({f"camera/{found.camera[0].name}"})
+    recording_set = project_set(finished_project_folder, project)
+    out = frozenset({f"camera/{recording_set.camera[0].name}"})
     foretell_project(finished_project_folder, replace(project, options=replace(project.options, excluded=out)), "en")
-    assert planned[0].views == len(found.camera) - 1
+    assert planned[0].views == len(recording_set.camera) - 1
     stated = project.rig.gauge.nominal_mm if project.rig.gauge is not None else None
     assert stated is not None and planned[0].heights_mm == (stated,)
 

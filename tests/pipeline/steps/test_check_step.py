@@ -81,19 +81,19 @@ def turned(tmp_path_factory):
 
 
 def work_in(folder, tmp_path, *, with_check: bool = True) -> Workspace:
-    found = open_set(folder / "set")
+    recording_set = open_set(folder / "set")
     out = tmp_path / "out"
     out.mkdir(parents=True)
     for name in ("camera.json", "planes.json", "planes.npz"):
         (out / name).write_bytes((folder / "out" / name).read_bytes())
-    return Workspace.open(found if with_check else replace(found, check=()), out)
+    return Workspace.open(recording_set if with_check else replace(recording_set, check=()), out)
 
 
 @cache
 def check_seen_in(folder):
     """What the pictures of a prepared check show, and which they are, looked at once for all tests here."""
     work = Workspace.open(open_set(folder / "set"), folder / "out")
-    return measure_check(work.found, work.calibration().camera.camera, Options()), work.found.hashes
+    return measure_check(work.recording_set, work.calibration().camera.camera, Options()), work.recording_set.hashes
 
 
 @cache
@@ -104,14 +104,14 @@ def scan_seen_in(folder):
 
 def check_of(folder, work: Workspace):
     poses, hashes = check_seen_in(folder)
-    work.found.hashes.update(hashes)
+    work.recording_set.hashes.update(hashes)
     return check_step(work, poses=poses)
 
 
 def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged, tmp_path):
     poses, hashes = check_seen_in(unchanged)
     read = work_in(unchanged, tmp_path / "read")
-    read.found.hashes.update(hashes)
+    read.recording_set.hashes.update(hashes)
     not_read = work_in(unchanged, tmp_path / "not read")
     ids = [check_step(work, poses=poses).pictures_id for work in (read, not_read)]
     assert ids[0] == ids[1]
@@ -120,8 +120,8 @@ def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged
 
 def scan_of(folder, work: Workspace) -> Measured:
     poses, hashes = check_seen_in(folder)
-    work.found.hashes.update(hashes)
-    return scan_step(work, COARSE, check=poses if work.found.check else None, seen=lambda: scan_seen_in(folder))
+    work.recording_set.hashes.update(hashes)
+    return scan_step(work, COARSE, check=poses if work.recording_set.check else None, seen=lambda: scan_seen_in(folder))
 
 
 def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
@@ -174,7 +174,7 @@ def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_
     for one in (work, as_opened):
         with pytest.raises(InputError, match="these very pictures"):
             check_step(one)
-    change = since_calibration(as_opened.found, as_opened.calibration(), Options())
+    change = since_calibration(as_opened.recording_set, as_opened.calibration(), Options())
     assert change.p == 1.0, "they are not counted twice"
     undo_readjustment(work)
     assert work.path("planes").read_bytes() == before
@@ -203,15 +203,15 @@ def test_on_another_day_a_readjustment_counts_no_more_than_a_calibration(turned,
     work = work_in(turned, tmp_path)
     readjust_step(work)
     frames = []
-    for path in work.found.frames:
+    for path in work.recording_set.frames:
         copy = tmp_path / path.name
         shutil.copy(path, copy)
         os.utime(copy, (0, 0))
         frames.append(copy)
-    later = replace(work.found, frames=tuple(frames))
+    later = replace(work.recording_set, frames=tuple(frames))
     sources = {one.source for one in since_calibration(later, work.calibration(), Options()).deviations}
     assert {"readjusted", "assumed change"} <= sources
-    same_day = since_calibration(work.found, work.calibration(), Options())
+    same_day = since_calibration(work.recording_set, work.calibration(), Options())
     assert "assumed change" not in {one.source for one in same_day.deviations}
 
 
@@ -261,7 +261,7 @@ def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_
 @pytest.mark.accuracy
 def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budget(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
-    unstated = replace(work.found, rig=replace(work.found.rig, plane_board=BoardTolerance()))
+    unstated = replace(work.recording_set, rig=replace(work.recording_set.rig, plane_board=BoardTolerance()))
     work = Workspace.open(unstated, work.out)
     fan = planes_step(work)
     assert (fan.scale_sd, fan.scale_assumed) == (SUSPECTED_SCALE, True)
@@ -278,7 +278,9 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
 @pytest.mark.parametrize(("stated", "said"), [(None, True), (0.0, False)])
 def test_a_shutter_of_which_nothing_is_stated_is_told_as_assumed(unchanged, tmp_path, stated, said):
     work = work_in(unchanged, tmp_path, with_check=False)
-    work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=stated)), work.out)
+    work = Workspace.open(
+        replace(work.recording_set, rig=replace(work.recording_set.rig, row_time_us=stated)), work.out
+    )
     notes = scan_of(unchanged, work).scan.notes
     assert ("scan.shutter_assumed" in {note.code for note in notes}) is said
 
@@ -339,15 +341,15 @@ def test_a_fan_that_is_not_found_again_is_no_passed_check(unchanged, tmp_path):
     known = work.calibration()
     elsewhere = displaced_fan(known.fan.fan, np.array([0.0, 0.0, 0.3]), np.array([48.0, 81.0, 312.0]))
     moved = replace(known, fan=replace(known.fan, fan=elsewhere))
-    change = since_calibration(work.found, moved, Options())
+    change = since_calibration(work.recording_set, moved, Options())
     assert change.p < PROVES_NOTHING
     assert change.notes[0].code == "scan.fan_is_elsewhere"
 
 
 def test_a_picture_of_the_check_that_shows_no_target_is_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
-    pairs = [replace(pair, on=work.found.frames[0], off=None) for pair in work.found.check]
-    change = since_calibration(replace(work.found, check=tuple(pairs)), work.calibration(), Options())
+    pairs = [replace(pair, on=work.recording_set.frames[0], off=None) for pair in work.recording_set.check]
+    change = since_calibration(replace(work.recording_set, check=tuple(pairs)), work.calibration(), Options())
     assert {note.code for note in change.notes} == {"check.pose_left_out"}
 
 
@@ -369,22 +371,22 @@ def test_a_set_without_pictures_of_a_check_says_what_to_record(unchanged, tmp_pa
 def test_a_check_of_another_day_says_nothing_of_this_scan(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     pictures = []
-    for pair in work.found.check:
+    for pair in work.recording_set.check:
         path = tmp_path / pair.on.name
         path.write_bytes(pair.on.read_bytes())
         os.utime(path, (0, 0))
         pictures.append(replace(pair, on=path, off=None))
-    change = since_calibration(replace(work.found, check=tuple(pictures)), work.calibration(), Options())
-    without = since_calibration(replace(work.found, check=()), work.calibration(), Options())
+    change = since_calibration(replace(work.recording_set, check=tuple(pictures)), work.calibration(), Options())
+    without = since_calibration(replace(work.recording_set, check=()), work.calibration(), Options())
     assert {note.code for note in change.notes} == {"check.another_day"}
     assert change.p == without.p
 
 
 def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing_and_an_unstated_shutter_is_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
-    daily = replace(work.found.rig, validity=Validity(check_days=1.0))
-    work = replace(work, found=replace(work.found, rig=daily))
-    work = Workspace.open(replace(work.found, rig=replace(work.found.rig, row_time_us=None)), work.out)
+    daily = replace(work.recording_set.rig, validity=Validity(check_days=1.0))
+    work = replace(work, recording_set=replace(work.recording_set, rig=daily))
+    work = Workspace.open(replace(work.recording_set, rig=replace(work.recording_set.rig, row_time_us=None)), work.out)
     notes = scan_of(unchanged, work).scan.notes
     assert notes[0].code == "validity.never_checked"
     assert "scan.shutter_assumed" in {note.code for note in notes}
@@ -398,8 +400,10 @@ def test_a_check_that_leaves_much_open_asks_for_more_pictures(unchanged, tmp_pat
     check = check_of(unchanged, work)
     (note,) = (note for note in work.record().notes["check"] if note.code == "check.leaves_much")
     assert note.values["unseen_mm"] == check.unseen_mm > 1.2 * note.values["calibrations_mm"] > 0
-    sure = replace(work.found, rig=replace(work.found.rig, stability=DEFAULT_STABILITY.times(0.2, 0.2, 0.2, 0.2)))
-    check_of(unchanged, replace(work, found=sure))
+    sure = replace(
+        work.recording_set, rig=replace(work.recording_set.rig, stability=DEFAULT_STABILITY.times(0.2, 0.2, 0.2, 0.2))
+    )
+    check_of(unchanged, replace(work, recording_set=sure))
     assert "check.leaves_much" not in [note.code for note in work.record().notes["check"]]
 
 
@@ -422,11 +426,11 @@ def charted(checked, work, tmp_path, days=8, last=1):
     check_of(checked, seen)
     (one,) = read_history(seen.calibration().id).checks
     history_file(seen.calibration().id).unlink()
-    when = taken_at(work.found.frames) - timedelta(hours=1)
+    when = taken_at(work.recording_set.frames) - timedelta(hours=1)
     for day in range(days):
         at = when - timedelta(days=last + day)
         keep_check(name, replace(one, calibration_id=name, pictures_id=f"day {day}", taken_at=at))
-    change = since_calibration(work.found, work.calibration(), Options())
+    change = since_calibration(work.recording_set, work.calibration(), Options())
     of_change = [one for one in change.deviations if "change" in one.source]
     (source,) = {one.source for one in of_change}
     here = work.calibration().fan.fan.pis
@@ -459,7 +463,7 @@ def test_a_history_of_a_turned_mount_makes_the_row_of_change_larger(unchanged, t
 def test_a_rig_that_was_not_checked_on_the_day_is_told_where_that_rules_u(unchanged, tmp_path):
     def told(folder, **kind):
         work = work_in(unchanged, tmp_path / folder, with_check=kind.pop("with_check"))
-        work = replace(work, found=replace(work.found, rig=replace(work.found.rig, **kind)))
+        work = replace(work, recording_set=replace(work.recording_set, rig=replace(work.recording_set.rig, **kind)))
         scan_of(unchanged, work)
         gauge = gauge_step(work)
         return gauge, {note.code: note for note in gauge.notes}.get("inspection.rig_not_checked")
@@ -485,7 +489,7 @@ def test_a_mount_that_turned_after_quiet_days_is_within_u(unchanged, turned, tmp
 def test_a_stated_stability_stands_unless_the_history_shows_more(unchanged, turned, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
     half = DEFAULT_STABILITY.times(0.5, 0.5, 0.5, 0.5)
-    work = replace(work, found=replace(work.found, rig=replace(work.found.rig, stability=half)))
+    work = replace(work, recording_set=replace(work.recording_set, rig=replace(work.recording_set.rig, stability=half)))
     without = charted(unchanged, work, tmp_path / "none", days=0)
     assert without[0] == "change"
     assert charted(unchanged, work, tmp_path / "quiet", days=QUIET_DAYS) == without
@@ -501,7 +505,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     work = work_in(turned, tmp_path)
     alone = check_of(turned, work)
     (kept,) = read_history(work.calibration().id).checks
-    proposed = propose_readjustment(work.found, work.calibration(), Options()).record
+    proposed = propose_readjustment(work.recording_set, work.calibration(), Options()).record
     charted(turned, work, tmp_path / "earlier")
     after = check_of(turned, work)
     assert after.p == alone.p
@@ -509,7 +513,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     assert after.unseen_mm > alone.unseen_mm
     assert read_history(work.calibration().id).checks[-1] == kept, "or a history would feed on itself"
     assert "scan.stability_charted" in [note.code for note in work.record().notes["check"]]
-    wider = propose_readjustment(work.found, work.calibration(), Options()).record
+    wider = propose_readjustment(work.recording_set, work.calibration(), Options()).record
     assert np.linalg.norm(wider.sd) > np.linalg.norm(proposed.sd)
 
 

@@ -47,7 +47,7 @@ def test_the_pose_without_a_stripe_has_its_picture_in_place_of_older_ones_and_a_
     planes_step(work)
     assert ridges(work) == ["pose01-ridge.png"]
     ridge = read_picture(work.out / RIDGES / "pose01-ridge.png")
-    assert ridge.shape == read_picture(work.found.planes[1].on).shape
+    assert ridge.shape == read_picture(work.recording_set.planes[1].on).shape
     assert ridge.max() >= 250
     assert "fan.ridges_written" in [note.code for note in work.record().notes["planes"]]
     clearing_takes_them_away(work)
@@ -56,7 +56,7 @@ def test_the_pose_without_a_stripe_has_its_picture_in_place_of_older_ones_and_a_
 def test_pictures_are_there_where_no_planes_came_of_it_and_the_error_says_so(work):
     with pytest.raises(InputError, match=r"none of the .* look at the pictures in planes/"):
         planes_step(work, TOO_FAINT)
-    assert ridges(work) == [f"{pair.name}-ridge.png" for pair in work.found.planes]
+    assert ridges(work) == [f"{pair.name}-ridge.png" for pair in work.recording_set.planes]
     assert not work.path("planes").exists()
 
 
@@ -67,7 +67,7 @@ def clearing_takes_them_away(work: Workspace) -> None:
 
 
 def test_where_every_pose_has_its_stripes_there_is_no_folder(work, tiny_set):
-    whole = replace(work, found=open_set(tiny_set))
+    whole = replace(work, recording_set=open_set(tiny_set))
     whole.put_ridges({"pose00": np.zeros((2, 3), np.uint8)})
     planes_step(whole)
     assert not (work.out / RIDGES).exists()

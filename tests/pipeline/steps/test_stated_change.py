@@ -23,16 +23,16 @@ WARMING = Drift(per_kelvin=Stability(40e-6, 3.4e-3, 0.04, 2e-5))
 
 
 def stating(work, **stated):
-    return replace(work, found=replace(work.found, rig=replace(work.found.rig, **stated)))
+    return replace(work, recording_set=replace(work.recording_set, rig=replace(work.recording_set.rig, **stated)))
 
 
 def change_of(work, poses=None):
-    return since_calibration(work.found, work.calibration(), Options(), poses=poses)
+    return since_calibration(work.recording_set, work.calibration(), Options(), poses=poses)
 
 
 def codes(work, poses=None):
     change = change_of(work, poses)
-    return [note.code for note in assumed_stability(work.found, change, work.calibration().fan)]
+    return [note.code for note in assumed_stability(work.recording_set, change, work.calibration().fan)]
 
 
 def size(change):
@@ -45,7 +45,7 @@ def test_the_change_is_small_at_the_temperature_of_the_calibration_and_large_10_
     work = stating(work_in(unchanged, tmp_path, with_check=False), stability=AT_REST, drift=WARMING)
     cold, warm = (stating(work, air=Air(20.0, None, celsius)) for celsius in (20.0, 30.0))
     assert size(change_of(warm)) > 3 * size(change_of(cold))
-    notes = assumed_stability(warm.found, change_of(warm), warm.calibration().fan)
+    notes = assumed_stability(warm.recording_set, change_of(warm), warm.calibration().fan)
     assert [note.values["kelvins"] for note in notes if note.code == "scan.change_by_warmth_and_time"] == [10.0]
     assert not {"scan.kelvins_assumed", "scan.stability_assumed"} & {note.code for note in notes}
 
@@ -85,10 +85,10 @@ def test_figures_for_warmth_alone_leave_the_rest_assumed(unchanged, tmp_path):
 def test_hours_are_those_from_the_pictures_of_the_calibration(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path, with_check=False)
     work = stating(work, stability=STABLE, drift=Drift(per_hour=Stability(1e-6, 0.0, 0.0, 0.0)))
-    made = min(taken_at(work.found.camera), taken_at([pair.on for pair in work.found.planes]))
-    hours = (taken_at(work.found.frames) - made).total_seconds() / 3600
+    made = min(taken_at(work.recording_set.camera), taken_at([pair.on for pair in work.recording_set.planes]))
+    hours = (taken_at(work.recording_set.frames) - made).total_seconds() / 3600
     assert change_of(work).stability.turn == pytest.approx(1e-6 * hours)
-    gone = replace(work, found=replace(work.found, camera=(), planes=()))
+    gone = replace(work, recording_set=replace(work.recording_set, camera=(), planes=()))
     assert change_of(gone).stability.turn == pytest.approx(24e-6)
     assert "scan.hours_assumed" in codes(gone)
 
@@ -116,7 +116,9 @@ def test_a_check_says_less_of_a_scan_the_warmer_it_has_become_since(unchanged, t
     work = stating(work_in(unchanged, tmp_path), stability=AT_REST, drift=WARMING)
     poses, _ = check_seen_in(unchanged)
     cold, warm = (change_of(stating(work, air=Air(20.0, 20.0, celsius)), poses) for celsius in (20.0, 26.0))
-    without = change_of(replace(work, found=replace(stating(work, air=Air(20.0, None, 26.0)).found, check=())))
+    without = change_of(
+        replace(work, recording_set=replace(stating(work, air=Air(20.0, None, 26.0)).recording_set, check=()))
+    )
     assert cold.checked and warm.checked
     assert "scan.kelvins_since_check_assumed" not in codes(stating(work, air=Air(20.0, 20.0, 26.0)), poses)
     assert "scan.kelvins_since_check_assumed" in codes(stating(work, air=Air(20.0, None, 26.0)), poses)

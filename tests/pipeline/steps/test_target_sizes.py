@@ -129,10 +129,10 @@ def opened(tmp_path, simulated, shown, side_mm):
     (folder / "targets").mkdir()
     for number, picture in enumerate(shown):
         write_picture(folder / "targets" / f"both{number}.png", picture)
-    found = open_set(folder)
+    recording_set = open_set(folder)
     square, true = BlackSquare(side_mm), {"camera_board": TRUE, "plane_board": TRUE}
-    rig = replace(found.rig, camera_target=BOARD, plane_target=square, **true)
-    return replace(found, rig=rig)
+    rig = replace(recording_set.rig, camera_target=BOARD, plane_target=square, **true)
+    return replace(recording_set, rig=rig)
 
 
 def test_sizes_that_are_stated_truly_agree(tmp_path, simulated, pictures):
@@ -181,9 +181,9 @@ def test_a_camera_target_that_rig_toml_does_not_name_is_not_looked_for(tmp_path,
     camera, shown = pictures
     opened(tmp_path, simulated, shown, 60.0)
     (tmp_path / "set" / "rig.toml").write_text('[plane_target]\nkind = "black_square"\nside_mm = 60.0\n')
-    found = open_set(tmp_path / "set")
-    assert compare_targets(found, camera) == (None, ())
-    assert with_compared_sizes(UNSTATED, found, camera) == (UNSTATED, ())
+    recording_set = open_set(tmp_path / "set")
+    assert compare_targets(recording_set, camera) == (None, ())
+    assert with_compared_sizes(UNSTATED, recording_set, camera) == (UNSTATED, ())
 
 
 def test_targets_that_are_not_fixed_to_each_other_say_nothing(tmp_path, simulated, pictures):

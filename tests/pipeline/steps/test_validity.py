@@ -34,12 +34,12 @@ def recorded(tmp_path, validity=NO_LIMIT, calibrated_days=10.0, made_at=None):
         os.utime(path, ((NOON - timedelta(days=days)).timestamp(),) * 2)
         return path
 
-    found = RecordingSet(
+    recording_set = RecordingSet(
         "set", replace(default_rig(), validity=validity), {}, (picture("view.png", calibrated_days),),
         (PlanePair("pose", picture("pose.png", calibrated_days), None),), None, (picture("frame.png", 0),),
     )  # fmt: skip
     record = RunRecord("set", "part", NOON, made_at=made_at or {})
-    return SimpleNamespace(found=found, record=lambda: record)
+    return SimpleNamespace(recording_set=recording_set, record=lambda: record)
 
 
 def checked(days, p=0.4):

@@ -188,10 +188,10 @@ def test_hot_pixels_are_the_same_in_every_picture():
 def test_raw_pictures_of_a_mosaic_are_grey_and_rig_toml_says_which_it_is(tmp_path):
     scenario = replace(SMALL, frames=1, sensor=SensorEffects(colour=True, raw=True))
     simulate_set(scenario, tmp_path / "set")
-    found = open_set(tmp_path / "set")
-    assert found.rig.mosaic == "RGGB"
-    seen = read_picture(found.frames[0]).astype(float)
-    rest = read_picture(found.reference).astype(float)
+    recording_set = open_set(tmp_path / "set")
+    assert recording_set.rig.mosaic == "RGGB"
+    seen = read_picture(recording_set.frames[0]).astype(float)
+    rest = read_picture(recording_set.reference).astype(float)
     by_site = [np.quantile((seen - rest)[v::2, u::2], 0.999) for v in (0, 1) for u in (0, 1)]
     assert by_site[0] > 4 * max(by_site[1:])
 
