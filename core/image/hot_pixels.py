@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.image.targets.picture import Picture
+from core.model.robust import MAD_TO_SD
 
 # Held by tests/image/test_hot_pixels.py, on plates in front of a background with points of light.
 _FEWEST_PICTURES = 4  # of different scenes: what stands out in fewer may be something that was seen twice
@@ -37,7 +38,7 @@ def standing_out(picture: Picture) -> NDArray[np.int64]:
         raise ValueError(f"a picture must be uint8 or uint16, not {picture.dtype}")
     above = cv2.subtract(picture, cv2.medianBlur(picture, 5), dtype=cv2.CV_32F)
     rough = np.abs(above)
-    spread = max(1.4826 * float(np.median(rough[::4, ::4])), _QUANTISED * grey)
+    spread = max(MAD_TO_SD * float(np.median(rough[::4, ::4])), _QUANTISED * grey)
     around = _MEAN_TO_SD * cv2.blur(np.minimum(rough, 4 * spread), (_AROUND_PX, _AROUND_PX))
     places = np.flatnonzero(above > np.maximum(_STANDS_OUT * np.maximum(around, spread), _LEAST_GREY * grey))
     height, width = picture.shape

@@ -99,16 +99,17 @@ def faces_of(cloud: Cloud, found: Sequence[Stretch], normal: Array | None) -> Fa
 _REFINED = 2
 """Times that levels and their common normal are found from each other."""
 
-_Levels = tuple[list[Stretch], list[Stretch]]
+_TwoLevels = tuple[list[Stretch], list[Stretch]]
+"""The stretches of the upper face, and of the lower one."""
 
 
-def _pair(levels: _Levels | None) -> FacePair | None:
+def _pair(levels: _TwoLevels | None) -> FacePair | None:
     if levels is None:
         return None
     return FacePair(*(np.concatenate([one.indices for one in level]) for level in levels))
 
 
-def _apart(found: Sequence[Stretch], normal: Array, limit: float) -> list[_Levels]:
+def _apart(found: Sequence[Stretch], normal: Array, limit: float) -> list[_TwoLevels]:
     """Two levels that are a step apart along the normal, those longest on common lines first."""
     pairs = [
         (upper, lower)
@@ -118,7 +119,7 @@ def _apart(found: Sequence[Stretch], normal: Array, limit: float) -> list[_Level
     return sorted(pairs, key=lambda levels: -_common_length(*levels))
 
 
-def _two_levels(found: Sequence[Stretch], normal: Array, limit: float) -> list[_Levels]:
+def _two_levels(found: Sequence[Stretch], normal: Array, limit: float) -> list[_TwoLevels]:
     pairs = combinations(_levels(found, normal, limit), 2)
     return [(upper, lower) for upper, lower in pairs if _common_length(upper, lower) > 0]
 
@@ -128,7 +129,7 @@ def _height(level: Sequence[Stretch], normal: Array) -> float:
     return float(lengths @ [float(one.centre @ normal) for one in level] / lengths.sum())
 
 
-def _common_normal(levels: _Levels) -> Array:
+def _common_normal(levels: _TwoLevels) -> Array:
     """The normal, away from the camera, of two parallel planes through stretches that are uniform in density."""
     scatter = np.zeros((3, 3))
     for level in levels:

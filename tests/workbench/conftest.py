@@ -99,8 +99,9 @@ def nothing_hangs(pytestconfig: pytest.Config, request: pytest.FixtureRequest) -
 
 @pytest.fixture(scope="module", autouse=True)
 def garbage_stays_here() -> Iterator[None]:
-    """As in the program, no thread but this one collects windows of tests that are over.
+    """No thread but this one collects windows of tests that are over: tests leave pages that the program never leaves.
 
+    In the program the collector runs as it does, and so it does while the window is played with at random.
     What outlives its test does so until the module's end: a page without a window may leave its clock running, which
     would be counted against the first test with a window of whichever module came next.
     """

@@ -101,7 +101,7 @@ def fuse(
 
 
 Index = NDArray[np.int64]
-_FEW = 64
+_MOST_INSERTED = 64
 """Points of a cell that are sorted by insertion; with more, merging is quicker."""
 
 
@@ -212,7 +212,7 @@ def fuse_cells(order: Index, starts: Index, cells: Index, measured: Measured, ga
 @inlined()
 def _sort_by_depth(inside: Index, points: Array) -> None:
     """Sort the few points of a cell in place, those of one depth as they came."""
-    if len(inside) > _FEW:
+    if len(inside) > _MOST_INSERTED:
         _merge_by_depth(inside, points)
         return
     for k in range(1, len(inside)):

@@ -33,7 +33,8 @@ class ScanCloud(QWidget):
         self.scene.setAccessibleName(tr("Measured points in 3D"))
         self.frame = FrameTool(self.scene, presenter.bench.settings)
         in_column(self.scene, on=self)
-        self.scene.clear(self._message())
+        self._last = self._message()
+        self.scene.clear(self._last)
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
@@ -83,7 +84,7 @@ class ScanCloud(QWidget):
         self.scene.set_cloud(points, values=sigma, colouring=Colouring("σ", "mm", (0.0, PREVIEW_SIGMA_MM)))
 
     def _said(self, message: str) -> bool:
-        said, self._last = getattr(self, "_last", None), message
+        said, self._last = self._last, message
         return said == message
 
     def _message(self) -> str:
