@@ -7,6 +7,7 @@ system. A licence that binds the whole program is refused, and so is one that no
 from __future__ import annotations
 
 import re
+import sys
 import tomllib
 from dataclasses import dataclass
 from importlib.metadata import PackageMetadata, distribution
@@ -17,6 +18,8 @@ from packaging.utils import canonicalize_name
 
 ROOT = Path(__file__).parents[1]
 NOTICE = ROOT / "NOTICE"
+WRITTEN_ON = (3, 11)
+"""The Python that NOTICE is written on: the oldest one, which needs some packages that are part of later ones."""
 
 REASONS = {
     "certifi": "MPL-2.0 binds its own files only; they are used unchanged",
@@ -97,4 +100,6 @@ def notice() -> str:
 
 
 if __name__ == "__main__":
+    if sys.version_info[:2] != WRITTEN_ON:
+        sys.exit("NOTICE is written on Python {}.{}, which needs most packages.".format(*WRITTEN_ON))
     NOTICE.write_text(notice(), encoding="utf-8")

@@ -1,10 +1,11 @@
 """The program is under MIT, and stands on nothing that would make it otherwise."""
 
+import sys
 from email.message import Message
 
 import pytest
 
-from tests.licences import NOTICE, REASONS, licence, notice, runtime_licences
+from tests.licences import NOTICE, REASONS, WRITTEN_ON, licence, notice, runtime_licences
 
 
 def test_no_runtime_dependency_binds_the_program_by_its_licence():
@@ -35,4 +36,8 @@ def test_a_licence_that_binds_is_refused(head, value, said):
 
 
 def test_the_notice_is_current():
-    assert NOTICE.read_text(encoding="utf-8") == notice(), "write it with `make notice`"
+    kept = NOTICE.read_text(encoding="utf-8")
+    if sys.version_info[:2] == WRITTEN_ON:
+        assert kept == notice(), "write it with `make notice`"
+    else:  # which needs fewer packages
+        assert set(notice().splitlines()) <= set(kept.splitlines())

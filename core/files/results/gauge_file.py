@@ -66,7 +66,8 @@ class _GaugeFile(ResultFile):
     faces: _Faces = Field(description="a table of upper and lower")
     nominal_mm: Finite | None = None
     tolerance_mm: Finite | None = None
-    verdict: Annotated[Verdict, BeforeValidator(Verdict)] = Verdict.NONE
+    # Not the class itself: an enum's signature is (*values) from Python 3.12 on, which pydantic refuses.
+    verdict: Annotated[Verdict, BeforeValidator(lambda name: Verdict(name))] = Verdict.NONE
     complete: bool = True
     rule: OptionalMessage = None
     normal: Row3 | None = None

@@ -24,9 +24,9 @@ def opened(monkeypatch):
     """How files are opened for direct writes."""
     flags, real = [], os.open
 
-    def noted(path, flag, *rest):
+    def noted(path, flag, *rest, **named):
         flags.append(flag)
-        return real(path, flag, *rest)
+        return real(path, flag, *rest, **named)
 
     monkeypatch.setattr(direct_file.os, "open", noted)
     return flags

@@ -28,7 +28,8 @@ def test_checks_are_kept_in_the_order_of_their_pictures():
     keep_check("bench", FIRST)
     history = keep_check("bench", PastCheck.of(nowhere()))
     assert [one.taken_at for one in read_history("bench").checks] == sorted(one.taken_at for one in history.checks)
-    assert read_history("bench").checks[-1] == later(2)
+    last = read_history("bench").checks[-1]
+    assert repr(last) == repr(later(2)), "from Python 3.13 on records with NaN in a field are not equal"
     assert read_history("other").checks == ()
 
 
@@ -96,7 +97,7 @@ def test_an_artefact_has_a_chart_of_its_own():
     assert history.like(block) == (block,)
     assert not history.chart(block).own and history.chart(later(11)).own
     keep_check("bench", block)
-    assert read_history("bench").checks == (block,)
+    assert repr(read_history("bench").checks) == repr((block,))
 
 
 def spread(days, error_mm=0.0, stated_mm=0.04, stated=None, **kept):
@@ -150,7 +151,7 @@ def measured_block(days: float, measured_mm: float, block: Artefact = BLOCK) -> 
 def test_an_artefact_is_kept_with_what_its_certificate_says():
     keep_check("bench", measured_block(1, 50.004))
     (kept,) = read_history("bench").checks
-    assert kept == measured_block(1, 50.004)
+    assert repr(kept) == repr(measured_block(1, 50.004))
     told = kept.of_artefact
     assert told is not None and told.artefact == BLOCK
     assert (told.measured_mm, told.u_mm, told.e_n) == pytest.approx((50.004, 0.009, kept.e_n))
