@@ -1,0 +1,238 @@
+"""What has changed since all proofs passed: `python -m tests.changed proofs` and `python -m tests.changed packaging`.
+
+`.ci/proven` names the commit at which all of `make proofs` passed, and what is packed was tried. A proof is left out
+where nothing that it rests on has changed since: its own module, those it imports, however deep, the fixtures it asks
+for and what these import. Comments and docstrings do not count. Files that are no modules count by `READ_BY`.
+
+`proofs` prints the files to run on standard output, and lists on standard error those that are left out.
+`packaging` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
+"""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+PROVEN = Path(".ci/proven")
+PACKAGES = ("core", "workbench", "trisect", "resources", "tests")
+
+READ_BY = {
+    "constraints": "tests.conftest",
+    "pyproject.toml": "tests.conftest",
+    "resources/sample/": "core.simulate.sample",
+    "resources/script/": "core.pipeline.project.script",
+    "resources/style.qss": "workbench.theme",
+    "resources/icons/": "workbench.theme",
+    "resources/translations/": "workbench.language",
+}
+"""Files that are no modules, by how their paths begin, each with the module whose readers depend on them.
+
+Versions of libraries count for every proof; translations where windows are proven: no number depends on a text.
+"""
+PACKAGING = ("pyproject.toml", "constraints", "packaging/", "resources/desktop/")
+"""How the paths of files begin that decide what is packed and how it is tried, beside the compiled loops."""
+
+
+class Tree:
+    """The modules of a checkout, and what each imports of the others and of those that are `gone`."""
+
+    def __init__(self, root: Path, gone: Iterable[str] = ()) -> None:
+        self.root = root
+        self.files = {
+            _module_name(path.relative_to(root)): path for name in PACKAGES for path in (root / name).rglob("*.py")
+        }
+        self._names = {*self.files, *gone}
+        self._named = cache(self._named_in_module)
+
+    def closure(self, names: Iterable[str]) -> set[str]:
+        """Modules that are imported when the modules of these names are, themselves among them."""
+        found: set[str] = set()
+        waiting = set(names)
+        while waiting:
+            name = waiting.pop()
+            found.add(name)
+            packages = {name.rsplit(".", depth)[0] for depth in range(1, name.count(".") + 1)}
+            waiting |= ((self._named(name) | packages) & self._names) - found
+        return found
+
+    def proof(self, path: Path) -> set[str]:
+        """Modules that a file of proofs rests on: what it imports, and what the fixtures it asks for import."""
+        own = _module_name(path)
+        asked = _asked_for(ast.walk(_parsed(self.root / path)))
+        found = self.closure([own])
+        for folder in path.parents:
+            conftest = _module_name(folder / "conftest.py")
+            if conftest in self.files:
+                found |= self.closure(self._named_by_fixtures(conftest, asked)) | {conftest}
+        return found
+
+    def _named_in_module(self, name: str) -> set[str]:
+        path = self.files.get(name)
+        return self._named_in(ast.walk(_parsed(path)), name) if path else set()
+
+    def _named_by_fixtures(self, conftest: str, asked: set[str]) -> set[str]:
+        """Modules named in a conftest outside functions, and in those functions that the tests or pytest itself call.
+
+        `asked` is extended by the fixtures that these ask for in turn.
+        """
+        functions, waiting = {}, []
+        for node in _parsed(self.files[conftest]).body:
+            if isinstance(node, ast.FunctionDef):
+                functions[node.name] = node
+                by_pytest = node.name.startswith("pytest_") or "autouse=True" in map(ast.unparse, _keywords(node))
+                if by_pytest or node.name in asked:
+                    waiting.append(node.name)
+        outside = [node for node in _parsed(self.files[conftest]).body if not isinstance(node, ast.FunctionDef)]
+        named = self._named_in((one for node in outside for one in ast.walk(node)), conftest)
+        while waiting:
+            function = functions.pop(waiting.pop(), None)
+            if function is None:
+                continue
+            nodes = list(ast.walk(function))
+            named |= self._named_in(nodes, conftest)
+            asked |= _asked_for(nodes)
+            waiting += [node.id for node in nodes if isinstance(node, ast.Name)] + list(asked & functions.keys())
+        return named
+
+    def _named_in(self, nodes: Iterable[ast.AST], module: str) -> set[str]:
+        """Modules of ours that are imported, or named in a text: what is started by its name."""
+        named: set[str] = set()
+        for node in nodes:
+            if isinstance(node, ast.Import):
+                named |= {one.name for one in node.names}
+            elif isinstance(node, ast.ImportFrom):
+                base = (
+                    ".".join([*module.split(".")[: -node.level], node.module or ""]).rstrip(".") if node.level else ""
+                )
+                base = base or node.module or ""
+                named |= {base, *(f"{base}.{one.name}" for one in node.names)}
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                named.add(node.value)
+        return named & self._names
+
+
+def _keywords(function: ast.FunctionDef) -> Iterator[ast.keyword]:
+    for one in function.decorator_list:
+        if isinstance(one, ast.Call):
+            yield from one.keywords
+
+
+def _asked_for(nodes: Iterable[ast.AST]) -> set[str]:
+    """Names that may be those of fixtures: arguments of functions, and texts."""
+    names = set()
+    for node in nodes:
+        if isinstance(node, ast.arg):
+            names.add(node.arg)
+        elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            names.add(node.value)
+    return names
+
+
+def _module_name(path: Path) -> str:
+    return ".".join(path.with_suffix("").parts).removesuffix(".__init__")
+
+
+@cache
+def _parsed(path: Path) -> ast.Module:
+    return ast.parse(path.read_text(encoding="utf-8"))
+
+
+def _meaning(text: str) -> str:
+    """What a module does: its syntax tree without docstrings."""
+    tree = ast.parse(text)
+    for node in ast.walk(tree):
+        body = getattr(node, "body", None)
+        if isinstance(body, list):
+            node.body = [one for one in body if not _is_text(one)]  # type: ignore[attr-defined]
+    return ast.dump(tree)
+
+
+def _is_text(node: ast.stmt) -> bool:
+    return isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant) and isinstance(node.value.value, str)
+
+
+def _git(root: Path, *words: str) -> str:
+    return subprocess.run(("git", "-C", str(root), *words), capture_output=True, text=True, check=True).stdout
+
+
+def changed_files(root: Path = ROOT) -> set[str] | None:
+    """Paths that differ from the proven commit in more than comments; None where that commit is not known here."""
+    proven = root / PROVEN
+    try:
+        commit = proven.read_text(encoding="utf-8").split()[0]
+        paths = _git(root, "diff", "--name-only", "--no-renames", commit).split("\n")
+    except (OSError, IndexError, subprocess.CalledProcessError):
+        return None
+    paths += _git(root, "ls-files", "--others", "--exclude-standard").split("\n")
+    return {path for path in paths if path and _differs(root, commit, path)}
+
+
+def _differs(root: Path, commit: str, path: str) -> bool:
+    if not path.endswith(".py"):
+        return True
+    try:
+        before = _git(root, "show", f"{commit}:{path}")
+        return _meaning(before) != _meaning((root / path).read_text(encoding="utf-8"))
+    except (OSError, subprocess.CalledProcessError, SyntaxError):
+        return True  # new, gone, or not to be read
+
+
+def touched_modules(changed: set[str]) -> set[str]:
+    """Modules that have changed, or read a file that has."""
+    modules = {_module_name(Path(path)) for path in changed if path.endswith(".py")}
+    return modules | {reader for path in changed for start, reader in READ_BY.items() if path.startswith(start)}
+
+
+def touched_proofs(root: Path, proofs: Iterable[Path], changed: set[str] | None) -> list[Path]:
+    """Those of the files of proofs that rest on something that has changed; all where that is not known."""
+    if changed is None:
+        return list(proofs)
+    touched = touched_modules(changed)
+    tree = Tree(root, touched)
+    return [path for path in proofs if tree.proof(path) & touched]
+
+
+def _is_compiled(path: Path) -> bool:
+    """Whether a file has compiled loops, or makes them."""
+    if path.suffix != ".py" or not path.exists():
+        return False
+    return path.name == "compiled.py" or b"from core.compiled import" in path.read_bytes()
+
+
+def packaging_changed(root: Path, changed: set[str] | None) -> bool:
+    """Whether a wheel or a bundle could come out otherwise."""
+    if changed is None:
+        return True
+    return any(path.startswith(PACKAGING) or _is_compiled(root / path) for path in changed)
+
+
+def proofs_of(root: Path = ROOT) -> list[Path]:
+    """Every file with proofs."""
+    return [
+        path.relative_to(root)
+        for path in sorted((root / "tests").rglob("test_*.py"))
+        if "mark.accuracy" in path.read_text(encoding="utf-8")
+    ]
+
+
+def main() -> None:
+    changed = changed_files()
+    if sys.argv[1:] == ["packaging"]:
+        print("changed" * packaging_changed(ROOT, changed))
+        return
+    proofs = proofs_of()
+    run = touched_proofs(ROOT, proofs, changed)
+    left_out = [path.as_posix() for path in proofs if path not in run]
+    if left_out:
+        sys.stderr.write(f"{len(left_out)} of {len(proofs)} files of proofs left out, for nothing that they rest on ")
+        sys.stderr.write("has changed since the commit in .ci/proven:\n" + "".join(f"  {one}\n" for one in left_out))
+    print(*(path.as_posix() for path in run))
+
+
+if __name__ == "__main__":
+    main()

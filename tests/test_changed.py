@@ -1,0 +1,120 @@
+"""A proof is left out only where nothing that it rests on has changed since all were passed."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from tests.changed import PROVEN, Tree, changed_files, packaging_changed, proofs_of, touched_proofs
+
+FILES = {
+    "core/__init__.py": "",
+    "core/compiled.py": "",
+    "core/loops.py": "from core.compiled import compiled\n",
+    "core/deep.py": '"""Depth."""\nDEPTH = 1\n',
+    "core/far.py": "def far():\n    from core import deep\n    return deep.DEPTH\n",
+    "core/started.py": "",
+    "core/cli/__init__.py": "",
+    "core/cli/app.py": "NAME = 'core.started'\n",
+    "workbench/__init__.py": "",
+    "workbench/theme.py": "",
+    "resources/style.qss": "QWidget {}\n",
+    "constraints.txt": "numpy==2.4.6\n",
+    "tests/__init__.py": "",
+    "tests/conftest.py": "import pytest\n@pytest.fixture\ndef measured(small):\n    return made()\n"
+    "@pytest.fixture\ndef small():\n    return 1\ndef made():\n    import core.cli.app\n",
+    "tests/test_far.py": "import pytest, core.far\npytestmark = pytest.mark.accuracy\ndef test_far():\n    pass\n",
+    "tests/test_run.py": "import pytest\n@pytest.mark.accuracy\ndef test_run(measured):\n    pass\n",
+    "tests/test_seen.py": "import pytest, workbench.theme\n@pytest.mark.accuracy\ndef test_seen():\n    pass\n",
+    "tests/test_quick.py": "import core.deep\n",
+}
+PROOFS = {"far", "run", "seen"}
+
+
+def git(folder, *words):
+    subprocess.run(("git", "-c", "user.name=A", "-c", "user.email=a@b", "-C", str(folder), *words), check=True)
+
+
+@pytest.fixture
+def checkout(tmp_path) -> Path:
+    """A checkout of which everything was proven."""
+    for name, text in FILES.items():
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_text(text, encoding="utf-8")
+    git(tmp_path, "init", "-q")
+    git(tmp_path, "add", ".")
+    git(tmp_path, "commit", "-qm", "All")
+    commit = subprocess.check_output(("git", "-C", str(tmp_path), "rev-parse", "HEAD"), text=True)
+    (tmp_path / PROVEN).parent.mkdir()
+    (tmp_path / PROVEN).write_text(commit, encoding="utf-8")
+    return tmp_path
+
+
+def run_again(checkout):
+    touched = touched_proofs(checkout, proofs_of(checkout), changed_files(checkout))
+    return {path.stem.removeprefix("test_") for path in touched}
+
+
+def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
+    assert {path.stem.removeprefix("test_") for path in proofs_of(checkout)} == PROOFS
+    assert run_again(checkout) == set()
+    assert not packaging_changed(checkout, changed_files(checkout))
+
+
+@pytest.mark.parametrize(
+    ("path", "proofs"),
+    [
+        ("core/deep.py", {"far"}),
+        ("core/__init__.py", {"far", "run"}),
+        ("core/cli/app.py", {"run"}),
+        ("core/cli/__init__.py", {"run"}),
+        ("core/started.py", {"run"}),
+        ("core/loops.py", set()),
+        ("tests/conftest.py", PROOFS),
+        ("tests/test_far.py", {"far"}),
+        ("tests/test_quick.py", set()),
+        ("resources/style.qss", {"seen"}),
+        ("constraints.txt", PROOFS),
+        ("README.md", set()),
+    ],
+)
+def test_a_proof_is_run_again_when_something_that_it_imports_or_asks_for_has_changed(checkout, path, proofs):
+    with (checkout / path).open("a", encoding="utf-8") as file:
+        file.write("ADDED = 1\n")
+    assert run_again(checkout) == proofs
+
+
+def test_a_module_that_is_gone_counts_as_changed_and_so_does_a_committed_change(checkout):
+    (checkout / "core/deep.py").unlink()
+    git(checkout, "commit", "-qam", "Gone")
+    assert run_again(checkout) == {"far"}, "of the import the package is left, and the module is not there any more"
+
+
+def test_comments_and_docstrings_are_no_change(checkout):
+    (checkout / "core/deep.py").write_text('"""How deep."""\n\n# in floors\nDEPTH = 1\n', encoding="utf-8")
+    assert run_again(checkout) == set()
+
+
+@pytest.mark.parametrize("text", ["", "0123456789abcdef0123456789abcdef01234567\n"])
+def test_where_the_proven_commit_is_not_known_all_is_run(checkout, text):
+    (checkout / PROVEN).write_text(text, encoding="utf-8")
+    assert run_again(checkout) == PROOFS
+    assert packaging_changed(checkout, changed_files(checkout))
+
+
+@pytest.mark.parametrize(
+    ("path", "packed"),
+    [("core/loops.py", True), ("constraints.txt", True), ("core/deep.py", False), ("tests/test_far.py", False)],
+)
+def test_what_is_packed_is_tried_again_when_loops_or_versions_have_changed(checkout, path, packed):
+    with (checkout / path).open("a", encoding="utf-8") as file:
+        file.write("ADDED = 1\n")
+    assert packaging_changed(checkout, changed_files(checkout)) == packed
+
+
+def test_no_proof_of_this_project_is_overlooked():
+    tree = Tree(Path(__file__).parents[1])
+    proofs = proofs_of()
+    assert len(proofs) > 100
+    assert all("tests.conftest" in tree.proof(path) and "core" in tree.proof(path) for path in proofs[:10])
