@@ -1,8 +1,15 @@
-# Everything a fresh machine needs: `make demo` and `make test`. Python 3.11 or newer is all they ask for.
+# Everything a fresh machine needs: `make demo` and `make test`. Python 3.11 or newer with its module venv is all they ask for.
 PYTHON ?= python3
 VENV   := .venv
 BIN    := $(VENV)/bin
 PIP    := $(BIN)/pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# An environment that is half made, or whose Python is gone, is made anew; one sentence where Python cannot make any.
+SUITS    = import sys, venv, ensurepip; sys.exit(sys.version_info < (3, 11))
+UNSUITED = Trisect needs Python 3.11 or newer with its modules venv and ensurepip, which "$(PYTHON)" is not: install them (on Debian and Ubuntu: apt install python3 python3-venv), or name another one (make PYTHON=/path/to/python3)
+define ENVIRONMENT
+@$(PYTHON) -c '$(SUITS)' 2>/dev/null || { echo '$(UNSUITED).' >&2; exit 1; }
+@$(BIN)/python -m pip --version >/dev/null 2>&1 || $(PYTHON) -m venv --clear $(VENV)
+endef
 # What is installed: enough to measure, the window as well, or all that tests and tools want.
 CORE   := $(VENV)/.core
 WINDOW := $(VENV)/.window
@@ -26,6 +33,8 @@ ON_SCREEN   := -n 1 $(AS_MODULES)
 # where they are tested.
 PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
 PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
+# $(call prove,SURROUNDINGS,FILES): pytest would take no file for all of them.
+prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(2)),true)
 
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
@@ -33,7 +42,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen on_screen examples quick proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
+.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -54,6 +63,12 @@ test: $(READY)            ## format, lint, types, rooms, examples, every test; w
 offscreen: $(READY)
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%)
 
+below_workbench: $(READY) ## every test but those of windows: what another Python than that of `make test` has to pass
+	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) --ignore=tests/workbench
+
+imports: $(READY)         ## import every module of the program
+	QT_QPA_PLATFORM=offscreen $(BIN)/python -m tests.imports
+
 on_screen: $(READY)       # beside `offscreen`, so it is told in one piece when it ends
 	@{ set -x; TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(ON_SCREEN) $(BOTH_WAYS) $(SCREEN_ONLY); } > "$$TRISECT_MADE_ONCE/on_screen" 2>&1; \
 	passed=$$?; cat "$$TRISECT_MADE_ONCE/on_screen"; exit $$passed
@@ -65,11 +80,14 @@ quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"
 
 proofs: $(READY)          ## what many measurements must keep, and whole jobs in all their forms: the short form of `make accuracy`
-	@if command -v Xvfb >/dev/null; then set -x; \
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(filter-out $(SCREEN_ONLY),$(PROOFS)) && \
-	TRISECT_VIRTUAL_SCREEN=1 $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS_ON_SCREEN); \
+	@if command -v Xvfb >/dev/null; then \
+	$(call prove,QT_QPA_PLATFORM=offscreen,$(filter-out $(SCREEN_ONLY),$(PROOFS))) && \
+	$(call prove,TRISECT_VIRTUAL_SCREEN=1,$(PROOFS_ON_SCREEN)); \
 	else echo "Xvfb is not installed: windows are proven without a screen only"; \
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(PROOFS); fi
+	$(call prove,QT_QPA_PLATFORM=offscreen,$(PROOFS)); fi
+
+touched_proofs: $(READY)  ## those that rest on something that has changed since .ci/proven; the others are listed
+	@touched=$$($(BIN)/python -m tests.changed proofs) && $(MAKE) --no-print-directory proofs PROOFS="$$touched"
 
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual
@@ -127,17 +145,17 @@ wheel: compile            ## build the wheel, with compiled loops in it, and try
 	test -z "$$(find build/wheel/cache -type f)"
 
 $(CORE): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
+	$(ENVIRONMENT)
 	$(PIP) --editable .
 	touch $@
 
 $(WINDOW): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
+	$(ENVIRONMENT)
 	$(PIP) --editable '.[window]'
 	touch $(CORE) $@
 
 $(READY): pyproject.toml constraints.txt
-	$(PYTHON) -m venv $(VENV)
+	$(ENVIRONMENT)
 	$(PIP) --editable '.[dev]'
 	touch $(CORE) $(WINDOW) $@
 
