@@ -24,6 +24,7 @@ from typing import Any, BinaryIO, Protocol, TypeVar
 from core.errors import InputError
 from core.memory import give_back
 from core.messages import Message
+from core.processes import module_command
 from core.progress import Progress, silent
 from core.stage_times import StageTimes
 from core.threads import MOST_WORKERS, ordered_map, result_of
@@ -58,7 +59,7 @@ class SecondProcess:
 
     def __init__(self, modules: Sequence[str] = ()) -> None:
         self._process = subprocess.Popen(
-            (sys.executable, "-P", "-m", __name__, *modules),
+            module_command("core.second_process", *modules),
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,

@@ -7,7 +7,6 @@ its own, which is ended when the job is cancelled.
 from __future__ import annotations
 
 import subprocess
-import sys
 import tempfile
 from contextlib import suppress
 from importlib.util import find_spec
@@ -19,6 +18,7 @@ from core.errors import InputError, WrongValue
 from core.files.limits import STEP_BYTES, check_file
 from core.messages import Message
 from core.model.arrays import Array
+from core.processes import module_command
 from core.progress import Progress, silent
 
 SUFFIXES = (".step", ".stp")
@@ -30,10 +30,8 @@ _MM = 1000.0
 """glTF is in metres whatever the unit of the STEP file was."""
 _ASK_EVERY_S = 0.1
 """How often in s it is asked whether the job is cancelled."""
-_TESSELLATE = (
-    "import sys; sys.modules['trimesh'] = None; "  # cascadio would tell it of itself, and load it and scipy for that
-    "import cascadio; sys.exit(cascadio.step_to_glb(*sys.argv[1:3], *map(float, sys.argv[3:])))"
-)
+_TESSELLATION = "core.files.cad_tessellation"
+"""The module that process runs."""
 
 
 def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Array:
@@ -68,7 +66,7 @@ def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Ar
 
 
 def _tessellate(path: Path, glb: Path, chord_mm: float, progress: Progress) -> None:
-    command = (sys.executable, "-P", "-c", _TESSELLATE, path.resolve(), glb, f"{chord_mm:.9g}", f"{_TURN_RAD}")
+    command = module_command(_TESSELLATION, str(path.resolve()), str(glb), f"{chord_mm:.9g}", f"{_TURN_RAD}")
     quiet = subprocess.DEVNULL
     with subprocess.Popen(command, stdin=quiet, stdout=quiet, stderr=quiet) as process:
         try:

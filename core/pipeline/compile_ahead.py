@@ -10,9 +10,11 @@ import time
 from core.compiled import is_complete, keep_complete, saved_functions
 from core.messages import label
 from core.pipeline.live.warm_up import shares
+from core.processes import module_command
 from core.progress import Progress, silent
 
 STEP = label("preparing")
+MODULE = "core.pipeline.compile_ahead"
 _LOOK_EVERY_S = 0.2
 """How often in s it is looked whether the second process is done."""
 _EXPECTED_FUNCTIONS = 240
@@ -26,9 +28,8 @@ def compile_ahead(progress: Progress = silent) -> None:
     """
     if is_complete():
         return
-    program = (sys.executable, "-P", "-m", __name__)
     running = [
-        subprocess.Popen((*program, str(number)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.Popen(module_command(MODULE, str(number)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         for number in range(len(shares()))
     ]
     try:

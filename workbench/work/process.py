@@ -13,6 +13,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, QProcess, QProcessEnvironment, Qt, QTimer, Signal
 
+from core.processes import module_command
 from workbench.work import wire
 from workbench.work.jobs import Job
 from workbench.work.wire import HEAD, Kind
@@ -29,7 +30,7 @@ class ChildProcess(QObject):
     Parameters
     ----------
     module, arguments
-        What Python runs: `-m module arguments`.
+        One of the program's modules, run as `python -m module arguments` would.
     """
 
     gone = Signal(str)
@@ -44,8 +45,8 @@ class ChildProcess(QObject):
         self._process.readyReadStandardOutput.connect(self._read, Qt.ConnectionType.QueuedConnection)
         self._process.finished.connect(self._finished, Qt.ConnectionType.QueuedConnection)
         self._process.errorOccurred.connect(self._failed, Qt.ConnectionType.QueuedConnection)
-        # -P: a module that lies in the current folder by chance is not taken for one of Python's
-        self._process.start(sys.executable, ["-P", "-m", module, *arguments])
+        program, *rest = module_command(module, *arguments)
+        self._process.start(program, rest)
 
     @property
     def pid(self) -> int:

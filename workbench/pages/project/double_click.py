@@ -24,6 +24,7 @@ from core.errors import InputError
 from core.files.atomic import make_folder, write_text
 from core.files.project.folder import OPENER
 from core.messages import Message
+from core.processes import program_command
 from workbench.language import tr
 from workbench.notices import Notices
 from workbench.views import ask
@@ -111,8 +112,7 @@ def installed() -> bool:
 
 def starter() -> tuple[str, ...]:
     """The command that starts the program that runs."""
-    script = Path(sys.executable).with_name("trisect-workbench" + (".exe" if PLATFORM == "win32" else ""))
-    return (str(script),) if script.exists() else (sys.executable, "-m", "workbench")
+    return program_command("trisect-workbench", "workbench")
 
 
 def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:

@@ -27,6 +27,8 @@ from PySide6.QtCore import QCoreApplication, QObject, QProcess, QTimer, Signal
 from PySide6.QtGui import QGuiApplication, QOffscreenSurface, QOpenGLContext, QSurfaceFormat
 from PySide6.QtWidgets import QWidget
 
+from core.processes import module_command
+
 Kind = Literal["embedded", "pictures", "none"]
 
 VARIABLE = "TRISECT_NO_OPENGL"
@@ -95,7 +97,8 @@ class Readiness(QObject):
         patience.setSingleShot(True)
         patience.timeout.connect(trial.kill)
         patience.start(TRIAL_MS)
-        trial.start(sys.executable, ["-m", SURFACES])
+        program, *arguments = module_command(SURFACES)
+        trial.start(program, arguments)
 
     def give_up(self, kind: Kind) -> None:
         """Drawing was promised and does not work so: an OpenGL window is replaced by pictures, pictures by nothing."""

@@ -1,0 +1,42 @@
+"""How the program starts its own modules in another process, from source or frozen into one folder.
+
+Python runs a module that it is given by name. A frozen program is no Python: what starts it (`bundle/`) lets
+`run_asked_module` answer the same question before it reads any argument.
+"""
+
+from __future__ import annotations
+
+import runpy
+import sys
+from pathlib import Path
+
+MODULE = "--module"
+"""First argument of a frozen program that is to run one module: the module's name and arguments follow."""
+
+
+def is_frozen() -> bool:
+    """Whether the program runs from one folder that brings its own Python."""
+    return bool(getattr(sys, "frozen", False))
+
+
+def module_command(module: str, *arguments: str) -> tuple[str, ...]:
+    """The command that runs one of the program's modules, as `__main__`, in another process."""
+    if is_frozen():
+        return (sys.executable, MODULE, module, *arguments)
+    # -P: a module that lies in the current folder by chance is not taken for one of Python's
+    return (sys.executable, "-P", "-m", module, *arguments)
+
+
+def program_command(name: str, module: str) -> tuple[str, ...]:
+    """The command of one of the installed programs, by its own name; where it has none, what runs its module."""
+    program = Path(sys.executable).with_name(name + (".exe" if sys.platform == "win32" else ""))
+    return (str(program),) if program.exists() else module_command(module)
+
+
+def run_asked_module() -> bool:
+    """Run the module that the arguments of a frozen program ask for; False if they ask for none."""
+    if sys.argv[1:2] != [MODULE] or len(sys.argv) < 3:
+        return False
+    sys.argv = sys.argv[2:]
+    runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
+    return True
