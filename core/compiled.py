@@ -31,16 +31,15 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 import platformdirs
 from llvmlite import binding
 
+from core import sources
 from core.processor import PROCESSOR
+from core.sources import PACKAGE, SHIPPED
 
 if TYPE_CHECKING:
     from numba.core.dispatcher import Dispatcher
 
 Function = TypeVar("Function", bound=Callable[..., object])
 
-_PACKAGE = Path(__file__).parent
-SHIPPED = _PACKAGE / "saved_code"
-"""Saved code that came with the package, in folders as in the user's cache."""
 _IMPORT = b"from core.compiled import"
 """What a file with compiled functions says."""
 _IMPORTED = re.compile(rb"^from (core[\w.]*) import", re.MULTILINE)
@@ -97,8 +96,11 @@ def _refuse(*_: object, **__: object) -> None:
 
 
 def _files(package: Path) -> dict[Path, bytes]:
-    """The files with compiled functions, those they take numbers from, and this one, as they are now."""
-    texts = {file: file.read_bytes() for file in sorted(package.rglob("*.py"))}
+    """The files with compiled functions, those they take numbers from, and this one, as they are now.
+
+    Empty in a frozen program.
+    """
+    texts = sources.texts(package)
     own = [file for file, text in texts.items() if _IMPORT in text]
     modules = {name.decode() for file in own for name in _IMPORTED.findall(texts[file])}
     known = {package.parent.joinpath(*module.split(".")) for module in modules}
@@ -106,8 +108,11 @@ def _files(package: Path) -> dict[Path, bytes]:
 
 
 def _key(files: dict[Path, bytes]) -> str:
-    """One number over what the files say, what makes the code and what it is made for."""
-    says = [(file.relative_to(_PACKAGE).as_posix(), text) for file, text in files.items()]
+    """One number over what the files say, what makes the code and what it is made for.
+
+    Raises InputError where there are no files and nothing is known of them: no code would ever be of other files.
+    """
+    says = sorted((sources.hashes(files) or sources.compiled_hashes()).items())
     made_by = (sys.implementation.cache_tag, *(version(name) for name in ("numba", "llvmlite", "numpy")))
     made_for = (binding.get_process_triple(), PROCESSOR)
     return hashlib.sha256(repr((says, made_by, made_for)).encode()).hexdigest()[:16]
@@ -134,7 +139,7 @@ def _sweep(base: Path) -> None:
             shutil.rmtree(old, ignore_errors=True)
 
 
-_FILES = _files(_PACKAGE)
+_FILES = _files(PACKAGE)
 FOLDER = _folder(_key(_FILES))
 """Where this version's saved code is."""
 

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import core
-from core import compiled, processor
+from core import compiled, processor, sources
 from tests.simulated import copy_of
 
 CALLER = """
@@ -73,6 +73,7 @@ def put_package(place):
     folder.mkdir(parents=True)
     shutil.copy(compiled.__file__, folder)
     shutil.copy(processor.__file__, folder)
+    shutil.copy(sources.__file__, folder)
     (folder / "__init__.py").touch()
     (folder / "caller.py").write_text(CALLER)
     (folder / "callee.py").write_text(CALLEE.format(factor=2.0))

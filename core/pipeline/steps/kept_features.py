@@ -11,11 +11,9 @@ import json
 from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
-from functools import cache
 from pathlib import Path
 from typing import Any
 
-import core
 from core.calibrate.camera.views import SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
@@ -31,8 +29,8 @@ from core.files.results.scan_file import read_scan
 from core.model import Camera
 from core.progress import Progress, silent, steps
 from core.scan.features.extraction import ScanFeatures
+from core.sources import text_hash
 
-_CORE = Path(core.__file__).parent
 _SCAN_ROOMS = ("acquire", "image", "scan")
 """The rooms that read a scan's pictures and make features of them."""
 
@@ -66,7 +64,7 @@ def features_key(recording_set: RecordingSet, options: Options, camera: Camera) 
         for path in _pictures(recording_set, options)
     ]
     rests_on = {
-        "program": program_text(_SCAN_ROOMS),
+        "program": text_hash(_SCAN_ROOMS),
         "channel": recording_set.laser_channel("scan").channel,
         "mosaic": recording_set.rig.mosaic,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
@@ -88,16 +86,6 @@ def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
     """The reference and the frames that are not left out by hand."""
     frames = [path for path in recording_set.frames if recording_set.name_of(path) not in options.excluded]
     return recording_set.with_further(frames if recording_set.reference is None else [recording_set.reference, *frames])
-
-
-@cache
-def program_text(rooms: tuple[str, ...]) -> str:
-    """The text of some rooms of core, as a hash."""
-    digest = hashlib.sha256()
-    for room in rooms:
-        for source in sorted(_CORE.joinpath(room).rglob("*.py")):
-            digest.update(source.read_bytes())
-    return digest.hexdigest()
 
 
 _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
@@ -160,7 +148,7 @@ def _pose_pictures(recording_set: RecordingSet) -> list[Path]:
 
 def _key(project: Project, step: str, recording_set: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
-        "program": program_text(_CALIBRATION_ROOMS),
+        "program": text_hash(_CALIBRATION_ROOMS),
         "target": without_warmth(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
         "channel": recording_set.laser_channel(step).channel,
         "mosaic": recording_set.rig.mosaic,

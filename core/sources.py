@@ -1,0 +1,74 @@
+"""The program's own text, as hashes: what another text has made is made anew.
+
+A frozen program has no source files. Their hashes are then read from a file that is written as it is built, beside the
+saved code.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from functools import cache
+from pathlib import Path
+
+PACKAGE = Path(__file__).parent
+SHIPPED = PACKAGE / "saved_code"
+"""Saved code of compiled loops that came with the package."""
+BUILT = SHIPPED / "sources.json"
+"""Hash of each source file, by its name; and those alone that become compiled code. `bundle/` writes it."""
+
+
+def texts(package: Path = PACKAGE) -> dict[Path, bytes]:
+    """What the source files say, as they are now; empty in a frozen program."""
+    return {file: file.read_bytes() for file in sorted(package.rglob("*.py"))}
+
+
+def hashes(files: dict[Path, bytes]) -> dict[str, str]:
+    """The hash of each text, by the file's name within the package."""
+    return {file.relative_to(PACKAGE).as_posix(): hashlib.sha256(text).hexdigest() for file, text in files.items()}
+
+
+@cache
+def text_hash(rooms: tuple[str, ...]) -> str:
+    """One hash over the text of some rooms of core. Raises InputError if nothing is known of it."""
+    found = {file: file.read_bytes() for room in rooms for file in sorted(PACKAGE.joinpath(room).rglob("*.py"))}
+    names = hashes(found) or {name: one for name, one in built("files").items() if name.split("/")[0] in rooms}
+    if not names:
+        raise _not_whole()
+    return hashlib.sha256(repr(sorted(names.items())).encode()).hexdigest()
+
+
+def compiled_hashes() -> dict[str, str]:
+    """Hash of each source file that becomes compiled code, as it was built. Raises InputError if none is known."""
+    return built("compiled")
+
+
+def built(part: str) -> dict[str, str]:
+    """The hashes kept as the program was built. Raises InputError if there are none: nothing is not to be hashed."""
+    try:
+        kept: dict[str, str] = json.loads(BUILT.read_text(encoding="utf-8"))[part]
+    except (OSError, ValueError, KeyError, TypeError):
+        kept = {}
+    if not kept:
+        raise _not_whole()
+    return kept
+
+
+def _not_whole() -> Exception:
+    from core.errors import InputError
+    from core.messages import Message
+
+    return InputError(
+        Message(
+            "run.program_not_whole",
+            "the program is not whole: neither its source files nor the list of them that is written when it is built "
+            "are there",
+        ),
+        where=PACKAGE,
+        todo=Message("advice.install_anew", "install it anew"),
+    )
+
+
+def to_be_built(compiled: dict[Path, bytes]) -> str:
+    """What BUILT is to say in a program frozen now, of which some source files become compiled code."""
+    return json.dumps({"files": hashes(texts()), "compiled": hashes(compiled)}, indent=1)
