@@ -1,11 +1,12 @@
-"""What has changed since all proofs passed: `python -m tests.changed proofs` and `python -m tests.changed packaging`.
+"""What has changed since it was proven: `python -m tests.changed proofs` and `python -m tests.changed packing`.
 
-`.ci/proven` names the commit at which all of `make proofs` passed, and what is packed was tried. A proof is left out
-where nothing that it rests on has changed since: its own module, those it imports, however deep, the fixtures it asks
-for and what these import. Comments and docstrings do not count. Files that are no modules count by `READ_BY`.
+`.ci/proven` names the commit at which all of `make proofs` passed, and the one at which wheel and bundle were tried. A
+proof is left out where nothing that it rests on has changed since: its own module, those it imports, however deep, the
+fixtures it asks for and what these import. Comments and docstrings do not count. Files that are no modules count by
+`READ_BY`.
 
 `proofs` prints the files to run on standard output, and lists on standard error those that are left out.
-`packaging` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
+`packing` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
 """
 
 from __future__ import annotations
@@ -34,7 +35,7 @@ READ_BY = {
 
 Versions of libraries count for every proof; translations where windows are proven: no number depends on a text.
 """
-PACKAGING = ("pyproject.toml", "constraints", "packaging/", "resources/desktop/")
+PACKED_BY = ("pyproject.toml", "constraints", "locks/", "bundle/", "hatch_build.py", "resources/desktop/")
 """How the paths of files begin that decide what is packed and how it is tried, beside the compiled loops."""
 
 
@@ -160,13 +161,16 @@ def _git(root: Path, *words: str) -> str:
     return subprocess.run(("git", "-C", str(root), *words), capture_output=True, text=True, check=True).stdout
 
 
-def changed_files(root: Path = ROOT) -> set[str] | None:
-    """Paths that differ from the proven commit in more than comments; None where that commit is not known here."""
-    proven = root / PROVEN
+def changed_files(what: str, root: Path = ROOT) -> set[str] | None:
+    """Paths that differ in more than comments from the commit at which `what` was proven; None where it is not known.
+
+    `what` is "proofs" or "packing".
+    """
     try:
-        commit = proven.read_text(encoding="utf-8").split()[0]
+        lines = (root / PROVEN).read_text(encoding="utf-8").splitlines()
+        commit = dict(line.split() for line in lines)[what]
         paths = _git(root, "diff", "--name-only", "--no-renames", commit).split("\n")
-    except (OSError, IndexError, subprocess.CalledProcessError):
+    except (OSError, ValueError, KeyError, subprocess.CalledProcessError):
         return None
     paths += _git(root, "ls-files", "--others", "--exclude-standard").split("\n")
     return {path for path in paths if path and _differs(root, commit, path)}
@@ -204,11 +208,11 @@ def _is_compiled(path: Path) -> bool:
     return path.name == "compiled.py" or b"from core.compiled import" in path.read_bytes()
 
 
-def packaging_changed(root: Path, changed: set[str] | None) -> bool:
+def packing_changed(root: Path, changed: set[str] | None) -> bool:
     """Whether a wheel or a bundle could come out otherwise."""
     if changed is None:
         return True
-    return any(path.startswith(PACKAGING) or _is_compiled(root / path) for path in changed)
+    return any(path.startswith(PACKED_BY) or _is_compiled(root / path) for path in changed)
 
 
 def proofs_of(root: Path = ROOT) -> list[Path]:
@@ -221,12 +225,11 @@ def proofs_of(root: Path = ROOT) -> list[Path]:
 
 
 def main() -> None:
-    changed = changed_files()
-    if sys.argv[1:] == ["packaging"]:
-        print("changed" * packaging_changed(ROOT, changed))
+    if sys.argv[1:] == ["packing"]:
+        print("changed" * packing_changed(ROOT, changed_files("packing")))
         return
     proofs = proofs_of()
-    run = touched_proofs(ROOT, proofs, changed)
+    run = touched_proofs(ROOT, proofs, changed_files("proofs"))
     left_out = [path.as_posix() for path in proofs if path not in run]
     if left_out:
         sys.stderr.write(f"{len(left_out)} of {len(proofs)} files of proofs left out, for nothing that they rest on ")
