@@ -28,10 +28,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-import platformdirs
 from llvmlite import binding
 
 from core import sources
+from core.code_cache import code_cache, temporary_cache
 from core.processor import PROCESSOR
 from core.sources import PACKAGE, SHIPPED
 
@@ -119,16 +119,16 @@ def _key(files: dict[Path, bytes]) -> str:
 
 
 def _folder(name: str) -> Path:
-    """The folder of saved code of this name, made if need be; one for this process alone where none can be written."""
-    base = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("trisect", appauthor=False)
-    folder = Path(base) / "compiled" / name
+    """The folder of saved code of this name, made if need be; a temporary one where none can be written."""
+    folder = code_cache() / name
     try:
         if not folder.exists():
-            folder.mkdir(parents=True)
+            folder.mkdir()
             _sweep(folder.parent)
         os.utime(folder)
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="trisect-compiled-"))
+        folder = temporary_cache() / name
+        folder.mkdir(exist_ok=True)
     return folder
 
 

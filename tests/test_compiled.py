@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import core
-from core import compiled, processor, sources
+from core import code_cache, compiled, errors, messages, processor, sources
 from tests.simulated import copy_of
 
 CALLER = """
@@ -71,9 +71,8 @@ def put_package(place):
     """A small package of the same name with a compiled function that calls one of another file."""
     folder = place / "package" / "core"
     folder.mkdir(parents=True)
-    shutil.copy(compiled.__file__, folder)
-    shutil.copy(processor.__file__, folder)
-    shutil.copy(sources.__file__, folder)
+    for module in (compiled, code_cache, errors, messages, processor, sources):
+        shutil.copy(module.__file__, folder)
     (folder / "__init__.py").touch()
     (folder / "caller.py").write_text(CALLER)
     (folder / "callee.py").write_text(CALLEE.format(factor=2.0))
@@ -168,7 +167,34 @@ def test_numbers_spelt_out_share_one_code_of_a_function(package, tmp_path):
 
 def test_a_cache_that_cannot_be_written_is_done_without(package, tmp_path):
     (tmp_path / "cache").write_text("no folder")
-    assert ask(package, tmp_path / "cache")[0] == 21.0
+    answer, _, folder = ask(package, tmp_path / "cache")
+    assert answer == 21.0
+    assert not folder.parent.exists()
+
+
+TWO = """
+import subprocess, sys
+from core.code_cache import note_on_cache
+from core.compiled import FOLDER
+ask = sys.argv[1]
+for _ in range(2):
+    print(subprocess.run([sys.executable, "-c", ask], check=True, capture_output=True, text=True).stdout.strip())
+print(FOLDER, "lost" if note_on_cache() else "kept")
+"""
+
+
+@pytest.mark.parametrize("in_the_way", [False, True])
+def test_where_no_cache_can_be_written_a_process_and_those_it_starts_share_one_until_its_end(
+    package, tmp_path, in_the_way
+):
+    if in_the_way:
+        (tmp_path / "cache").write_text("no folder")
+    said = run(TWO, ASK, cwd=package.parent, cache=tmp_path / "cache")
+    answers, folders = (said[0:2], said[3:5]), {said[2], said[5], said[6]}
+    assert answers == (["21.0", "2"], ["21.0", "0"])
+    assert len(folders) == 1
+    assert said[7] == ("lost" if in_the_way else "kept")
+    assert Path(folders.pop()).exists() != in_the_way
 
 
 def compiled_modules():

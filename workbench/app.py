@@ -20,6 +20,7 @@ from PySide6.QtGui import QFileOpenEvent, QIcon
 from PySide6.QtWidgets import QApplication
 
 from core import __version__
+from core.code_cache import code_cache, note_on_cache
 from core.errors import InputError
 from core.translations import PSEUDO, language, languages, preferred
 from workbench.language import choose, text_of, tr
@@ -119,6 +120,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     wanted = (given.language, bench.settings.language, os.environ.get("TRISECT_LANGUAGE", ""), QLocale.system().name())
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
+    code_cache()  # of all its processes: they find here which one it is
+    if (note := note_on_cache()) is not None:
+        bench.notices.warning(text_of(note))
 
     def put() -> MainWindow:
         made = app.window = build_window(app, bench, given.theme)

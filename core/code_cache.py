@@ -1,0 +1,69 @@
+"""Where compiled loops are saved: in the user's cache, or where that cannot be written in one temporary folder.
+
+The temporary folder is of the process that found that out and of all it starts: they find it in the surroundings. That
+process removes it at its end. Light to import.
+"""
+
+from __future__ import annotations
+
+import atexit
+import os
+import shutil
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import platformdirs
+
+from core.messages import Message
+
+HANDED_DOWN = "TRISECT_TEMPORARY_CACHE"
+"""The variable that names the temporary folder to the processes that are started."""
+
+
+def code_cache() -> Path:
+    """The folder that holds a folder of saved code for each version."""
+    usual = usual_cache()
+    try:
+        usual.mkdir(parents=True, exist_ok=True)
+    except OSError:
+        return temporary_cache()
+    return usual if os.access(usual, os.W_OK | os.X_OK) else temporary_cache()
+
+
+def usual_cache() -> Path:
+    """Where saved code is kept for the next start."""
+    base = os.environ.get("NUMBA_CACHE_DIR") or platformdirs.user_cache_dir("trisect", appauthor=False)
+    return Path(base) / "compiled"
+
+
+def temporary_cache() -> Path:
+    """The temporary folder in place of it, made where no process above has made one."""
+    handed = Path(os.environ.get(HANDED_DOWN, ""))
+    return handed if handed.name and handed.is_dir() else _made()
+
+
+@cache
+def _made() -> Path:
+    folder = Path(tempfile.mkdtemp(prefix="trisect-compiled-"))
+    os.environ[HANDED_DOWN] = str(folder)
+    atexit.register(_remove, folder, os.getpid())
+    return folder
+
+
+def _remove(folder: Path, maker: int) -> None:
+    """At the end of the process that made it, not of a fork of it."""
+    if os.getpid() == maker:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+def note_on_cache() -> Message | None:
+    """What is to be told where saved code is lost at the end; None where it is kept."""
+    if HANDED_DOWN not in os.environ:
+        return None
+    return Message(
+        "run.cache_not_kept",
+        "{folder} cannot be written, so the measuring loops are compiled anew, for minutes, each time the program "
+        "starts. Name a folder that can be written in the variable NUMBA_CACHE_DIR.",
+        folder=usual_cache(),
+    )
