@@ -60,6 +60,10 @@ class InputError(Exception):
         return _restored, (type(self), self.what, self.where, self.todo)
 
 
+class NoThickness(InputError):
+    """A part was measured, but no thickness could be found in what was measured."""
+
+
 class WrongValue(ValueError):
     """A value that nothing can be made of, with a message for those who gave it.
 

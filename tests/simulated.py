@@ -28,12 +28,12 @@ class Said:
 
     @property
     def sentence(self) -> str:
-        """The one sentence on standard error."""
-        lines = self.err.strip().splitlines()
-        assert len(lines) == 1, self.err
-        assert lines[0].startswith("trisect: ")
-        assert lines[0].endswith(".")
-        return lines[0]
+        """The one sentence on standard error, behind the stages that were begun."""
+        *stages, last = self.err.strip().splitlines()
+        assert all(line.endswith((" …", " s")) for line in stages), self.err
+        assert last.startswith("trisect: ")
+        assert last.endswith(".")
+        return last
 
 
 def trisect(*words: object, cores: int = 1) -> Said:

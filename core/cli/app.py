@@ -1,9 +1,9 @@
 """`trisect`: what each command takes, and what its exit code says.
 
 0: done, and conforming if a verdict was asked for. 1: measured, but out of tolerance or not proven. 2: bad input, told
-in one sentence on standard error. 70: a fault of the program, in one sentence that names the report of it. 130:
-interrupted. Numbers come from the rooms below; here is only talk. Those rooms are imported by the command that needs
-them: so `trisect --help` answers at once.
+in one sentence on standard error. 3: measured, but no thickness could be found. 70: a fault of the program, in one
+sentence that names the report of it. 129, 130, 143: ended by SIGHUP, Ctrl-C, SIGTERM. Numbers come from the rooms
+below; here is only talk. Those rooms are imported by the command that needs them: so `trisect --help` answers at once.
 """
 
 from __future__ import annotations
@@ -18,7 +18,8 @@ import typer
 from typer.main import get_command
 
 from core import __version__
-from core.cli import language
+from core.cli import language, talk
+from core.cli.interrupts import Interrupts, interruptible
 from core.cli.measuring_commands import commands as measuring
 from core.cli.options import EPILOG, ExitCode, Panel
 from core.cli.preparing_commands import commands as preparing
@@ -28,7 +29,7 @@ from core.cli.simulating import HELP_VALUES
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
 from core.cli.usage import Commands, NoArgsIsHelpError, UsageError, usage_error
-from core.errors import Cancelled, InputError
+from core.errors import Cancelled, InputError, NoThickness
 from core.messages import Message
 from core.messages import as_json as as_json_message
 
@@ -38,7 +39,6 @@ app = typer.Typer(
     help="Measure a part with one camera, a fixed three-line laser and a hand-moved single-line laser.",
     epilog=EPILOG,
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": language.HELP_OPTIONS},
 )
@@ -64,30 +64,37 @@ def _trisect(
 
 def main(arguments: Sequence[str] | None = None) -> None:
     """Run the command line and leave with its exit code."""
-    import cv2
-
     # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
-    cv2.utils.logging.setLogLevel(cv2.utils.logging.LOG_LEVEL_SILENT)
+    os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
     words = list(sys.argv[1:] if arguments is None else arguments)
-    try:
-        language.choose(words)
-        _run(words)
-    except InputError as error:
-        _refuse(error, as_json="--json" in words)
-        sys.exit(ExitCode.BAD_INPUT)
-    except Cancelled:
-        told = language.tr("interrupted; what was finished before is whole, nothing is half written.")
-        sys.stderr.write(f"trisect: {told}\n")
-        sys.exit(ExitCode.INTERRUPTED)
-    except BrokenPipeError:
-        # Whoever read our output has left; Python would complain once more when it closes standard output.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-    except Exception as error:  # noqa: BLE001  the one door for whatever nobody foresaw
-        from core.files.reading import refused_path
+    talk.choose(talk.Loudness.USUAL)
+    with interruptible() as interrupts:
+        try:
+            language.choose(words)
+            _run(words)
+        except BrokenPipeError:
+            # Whoever read our output has left; Python would complain once more when it closes standard output.
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        except (Exception, KeyboardInterrupt) as error:  # noqa: BLE001  the one door for whatever nobody foresaw, too
+            sys.exit(_failed(error, words, interrupts))
 
-        refused = refused_path(error)
-        _refuse(refused or _fault(words, error), as_json="--json" in words)
-        sys.exit(ExitCode.FAULT if refused is None else ExitCode.BAD_INPUT)
+
+def _failed(error: BaseException, words: Sequence[str], interrupts: Interrupts) -> ExitCode:
+    """Tell why a command was not done; what the program leaves with.
+
+    What fails once the command was asked to end fails because of that: its second process is gone, or its terminal.
+    """
+    if interrupts.signal or not isinstance(error, Exception) or isinstance(error, Cancelled):
+        told = language.tr("interrupted; what was finished before is whole, nothing is half written.")
+        talk.say_aloud(f"trisect: {told}")
+        return interrupts.code
+    from core.files.reading import refused_path
+
+    refused = error if isinstance(error, InputError) else refused_path(error)
+    _refuse(refused or _fault(words, error), as_json="--json" in words)
+    if refused is None:
+        return ExitCode.FAULT
+    return ExitCode.NO_THICKNESS if isinstance(refused, NoThickness) else ExitCode.BAD_INPUT
 
 
 def _run(words: list[str]) -> None:
@@ -132,4 +139,4 @@ def _refuse(error: InputError, *, as_json: bool) -> None:
             "todo": as_json_message(error.todo),
         }
         sys.stdout.write(to_json(told))
-    sys.stderr.write(f"trisect: {language.told(error)}\n")
+    talk.say_aloud(f"trisect: {language.told(error)}")

@@ -1,13 +1,12 @@
-"""A progress bar on a terminal, silence in a pipe; and Ctrl-C, which no job may miss."""
+"""How far a job is, on standard error: a bar on a terminal, else a line a stage."""
 
 from __future__ import annotations
 
-import signal
 import sys
 import threading
-from collections.abc import Callable, Iterator
+import time
+from collections.abc import Iterator
 from contextlib import contextmanager
-from types import FrameType
 
 from rich.console import Console
 from rich.progress import Progress as RichProgress
@@ -15,43 +14,86 @@ from rich.progress import ProgressColumn, Task, TextColumn, TimeElapsedColumn
 from rich.progress_bar import ProgressBar
 from rich.text import Text
 
+from core.cli.interrupts import interruptible
 from core.cli.language import told, tr
-from core.errors import Cancelled
+from core.cli.talk import is_quiet, is_verbose, say
 from core.progress import Progress
 from core.remaining import USUAL_S, Remaining, in_words
 
 _WIDTH = 40
 """Characters: stage and time left have room beside it on a terminal of 80."""
+_LONG_S = 1.0
+"""From so many seconds on it is worth a line how long a stage took."""
 
 
 @contextmanager
 def bar(job: str = "") -> Iterator[Progress]:
-    """A `Progress` that draws one bar for all of a job on standard error, if that is a terminal; Ctrl-C cancels.
+    """A `Progress` that tells all of a job on standard error; Ctrl-C and what else ends a command cancels.
 
     `job` is its name in `USUAL_S`, if it is one of these.
     """
-    with _interruptible() as check:
-        if not sys.stderr.isatty():
-            yield lambda step, done, total: check()
+    telling = _quiet() if is_quiet() else _drawn(job) if sys.stderr.isatty() else _lines(_LONG_S)
+    with interruptible() as interrupts, telling as show:
+
+        def progress(step: str, done: int, total: int) -> None:
+            interrupts.check()
+            show(step, done, total)
+
+        yield progress
+
+
+@contextmanager
+def _quiet() -> Iterator[Progress]:
+    yield lambda step, done, total: None
+
+
+@contextmanager
+def _lines(long_s: float, *, begun: bool = True) -> Iterator[Progress]:
+    """A line when a stage begins, if that is wanted, and how long it took if it was long."""
+    stage, since = "", time.monotonic()
+
+    def end() -> None:
+        took = time.monotonic() - since
+        if stage and (is_verbose() or took >= long_s):
+            say(tr("{stage}: {seconds:.1f} s", stage=told(stage), seconds=took))
+
+    def show(step: str, done: int, total: int) -> None:
+        nonlocal stage, since
+        if step == stage:
             return
-        remaining, telling = Remaining(USUAL_S.get(job, {})), threading.Lock()  # it is drawn by a thread of its own
-        columns = (
-            TextColumn("{task.description:<28}", markup=False),
-            _Whole(remaining, telling),
-            TimeElapsedColumn(),
-            _Left(remaining, telling),
-        )
-        with RichProgress(*columns, console=Console(stderr=True), transient=True) as drawn:
-            shown = drawn.add_task("", total=None)
+        end()
+        stage, since = step, time.monotonic()
+        if begun:
+            say(tr("{stage} …", stage=told(stage)))
 
-            def show(step: str, done: int, total: int) -> None:
-                check()
-                with telling:
-                    remaining.tell(step, done, total)
-                said = told(step)
-                drawn.update(shown, description=said, refresh=said != drawn.tasks[0].description)
+    yield show
+    end()
 
-            yield show
+
+@contextmanager
+def _drawn(job: str) -> Iterator[Progress]:
+    """One bar for all of the job; with ``--verbose`` the times of its stages stay above it."""
+    remaining, telling = Remaining(USUAL_S.get(job, {})), threading.Lock()  # it is drawn by a thread of its own
+    columns = (
+        TextColumn("{task.description:<28}", markup=False),
+        _Whole(remaining, telling),
+        TimeElapsedColumn(),
+        _Left(remaining, telling),
+    )
+    with (
+        RichProgress(*columns, console=Console(stderr=True), transient=True) as drawn,
+        _lines(float("inf"), begun=False) as tell,
+    ):
+        shown = drawn.add_task("", total=None)
+
+        def show(step: str, done: int, total: int) -> None:
+            with telling:
+                remaining.tell(step, done, total)
+            tell(step, done, total)
+            said = told(step)
+            drawn.update(shown, description=said, refresh=said != drawn.tasks[0].description)
+
+        yield show
 
 
 class _Column(ProgressColumn):
@@ -74,29 +116,3 @@ class _Left(_Column):
         with self._telling:
             left = self._remaining.left
         return Text("" if left is None else tr("about {time} left", time=in_words(left)))
-
-
-@contextmanager
-def _interruptible() -> Iterator[Callable[[], None]]:
-    """Remember Ctrl-C besides raising KeyboardInterrupt, and give a check that raises Cancelled if it came.
-
-    Python drops an exception that falls into a finaliser or a callback of compiled code, and the job would go on.
-    """
-    asked = threading.Event()
-
-    def ask(signum: int, frame: FrameType | None) -> None:
-        asked.set()
-        raise KeyboardInterrupt
-
-    def check() -> None:
-        if asked.is_set():
-            raise Cancelled
-
-    if threading.current_thread() is not threading.main_thread():
-        yield check  # signals reach the main thread only
-        return
-    before = signal.signal(signal.SIGINT, ask)
-    try:
-        yield check
-    finally:
-        signal.signal(signal.SIGINT, before)

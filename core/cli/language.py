@@ -9,7 +9,7 @@ from __future__ import annotations
 import inspect
 import os
 import sys
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from copy import copy
 from functools import cache
 from typing import Annotated, Any
@@ -17,12 +17,15 @@ from typing import Annotated, Any
 import typer
 from typer.main import get_command
 
+from core.cli import talk
 from core.errors import InputError
 from core.messages import ENGLISH, Language, Message, label
 
 OPTION = "--language"
 HELP_OPTIONS = ["-h", "--help"]
 _HELP = label("Language of what is printed: {languages}; else TRISECT_LANGUAGE, or the locale's.")
+_QUIET = label("Say nothing on standard error but errors.")
+_VERBOSE = label("Say on standard error, too, how long each stage took and where compiled code is kept.")
 _TYPERS_OWN = {
     "ARGUMENTS_PANEL_TITLE": label("Arguments"),
     "OPTIONS_PANEL_TITLE": label("Options"),
@@ -30,6 +33,11 @@ _TYPERS_OWN = {
     "REQUIRED_LONG_STRING": label("[required]"),
 }
 """Words that Typer puts into help, by their names in its module."""
+_COMPLETION = (
+    label("Install completion for the current shell."),
+    label("Show completion for the current shell, to copy it or customize the installation."),
+)
+"""Typer's own help of its two options."""
 _DEFAULT = label("default")
 _SHOW_HELP = label("Show this message and exit.")
 _USAGE = label("Usage:")
@@ -103,10 +111,10 @@ def speak(command: Any, values: Mapping[str, str]) -> Any:
     """Put the help of a command, its options and all commands within it into the language; `values` fill its places."""
     from core.translations import languages
 
-    values, option = {**values, "languages": ", ".join(languages())}, _option()
+    values, everywhere = {**values, "languages": ", ".join(languages())}, _taken_everywhere()
     for one in _all_of(command):
-        if not any(OPTION in option.opts for option in one.params):
-            one.params.append(copy(option))
+        own = {name for option in one.params for name in option.opts}
+        one.params += [copy(option) for option in everywhere if not own & set(option.opts)]
         help_option = one.get_help_option(typer.Context(one, help_option_names=HELP_OPTIONS))
         help_option.help = _SHOW_HELP
         one.context_class, one.options_metavar = _Context, tr(_OPTIONS_PLACE)
@@ -164,19 +172,38 @@ class _Context(typer.Context):
     formatter_class = _UsageLine
 
 
+def _louder_or_not(loudness: talk.Loudness) -> Callable[[bool], None]:
+    def choose(wanted: bool) -> None:
+        if wanted:
+            talk.choose(loudness)
+
+    return choose
+
+
 def _takes(
+    quiet: Annotated[
+        bool,
+        typer.Option("--quiet", "-q", callback=_louder_or_not(talk.Loudness.QUIET), show_default=False, help=_QUIET),
+    ] = False,
+    verbose: Annotated[
+        bool,
+        typer.Option(
+            "--verbose", "-v", callback=_louder_or_not(talk.Loudness.VERBOSE), show_default=False, help=_VERBOSE
+        ),
+    ] = False,
     language: Annotated[str, typer.Option(OPTION, metavar="CODE", show_default=False, help=_HELP)] = "",
 ) -> None:
-    """What every command takes, and `choose` has read already."""
+    """What every command takes, before its name or behind it; `choose` has read the language already."""
 
 
-def _option() -> Any:
-    """The option of `_takes`, for commands that are not to be told of it."""
+def _taken_everywhere() -> list[Any]:
+    """The options of `_takes`, for commands that are not to be told of them."""
     of_one = typer.Typer(add_completion=False)
     of_one.command()(_takes)
-    option = get_command(of_one).params[0]
-    option.expose_value = False
-    return option
+    options = get_command(of_one).params
+    for option in options:
+        option.expose_value = False
+    return options
 
 
 def _all_of(command: Any) -> Iterator[Any]:

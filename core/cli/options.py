@@ -13,11 +13,6 @@ from core.errors import InputError
 from core.messages import Message, label
 from core.scan.method import Method
 
-EPILOG = label(
-    "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, "
-    "70 a fault of the program, 130 interrupted."
-)
-
 
 class ExitCode(IntEnum):
     """What the program leaves with."""
@@ -25,9 +20,19 @@ class ExitCode(IntEnum):
     DONE = 0
     NOT_PROVEN = 1
     BAD_INPUT = 2
+    NO_THICKNESS = 3
     FAULT = 70
     """As sysexits.h of BSD calls it: EX_SOFTWARE."""
+    HUNG_UP = 129
     INTERRUPTED = 130
+    TERMINATED = 143
+    """These three as shells have it: 128 and the number of the signal."""
+
+
+EPILOG = label(
+    "Exit code: 0 done, 1 measured but out of tolerance or not proven, 2 bad input, 3 measured but no thickness could "
+    "be found, 70 a fault of the program, 129 hung up, 130 interrupted, 143 terminated."
+)
 
 
 class Panel:

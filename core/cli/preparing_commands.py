@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
+from core.cli.interrupts import interruptible
 from core.cli.options import Json, OrderBy, Panel, RecordedPart, SigmaCut, WhichTarget
 
 commands = typer.Typer()
@@ -175,8 +176,10 @@ def record(
     wanted = recording.request(
         folder, step.value, SourceChoice(source, device), calibrations, settings, ".pgm" if pgm else ".png"
     )
-    ended = recording.Recording(step.value, pictures, seconds, by_itself=yes).run(wanted)
+    with interruptible() as interrupts:
+        ended = recording.Recording(step.value, pictures, seconds, by_itself=yes).run(wanted)
     recording.show(ended, as_json=json)
+    interrupts.check()
 
 
 @commands.command(rich_help_panel=Panel.PREPARE)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import sys
 import threading
 import time
 from collections import deque
@@ -12,14 +11,15 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 from queue import Empty, SimpleQueue
-from types import FrameType
 
 from rich.table import Table
 
 from core.acquire.settings import SourceSettings
 from core.acquire.source import SourceChoice, Step
 from core.cli import output
+from core.cli.interrupts import Interrupts, interruptible
 from core.cli.language import told, tr
+from core.cli.talk import say, say_aloud
 from core.errors import InputError
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import read_rig, require_tables
@@ -102,26 +102,30 @@ class Recording:
         self._missing: tuple[Message, ...] = ()
 
     def run(self, wanted: LiveRequest) -> LiveEnded:
-        """Record until the end; Ctrl-C is one, too, and what was recorded by then stays."""
-        with self._ended_by_interrupt():
+        """Record until the end; Ctrl-C is one, too, and what was recorded by then stays. So it is with SIGTERM."""
+        with interruptible() as interrupts, self._ended_by(interrupts):
             if not self._by_itself:
                 threading.Thread(target=self._listen, name="keys", daemon=True).start()
             return run_live(wanted, self._next, self._hear, lambda: True)
 
     @contextmanager
-    def _ended_by_interrupt(self) -> Iterator[None]:
-        """The first Ctrl-C ends the recording in order, the second one gives the command up."""
+    def _ended_by(self, interrupts: Interrupts) -> Iterator[None]:
+        """The first signal ends the recording in order, a second Ctrl-C gives the command up.
 
-        def ask(signum: int, frame: FrameType | None) -> None:
-            if self._stopping:
-                raise KeyboardInterrupt
+        Ctrl-C is the usual end of a recording; after any other one the command was interrupted.
+        """
+
+        def end(signum: int) -> bool:
+            if self._stopping and signum == signal.SIGINT:
+                return False
             self._stopping = True
+            return True
 
-        before = signal.signal(signal.SIGINT, ask)
+        interrupts.in_order = end
         try:
             yield
         finally:
-            signal.signal(signal.SIGINT, before)
+            interrupts.in_order = None
 
     def _listen(self) -> None:
         """Pass on Enter as True and the end of standard input as False; past Python's buffer, whose lock would stay."""
@@ -159,33 +163,33 @@ class Recording:
     def _hear(self, event: LiveEvent) -> None:
         match event:
             case LiveStarted(name, (width, height)):
-                _tell(tr("{name}: {width} × {height} pixels", name=told(name), width=width, height=height))
+                say(tr("{name}: {width} × {height} pixels", name=told(name), width=width, height=height))
             case LiveView():
                 self._judge(event)
             case LiveTaken(name):
-                _tell(tr("{name} taken", name=name))
+                say(tr("{name} taken", name=name))
             case LiveAsk(sentence, button, answer) if self._by_itself:
-                _tell(told(sentence))
+                say(told(sentence))
                 self._commands.append(answer)
             case LiveAsk(sentence, button):
                 self._asked = event
-                _tell(tr("{sentence} Enter: {button}", sentence=told(sentence), button=tr(button)))
+                say_aloud(tr("{sentence} Enter: {button}", sentence=told(sentence), button=tr(button)))
             case LiveAnswered():
                 self._asked = None
             case LiveAdvice(Message() as sentence):
                 if time.monotonic() - self._advised_s >= STATUS_S:
                     self._advised_s = time.monotonic()
-                    _tell(told(sentence))
+                    say(told(sentence))
             case LiveNotice(sentence) | LiveUnplugged(sentence):
-                _tell(told(sentence))
+                say(told(sentence))
             case LiveBack():
-                _tell(tr("The source is there again."))
+                say(tr("The source is there again."))
             case LiveChecks(checks):
                 for check in checks:
                     if check.state == "failed":
-                        _tell(told(check.message))
+                        say(told(check.message))
             case LiveSaving(waiting):
-                _tell(told(_saving(waiting)))
+                say(told(_saving(waiting)))
 
     def _judge(self, view: LiveView) -> None:
         """See whether it is enough, and tell what is missing or how far a scan is."""
@@ -197,12 +201,12 @@ class Recording:
                 self._began_s = now if self._began_s is None else self._began_s
                 if now - self._told_s >= STATUS_S:
                     self._told_s = now
-                    _tell(_status(view, detail))
+                    say(_status(view, detail))
             case CameraDetail(missing=missing) | PlanesDetail(missing=missing) if self._step != "check":
                 if missing != self._missing:
                     self._missing = missing
                     for sentence in missing:
-                        _tell(told(sentence))
+                        say(told(sentence))
                 if not missing and view.recorded and self._pictures is None:
                     self._is_enough = True
 
@@ -257,9 +261,3 @@ def _status(view: LiveView, detail: ScanDetail) -> str:
     if not detail.cells.any():  # without calibrations nothing is measured
         return told_of
     return f"{told_of}; {tr('{share:.0%} of what was lit is measured', share=detail.share)}"
-
-
-def _tell(line: str) -> None:
-    """On standard error: what a program reads stays alone on standard output."""
-    sys.stderr.write(f"{visible(line)}\n")
-    sys.stderr.flush()

@@ -12,7 +12,7 @@ from core.messages import label
 
 EPILOG = label(
     "Exit code: 0 done, and conforming, capable or acceptable if a limit was given; 1 measured, but not so, or not "
-    "proven; 2 bad input, 130 interrupted."
+    "proven; 2 bad input, 70 a fault of the program, 129 hung up, 130 interrupted, 143 terminated."
 )
 
 studies = typer.Typer(

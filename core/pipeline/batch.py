@@ -9,13 +9,13 @@ from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExecutor, wait
 from pathlib import Path
 
-from core.errors import Cancelled, InputError
+from core.errors import Cancelled, InputError, NoThickness
 from core.files.atomic import cannot_write, make_folder
 from core.files.reading import cannot_read, refused_path, resolved
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RIG
 from core.messages import Message, label
-from core.pipeline.executors import THREADS, executor_of
+from core.pipeline.executors import THREADS, executor_of, is_to_end
 from core.pipeline.run import RunResult, run
 from core.pipeline.set_result import SetProgress, SetResult
 from core.progress import Progress, silent
@@ -139,7 +139,8 @@ def measure_set(folder: Path, out: Path, options: Options, stop: Path, progress:
     try:
         measured = run(folder, out, options, _stopped_by(stop, progress))
     except InputError as error:
-        return SetResult(folder, out, seconds=time.perf_counter() - began, error=error.message)
+        seconds, none_found = time.perf_counter() - began, isinstance(error, NoThickness)
+        return SetResult(folder, out, seconds=seconds, error=error.message, no_thickness=none_found)
     except Cancelled:
         raise
     except Exception as error:  # noqa: BLE001  (a fault in one set must not cost the others)
@@ -276,7 +277,7 @@ def _remove(stop: Path) -> None:
 
 
 def _stopped_by(stop: Path, told: Progress) -> Progress:
-    """A progress that passes on what it is `told` and cancels when the file `stop` appears."""
+    """A progress that passes on what it is `told`; it cancels when `stop` appears, or this process is to end."""
     looked = time.monotonic()
 
     def progress(step: str, done: int, total: int) -> None:
@@ -285,7 +286,7 @@ def _stopped_by(stop: Path, told: Progress) -> Progress:
         if time.monotonic() - looked < _LOOK_EVERY_S:
             return
         looked = time.monotonic()
-        if stop.exists():
+        if stop.exists() or is_to_end():
             raise Cancelled
 
     return progress

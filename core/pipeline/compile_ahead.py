@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import gc
+import os
 import subprocess
 import sys
+import threading
 import time
 
 from core.compiled import is_complete, keep_complete, saved_functions
@@ -29,7 +31,12 @@ def compile_ahead(progress: Progress = silent) -> None:
     if is_complete():
         return
     running = [
-        subprocess.Popen(module_command(MODULE, str(number)), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.Popen(
+            module_command(MODULE, str(number)),
+            stdin=subprocess.PIPE,  # it ends with this process
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
         for number in range(len(shares()))
     ]
     try:
@@ -40,12 +47,21 @@ def compile_ahead(progress: Progress = silent) -> None:
         for process in running:
             process.terminate()
             process.wait()
+            if process.stdin is not None:
+                process.stdin.close()
     progress(STEP, _EXPECTED_FUNCTIONS, _EXPECTED_FUNCTIONS)
     if not any(process.returncode for process in running):
         keep_complete()
 
 
+def _end_with_the_first() -> None:
+    """End at once when the process that started this one is gone, and its end of standard input with it."""
+    sys.stdin.buffer.read()
+    os._exit(1)
+
+
 if __name__ == "__main__":
+    threading.Thread(target=_end_with_the_first, daemon=True).start()
     gc.disable()  # a fifth of the time; what compiling leaves behind fits the memory
     for stage in shares()[int(sys.argv[1])]:
         stage()

@@ -6,9 +6,11 @@ import importlib
 import multiprocessing
 import os
 import signal
+import threading
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
+from multiprocessing.connection import wait
 from typing import Any
 
 from core.errors import InputError
@@ -50,7 +52,7 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
             yield threads
     elif text == PROCESSES:
         spawn = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(count, spawn, initializer=_leave_interrupts) as pool:
+        with ProcessPoolExecutor(count, spawn, initializer=_begin_worker) as pool:
             yield pool
     elif text.startswith(DASK):
         if workers is not None:
@@ -92,6 +94,29 @@ def _cluster(address: str) -> Iterator[Executor]:
         yield executor
 
 
-def _leave_interrupts() -> None:
-    """Ctrl-C reaches all processes of a terminal; the one that waits for the others ends them."""
+_to_end = threading.Event()
+
+
+def is_to_end() -> bool:
+    """Whether this process measures for another one and was asked to end: what it measures is to be cancelled."""
+    return _to_end.is_set()
+
+
+def _begin_worker() -> None:
+    """Ctrl-C reaches all processes of a terminal; the one that waits for the others ends them.
+
+    What else asks a process to end may reach one alone: it leaves nothing half written. It ends at once, whatever it
+    does, when the one that waits is gone.
+    """
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for name in ("SIGTERM", "SIGHUP"):
+        if hasattr(signal, name):
+            signal.signal(getattr(signal, name), lambda *_: _to_end.set())
+    above = multiprocessing.parent_process()
+    if above is not None:
+        threading.Thread(target=_end_with, args=(above.sentinel,), daemon=True).start()
+
+
+def _end_with(sentinel: int) -> None:
+    wait([sentinel])
+    os._exit(1)

@@ -32,6 +32,8 @@ class SetResult:
         Time taken.
     error
         Why it could not be measured; None if it could.
+    no_thickness
+        Whether that is no more than that no thickness could be found.
     """
 
     folder: Path
@@ -44,6 +46,7 @@ class SetResult:
     frames_used: int = 0
     seconds: float = 0.0
     error: Message | None = None
+    no_thickness: bool = False
 
 
 @dataclass(frozen=True, slots=True)

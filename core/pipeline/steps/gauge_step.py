@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 
 from core.calibrate.change import CHANGED, PROVES_NOTHING
-from core.errors import InputError
+from core.errors import InputError, NoThickness
 from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
@@ -42,7 +42,9 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
     Raises
     ------
     InputError
-        If a result is missing, damaged or of another calibration, or there are no two parallel faces.
+        If a result is missing, damaged or of another calibration.
+    NoThickness
+        If there are no two parallel faces.
     """
     with work.step("gauge") as log:
         calibration = work.calibration()
@@ -51,7 +53,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
-        with movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
+        with _no_thickness(), movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -96,6 +98,15 @@ def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
             U_mm=gauge.U_mm,
         ),
     )
+
+
+@contextmanager
+def _no_thickness() -> Iterator[None]:
+    """A complaint about faces is not one about what was given."""
+    try:
+        yield
+    except InputError as error:
+        raise NoThickness(error.what, where=error.where, todo=error.todo) from error
 
 
 @contextmanager

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from core.errors import InputError
+from core.errors import InputError, NoThickness
 from core.files.pictures import compression_of
 from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RecordingSet
@@ -214,9 +214,9 @@ def _row(index: int, name: str, step: Step | Message) -> PictureStep:
     return PictureStep(index, name, step.thickness_mm, step.own_mm, points)
 
 
-def _nothing(pictures: Sequence[PictureStep]) -> InputError:
+def _nothing(pictures: Sequence[PictureStep]) -> NoThickness:
     reasons = [one.reason for one in pictures if one.reason is not None]
-    return InputError(
+    return NoThickness(
         Message(
             "profile.nothing",
             "none of {n} pictures gives a step; the most common reason: {reason}",
