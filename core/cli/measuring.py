@@ -5,26 +5,26 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
 from rich.table import Table
 
 from core.acquire.grey import Channel
-from core.calibrate.camera.adjustment import CameraOptions
-from core.cli import output
+from core.cli import output, talk
 from core.cli.language import told, tr
-from core.cli.options import ChannelName, ExitCode
+from core.cli.options import ExitCode
+from core.code_cache import note_on_cache
+from core.compiled import FOLDER, is_complete
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options, StatedTilt
-from core.files.recording.recording_set import RIG, excluded_names, open_set, require_folder
+from core.files.recording.recording_set import RIG, open_set, require_folder
 from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import RigHistory, history_file
-from core.image.stripes.stripe import StripeSettings
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
 from core.pipeline.batch import FAULT, run_batch
@@ -43,7 +43,6 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
 from core.progress import Progress
-from core.scan.method import Method
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
 from core.states import SET_STATES
@@ -69,58 +68,6 @@ class Shown:
             output.print_rows(self.rows, self.notes, self.files)
 
 
-def options(
-    method: Method = Method.NETWORK,
-    sigma_cut: float = 0.05,
-    *,
-    camera: CameraOptions = CameraOptions(),
-    part: str = "",
-    stripe: StripeSettings | None = None,
-    adjust_camera: bool = False,
-    accept_few_poses: bool = False,
-    channel: ChannelName | None = None,
-) -> Options:
-    """The pipeline's options from the command line's; InputError if one is absurd.
-
-    `stripe` is that of all stripes, in the scan and on the plane target.
-    """
-    return Options(
-        method,
-        sigma_cut,
-        camera,
-        part,
-        stripe,
-        adjust_camera=adjust_camera,
-        plane_stripe=stripe,
-        accept_few_poses=accept_few_poses,
-        channel=None if channel is None else channel.value,
-    )
-
-
-def camera_options(skew: bool | None, k3: bool | None) -> CameraOptions:
-    """The camera model as the command line states it."""
-    return CameraOptions(skew=skew, k3=k3)
-
-
-def stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
-    """Width and contrast of stripes, None where they are to be chosen; InputError where only one is given."""
-    if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
-        raise InputError(
-            Message(
-                "options.stripe_incomplete",
-                "width and contrast of the stripes belong together, both above 0",
-            ),
-            where="--stripe-width, --contrast",
-            todo=Message("advice.give_both_or_neither", "give both, or neither to have them chosen from the pictures"),
-        )
-    return StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
-
-
-def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:
-    """The options with the pictures `names` of the set left out; InputError if the set has no such picture."""
-    return replace(chosen, excluded=excluded_names(open_set(folder), names)) if names else chosen
-
-
 def timed(progress: Progress, wanted: bool) -> Progress:
     """The progress, which learns what the stages cost if that is `wanted`."""
     return StageTimes(progress) if wanted else progress
@@ -137,8 +84,17 @@ def exit_code(verdict: str, good: Sequence[str] = ("conforming",)) -> ExitCode:
     return ExitCode.DONE if not verdict or verdict in good else ExitCode.NOT_PROVEN
 
 
+def tell_of_cache() -> None:
+    """Say where compiled code goes, if that is wanted, and that it is lost at the end, if it is."""
+    if talk.is_verbose():
+        talk.say(tr("compiled code: {folder}", folder=FOLDER))
+    if (note := note_on_cache()) is not None and not is_complete():
+        talk.say(tr("note: {note}", note=note))
+
+
 def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
     """The whole way; loops that were never compiled before are made ready first."""
+    tell_of_cache()
     compile_ahead(progress)
     return run(folder, out, chosen, progress, beside)
 
@@ -255,6 +211,7 @@ def run_profile(
 def alone_with(folder: Path, out: Path, part: str = "", channel: Channel | None = None) -> Iterator[Workspace]:
     """A recording set, lasers looked at in this channel, and the folder of its results, locked."""
     work = Workspace.open(open_set(folder).seen_in(channel), out, part)
+    tell_of_cache()
     with alone_in(work.out):
         yield work
 
@@ -271,6 +228,7 @@ def run_sets(
     """Measure all sets; InputError before anything is begun if the folder of one is not there."""
     for folder in sets:
         require_folder(folder)
+    tell_of_cache()
     with executor_of(executor, workers) as pool:
         return run_batch(sets, out, pool, chosen, progress)
 
@@ -278,13 +236,14 @@ def run_sets(
 def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
     """The worst of the sets' own.
 
-    70 where the program was at fault, 2 where one could not be measured, 1 where one is not proven to conform, else 0.
+    70 where the program was at fault, 2 where one could not be measured, 3 where one has no thickness, 1 where one is
+    not proven to conform, else 0.
     """
-    errors = [result.error for result in results if result.error]
-    if any(error.code == FAULT for error in errors):
+    failed = [result for result in results if result.error]
+    if any(result.error and result.error.code == FAULT for result in failed):
         return ExitCode.FAULT
-    if errors:
-        return ExitCode.BAD_INPUT
+    if failed:
+        return ExitCode.NO_THICKNESS if all(result.no_thickness for result in failed) else ExitCode.BAD_INPUT
     return max((exit_code(result.verdict) for result in results), default=ExitCode.DONE)
 
 

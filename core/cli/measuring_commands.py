@@ -57,20 +57,23 @@ def run(
     json: Json = False,
 ) -> None:
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
+    from core.cli import arguments
+
+    options = arguments.options(
+        method,
+        sigma_cut,
+        camera=arguments.camera_options(skew, k3),
+        part=part,
+        stripe=arguments.stripe(stripe_width, contrast),
+        adjust_camera=adjust_camera,
+        accept_few_poses=accept_few_poses,
+        channel=channel,
+    )
+    arguments.require_run(folder, out)
+    options = arguments.leaving_out(options, folder, exclude)
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
         from core.cli import measuring
 
-        options = measuring.options(
-            method,
-            sigma_cut,
-            camera=measuring.camera_options(skew, k3),
-            part=part,
-            stripe=measuring.stripe(stripe_width, contrast),
-            adjust_camera=adjust_camera,
-            accept_few_poses=accept_few_poses,
-            channel=channel,
-        )
-        options = measuring.leaving_out(options, folder, exclude)
         with bar("run") as progress:
             watched = measuring.timed(progress, profile)
             result = measuring.run_all(folder, out, options, watched, beside)
@@ -95,9 +98,9 @@ def batch(
     json: Json = False,
 ) -> None:
     """Measure many recording sets side by side, each into a folder of its name in DIR."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
-    options = measuring.options(method, sigma_cut, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(method, sigma_cut, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
     with bar() as progress:
         results = measuring.run_sets(sets, out, executor, workers, options, progress)
     measuring.show_sets(results, as_json=json)
@@ -109,9 +112,10 @@ def camera(
     folder: Set, out: Out, skew: Skew = None, k3: K3 = None, exclude: Exclude = None, json: Json = False
 ) -> None:
     """Calibrate the camera from SET/camera; writes camera.json."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
-    options = measuring.leaving_out(measuring.options(camera=measuring.camera_options(skew, k3)), folder, exclude)
+    options = arguments.options(camera=arguments.camera_options(skew, k3))
+    options = arguments.leaving_out(options, folder, exclude)
     with bar("camera") as progress:
         shown = measuring.run_camera(folder, out, options, progress)
     shown.show(as_json=json)
@@ -130,15 +134,15 @@ def planes(
     json: Json = False,
 ) -> None:
     """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
-    chosen = measuring.options(
-        stripe=measuring.stripe(stripe_width, contrast),
+    chosen = arguments.options(
+        stripe=arguments.stripe(stripe_width, contrast),
         adjust_camera=adjust_camera,
         accept_few_poses=accept_few_poses,
         channel=channel,
     )
-    options = measuring.leaving_out(chosen, folder, exclude)
+    options = arguments.leaving_out(chosen, folder, exclude)
     with bar("planes") as progress:
         shown = measuring.run_planes(folder, out, options, progress)
     shown.show(as_json=json)
@@ -165,13 +169,13 @@ def check(
     json: Json = False,
 ) -> None:
     """Check by pictures of the day in SET/check whether camera and laser are where they were calibrated, in DIR."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
     if undo:
         measuring.undo_adjusting(folder, out).show(as_json=json)
         return
     if adjust:
-        options = measuring.options(stripe=measuring.stripe(stripe_width, contrast), channel=channel)
+        options = arguments.options(stripe=arguments.stripe(stripe_width, contrast), channel=channel)
         with bar() as progress:
             shown = measuring.run_adjusting(folder, out, options, progress)
         shown.show(as_json=json)
@@ -180,7 +184,7 @@ def check(
         past, shown = measuring.rig_history(folder, out)
         shown.show(as_json=json)
         raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
-    options = measuring.options(stripe=measuring.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(stripe=arguments.stripe(stripe_width, contrast), channel=channel)
     with bar() as progress:
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
@@ -225,10 +229,10 @@ def scan(
     json: Json = False,
 ) -> None:
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
-    options = measuring.options(method, sigma_cut, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
-    options = measuring.leaving_out(options, folder, exclude)
+    options = arguments.options(method, sigma_cut, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.leaving_out(options, folder, exclude)
     with bar("scan") as progress:
         watched = measuring.timed(progress, profile)
         shown = measuring.run_scan(folder, out, options, watched)
@@ -263,10 +267,10 @@ def profile(
     json: Json = False,
 ) -> None:
     """Measure a thickness with the fixed lines alone, no hand-held laser: by the step in each picture of SET/scan."""
-    from core.cli import measuring
+    from core.cli import arguments, measuring
 
-    options = measuring.options(part=part, stripe=measuring.stripe(stripe_width, contrast), channel=channel)
-    options = measuring.leaving_out(options, folder, exclude)
+    options = arguments.options(part=part, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.leaving_out(options, folder, exclude)
     with bar() as progress:
         result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)
     shown.show(as_json=json)

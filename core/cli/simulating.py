@@ -177,11 +177,15 @@ def demo(
     json: Json = False,
 ) -> None:
     """Measure the embedded sample, a 50 mm gauge block; it is rendered on first use and kept in your cache."""
+    from core.cli import arguments
+    from core.files.atomic import make_folder
+
+    make_folder(out)
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
         from core.cli import measuring, output
         from core.report.wording import thickness_line
 
-        options = measuring.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
+        options = arguments.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
         with bar("run") as progress, _sample(progress, quick=quick) as folder:
             result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)

@@ -380,6 +380,16 @@ def require_scan(recording_set: RecordingSet) -> None:
         )
 
 
+def require_outside(recording_set: RecordingSet, out: Path) -> None:
+    """InputError if the results were to go into the set itself."""
+    if recording_set.contains(out):
+        raise InputError(
+            Message("project.results_within_set", "the results cannot go into the recording set itself"),
+            where=out,
+            todo=Message("advice.results_into_set", "choose another --out"),
+        )
+
+
 def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> RecordingSet:
     camera, planes = pictures_in(folders.get("camera")), plane_pairs(folders.get("planes"))
     reference, frames = scan_frames(folders.get("scan"))

@@ -12,7 +12,7 @@ from core.errors import InputError
 from core.files.project.calibration_store import keep_camera, keep_fan, read_stored_camera
 from core.files.project.data import Project
 from core.files.reading import file_hash
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.results.fan_file import fan_id
 from core.messages import Message
 from core.model import Camera
@@ -79,9 +79,10 @@ def find_poses(folder: Path, project: Project, progress: Progress = silent) -> t
 
     What is found is kept in the project.
     """
+    recording_set, camera = project_set(folder, project), accepted_camera(folder, project)
+    require_planes(recording_set)
     compile_ahead(progress)
-    recording_set = project_set(folder, project)
-    poses = measure_poses(recording_set, accepted_camera(folder, project), progress, project.options.plane_stripe)
+    poses = measure_poses(recording_set, camera, progress, project.options.plane_stripe)
     keep_poses(folder, project, recording_set, poses)
     return poses
 

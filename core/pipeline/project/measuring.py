@@ -59,9 +59,9 @@ def measure_scan(
     InputError
         If no calibration is accepted, there are no usable frames, or no sweep can be located.
     """
-    compile_ahead(progress)
     recording_set = project_set(folder, project)
     require_scan(recording_set)
+    compile_ahead(progress)
     results = make_inner_folder(folder, RESULTS)
     with noting_results(folder), staged(results, _OF_A_SCAN) as beside:
         put_in_place(folder, project.accepted, beside)

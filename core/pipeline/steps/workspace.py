@@ -20,7 +20,7 @@ from core.files.atomic import cannot_write, make_folder
 from core.files.folder_lock import NEW_FOLDER
 from core.files.pictures import write_picture
 from core.files.reading import file_hash
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.recording_set import RecordingSet, require_outside
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.run_file import RunRecord, read_run, write_run
@@ -130,12 +130,7 @@ class Workspace:
     @classmethod
     def open(cls, recording_set: RecordingSet, out: Path, part: str = "") -> Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
-        if recording_set.contains(out):
-            raise InputError(
-                Message("project.results_within_set", "the results cannot go into the recording set itself"),
-                where=out,
-                todo=Message("advice.results_into_set", "choose another --out"),
-            )
+        require_outside(recording_set, out)
         return cls(recording_set, make_folder(out), part)
 
     def path(self, name: str) -> Path:

@@ -1,0 +1,93 @@
+"""What commands say on standard error off a terminal, `--quiet` and `--verbose`, exit codes, and completion."""
+
+import os
+import re
+import subprocess
+import sys
+
+import pytest
+
+from core.cli.bar import bar
+from core.cli.options import EPILOG, ExitCode
+from tests.simulated import CUT, copy_of, trisect
+
+TWO_STAGES = (("camera views", 0, 2), ("camera views", 1, 2), ("frames", 0, 1))
+
+
+def test_off_a_terminal_each_stage_is_a_line_when_it_begins(capfd):
+    with bar("run") as progress:
+        for told in TWO_STAGES:
+            progress(*told)
+        assert capfd.readouterr().err == "camera views …\nframes …\n"
+    assert capfd.readouterr().err == ""
+
+
+def test_a_stage_that_was_long_is_told_with_how_long_it_took(capfd, monkeypatch):
+    times = iter([0.0, 0.0, 0.0, 12.34, 12.34, 12.5])
+    monkeypatch.setattr("core.cli.bar.time.monotonic", lambda: next(times))
+    with bar("run") as progress:
+        for told in TWO_STAGES:
+            progress(*told)
+    said = capfd.readouterr().err
+    assert re.search(r"^camera views: \d+\.\d s$", said, re.MULTILINE)
+    assert "\r" not in said
+
+
+@pytest.mark.parametrize("words", [("{}", "gauge"), ("gauge", "{}")])
+@pytest.mark.parametrize(("option", "shown"), [("--quiet", []), ("-q", []), ("--verbose", ["s"]), ("-v", ["s"])])
+def test_how_much_is_said_is_an_option_of_every_command_and_of_the_program(
+    simulated, measured, tmp_path, words, option, shown
+):
+    rest = (simulated, "--out", copy_of(measured, tmp_path / "out"))
+    said = trisect(*(word.format(option) for word in words), *rest)
+    assert said.code in (0, 1), said.err
+    assert "thickness" in said.out
+    assert bool(re.search(r"^faces: .* s$", said.err, re.MULTILINE)) == bool(shown)
+    assert shown or said.err == ""
+
+
+def test_the_last_of_both_counts(simulated, measured, tmp_path):
+    out = copy_of(measured, tmp_path / "out")
+    assert trisect("--verbose", "gauge", simulated, "--out", out, "--quiet").err == ""
+
+
+def test_even_a_quiet_command_tells_why_it_is_refused(tmp_path):
+    said = trisect("run", tmp_path / "none", "--out", tmp_path / "out", "--quiet")
+    assert (said.code, "there is no such folder" in said.sentence) == (2, True)
+
+
+def test_a_part_that_was_measured_without_a_thickness_has_an_exit_code_of_its_own(simulated, measured, tmp_path):
+    folder, out = copy_of(simulated, tmp_path / "set"), copy_of(measured, tmp_path / "out")
+    rig = folder / "rig.toml"
+    table = "[gauge]\nupper_polygon_px = [[0, 0], [3, 0], [3, 3]]\nlower_polygon_px = [[4, 4], [7, 4], [7, 7]]\n"
+    rig.write_text(rig.read_text().partition("[gauge]")[0] + table)
+    said = trisect("gauge", folder, "--out", out)
+    assert (said.code, bool(said.sentence)) == (3, True)
+    said = trisect("batch", folder, "--out", tmp_path / "many", "--executor", "threads", "--workers", "1", *CUT)
+    assert said.code == 3, said.err
+
+
+def test_the_help_ends_with_every_exit_code():
+    assert set(map(int, re.findall(r"\d+", EPILOG))) == set(ExitCode)
+
+
+def completed(words):
+    """What bash would offer, and the modules that were imported for it."""
+    program = "import sys, atexit; atexit.register(lambda: print('numba' in sys.modules, file=sys.stderr))\n"
+    surroundings = {"_TRISECT_COMPLETE": "complete_bash", "COMP_WORDS": words, "COMP_CWORD": str(words.count(" "))}
+    ran = subprocess.run(
+        [sys.executable, "-c", f"{program}from core.cli import main; main()"],
+        env=os.environ | surroundings, capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert ran.stderr.strip() == "False"
+    return ran.stdout.split()
+
+
+def test_a_shell_completes_commands_and_options_without_numba():
+    assert {"run", "batch", "study"} <= set(completed("trisect "))
+    assert completed("trisect run --ex") == ["--exclude"]
+    assert {"repeats", "grr"} <= set(completed("trisect study "))
+
+
+def test_the_script_of_a_shell_is_shown():
+    assert "_TRISECT_COMPLETE=complete_bash" in trisect("--show-completion", "bash").out
