@@ -74,7 +74,7 @@ on_screen: $(READY)       # beside `offscreen`, so it is told in one piece when 
 	passed=$$?; cat "$$TRISECT_MADE_ONCE/on_screen"; exit $$passed
 
 examples: compile         ## those in the code's documentation and in the manual
-	$(BIN)/pytest -q --doctest-modules --doctest-glob='*.md' core resources/manual
+	$(BIN)/pytest -q -p tests.examples --doctest-modules --doctest-glob='*.md' core trisect resources/manual
 
 quick: check              ## the same without what is slow
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) -m "not slow and not accuracy"

@@ -119,7 +119,7 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
-        doubt = _unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
+        doubt = unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
         of_section = () if section is None else (section.note,)
         doubt = doubt or (changed_section.DOUBT if of_section else None)
         said = (
@@ -134,7 +134,7 @@ def scan_step(
         notes = (
             *notes,
             *assumed_stability(recording_set, change, calibration.fan),
-            *_assumed_shutter(recording_set, scan),
+            *assumed_shutter(recording_set.rig.row_time_us, scan),
         )
         scan = replace(scan, notes=urgent_first(notes))
         log.frames.extend(scan.frames)
@@ -165,8 +165,8 @@ def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progres
     return cloud, build_mesh(surface, progress=progress)
 
 
-def _unsteady(scan: ScanResult) -> Message | None:
-    """Why nothing in the scan proves conformity, if something moved within it."""
+def unsteady(scan: ScanResult) -> Message | None:
+    """Say why nothing in the scan proves conformity, if something moved within it; None if nothing did."""
     if scan.moved:
         return MOVED_WITHIN
     return DRIFTED_WITHIN if scan.drifted else None
@@ -202,9 +202,9 @@ def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Cent
     return () if note is None else (note,)
 
 
-def _assumed_shutter(recording_set: RecordingSet, scan: ScanResult) -> tuple[Message, ...]:
-    """A note if nothing says how the camera reads its rows out, nor do the sweeps; those of a steady hand do not."""
-    if recording_set.rig.row_time_us is not None or scan.read_out.moves:
+def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Message, ...]:
+    """Give a note if nothing says how the camera reads its rows out: the sweeps of a steady hand do not either."""
+    if row_time_us is not None or scan.read_out.moves:
         return ()
     return (
         Message(

@@ -78,15 +78,24 @@ def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | Non
             date=nearest.taken_at.astimezone(),
         )
     lapsed = _calibration_lapsed(recording_set, work.record(), when) or _check_lapsed(recording_set.rig, nearest, when)
-    if lapsed is not None or calibration.fan.scale_assumed:
-        return lapsed or SIZE_UNCONFIRMED
-    if any(note.code == NOT_CONVERGED.code for note in calibration.fan.notes):
-        return UNSETTLED
-    if _off_alike(calibration.fan):
+    doubt = doubt_of_calibration(calibration.fan)
+    if lapsed is None and doubt == POINTS_UNCONFIRMED:
         nearest = _passed_artefact(recording_set.rig, checks, when)
-        if nearest is None or _left_possible(nearest) > calibration.fan.scale_sd:
-            return POINTS_UNCONFIRMED
-    return None
+        if nearest is not None and _left_possible(nearest) <= calibration.fan.scale_sd:
+            return None
+    return lapsed or doubt
+
+
+def doubt_of_calibration(fan: FanCalibration) -> Message | None:
+    """Why the calibration of the planes by itself leaves nothing proven; None if it does not.
+
+    A size of the target that is assumed, a solution that had not settled, or points that lie off alike in all poses.
+    """
+    if fan.scale_assumed:
+        return SIZE_UNCONFIRMED
+    if any(note.code == NOT_CONVERGED.code for note in fan.notes):
+        return UNSETTLED
+    return POINTS_UNCONFIRMED if _off_alike(fan) else None
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:

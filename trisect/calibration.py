@@ -1,0 +1,139 @@
+"""Calibrations: the camera by views of a flat target, the light planes by pictures of a target in the fan."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from numpy.typing import ArrayLike
+
+from core.calibrate.board_shape import BoardTolerance
+from core.calibrate.camera import calibration
+from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.fan.calibration import FanOptions, fit_fan
+from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.image.targets import Target
+from core.image.targets.target_view import TargetView
+from core.pipeline.steps.planes_step import check_agreement
+from core.progress import Progress, silent
+from trisect.pictures import checked_picture, same_size
+
+
+def calibrate_camera(
+    views: Sequence[TargetView],
+    image_size: tuple[int, int],
+    *,
+    tolerance: BoardTolerance | None = None,
+    skew: bool | None = None,
+    k3: bool | None = None,
+    progress: Progress = silent,
+) -> CameraCalibration:
+    """Calibrate the camera that took views of a flat target.
+
+    Parameters
+    ----------
+    views
+        At least three, differently tilted, as `find_target` gives them.
+    image_size
+        (width, height) of the pictures in px.
+    tolerance
+        How true the target is; None: nothing is known of it, and what is assumed is in the uncertainty.
+    skew, k3
+        Whether to solve for them; None: decided by the views.
+    progress
+        Called with how far it is.
+
+    Returns
+    -------
+    CameraCalibration
+        The `camera` with the covariance of its parameters, and how each view fits.
+
+    Raises
+    ------
+    InputError
+        If fewer than three views can be used, or they do not determine the camera (all in parallel).
+
+    References
+    ----------
+    Z. Zhang, A flexible new technique for camera calibration, 2000, doi:10.1109/34.888718; the paper, section 2.1.
+
+    Examples
+    --------
+    >>> views = [find_target(read_picture(path), small.rig.camera_target, name=path.stem) for path in small.camera]
+    >>> camera = calibrate_camera(views, (768, 550))
+    >>> camera.rms_px < 0.1
+    True
+    """
+    known = BoardTolerance() if tolerance is None else tolerance
+    options = CameraOptions(skew=skew, k3=k3)
+    return calibration.calibrate_camera(views, image_size, options, progress, tolerance=known)
+
+
+def calibrate_fan(
+    pairs: Sequence[tuple[ArrayLike, ArrayLike | None]],
+    target: Target,
+    camera: CameraCalibration,
+    *,
+    lines: int = 3,
+    angle: float | None = None,
+    tolerance: BoardTolerance | None = None,
+    accept_few_poses: bool = False,
+    progress: Progress = silent,
+) -> FanCalibration:
+    """Calibrate the light planes of the fixed laser by a flat target held into its light.
+
+    Parameters
+    ----------
+    pairs
+        For each pose of the target the picture with the fan on, and one of the same pose with it off (None: there is
+        none); each (height, width) uint8 or uint16.
+    target
+        What is printed on it.
+    camera
+        The calibrated camera.
+    lines
+        How many light planes the laser has.
+    angle
+        Between neighbouring planes in rad, as its maker states it; None: not known.
+    tolerance
+        How true the target is; None: nothing is known of it, and what is assumed is in the uncertainty.
+    accept_few_poses
+        Whether planes that rest on a minority of the poses are taken.
+    progress
+        Called with how far it is.
+
+    Returns
+    -------
+    FanCalibration
+        The `fan` with the covariance of its planes, angles, residuals, and `notes` on what is assumed or wrong.
+
+    Raises
+    ------
+    InputError
+        If an array is no picture, no pose is usable, fewer lines are seen than there are, or the poses are too alike.
+
+    References
+    ----------
+    The paper, section 2.2, with all planes of one pencil solved for together.
+
+    Examples
+    --------
+    >>> views = [find_target(read_picture(path), small.rig.camera_target, name=path.stem) for path in small.camera]
+    >>> pairs = [(read_picture(pose.on), read_picture(pose.off)) for pose in small.planes]
+    >>> fan = calibrate_fan(pairs, small.rig.plane_target, calibrate_camera(views, (768, 550)), angle=small.rig.angle)
+    >>> len(fan.fan.planes), max(fan.rms_mm) < 0.1
+    (3, True)
+    """
+    poses = []
+    for number, (on, off) in enumerate(pairs):
+        progress("plane poses", number, len(pairs))
+        name = f"pose {number + 1}"
+        lit = checked_picture(on, name)
+        dark = None if off is None else checked_picture(off, name)
+        if dark is not None:
+            same_size(lit, dark, name)
+        poses.append(measure_plane_pose(name, lit, dark, target, camera.camera))
+    known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
+    fan = fit_fan(poses, camera.camera, known, progress)
+    check_agreement(fan, accept_few_poses)
+    return fan
