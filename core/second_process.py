@@ -21,6 +21,7 @@ from importlib import import_module
 from queue import SimpleQueue
 from typing import Any, BinaryIO, Protocol, TypeVar
 
+from core.code_cache import code_cache
 from core.errors import InputError
 from core.memory import give_back
 from core.messages import Message
@@ -58,6 +59,7 @@ class SecondProcess:
     """
 
     def __init__(self, modules: Sequence[str] = ()) -> None:
+        code_cache()  # where none can be written, both use what is found here
         self._process = subprocess.Popen(
             module_command("core.second_process", *modules),
             stdin=subprocess.PIPE,

@@ -2,6 +2,7 @@
 
 import json
 import signal
+import sys
 from functools import partial
 
 import numpy as np
@@ -140,6 +141,31 @@ def test_ctrl_c_ends_it_in_order_and_a_second_one_at_once(monkeypatch, folder):
     performed(monkeypatch, partial(script, 2))
     assert trisect("record", folder, "scan", *SIMULATED, "--yes").code == 130
     assert signal.getsignal(signal.SIGINT) is before
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signal")
+def test_sigterm_ends_it_in_order_too_and_what_is_there_is_counted(monkeypatch, folder):
+    def script(commands, emit):
+        signal.raise_signal(signal.SIGTERM)
+        signal.raise_signal(signal.SIGTERM)
+        return 4, None if commands() == Stop() else QUESTION.sentence
+
+    performed(monkeypatch, script)
+    said = trisect("record", folder, "scan", *SIMULATED, "--yes")
+    assert (said.code, "4" in said.out) == (143, True)
+    assert said.sentence.startswith("trisect: interrupted;")
+
+
+def test_a_quiet_recording_says_only_what_somebody_is_asked_to_do(monkeypatch, folder):
+    def script(commands, emit):
+        emit(LiveNotice(Message("live.marked", "Still here.")))
+        emit(QUESTION)
+        return 4, None
+
+    performed(monkeypatch, script)
+    told = trisect("record", folder, "scan", *SIMULATED, "--quiet").err
+    assert "Still here." not in told
+    assert "Enter:" in told
 
 
 def test_what_ended_it_too_early_is_told_and_what_is_there_counted(monkeypatch, folder):

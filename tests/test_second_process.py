@@ -9,6 +9,7 @@ from pathlib import Path
 
 import pytest
 
+from core.code_cache import code_cache
 from core.errors import Cancelled, InputError
 from core.progress import silent
 from core.second_process import SecondProcess, second_process, shared_map
@@ -58,6 +59,10 @@ def work(seconds, /, *, progress=silent):
     until = time.process_time() + seconds
     while time.process_time() < until:
         pass
+
+
+def cache_folder(item, /, *, progress=silent):
+    return str(code_cache())
 
 
 def leave(item, /, *, progress=silent):
@@ -183,3 +188,19 @@ def test_it_is_gone_when_the_first_one_is_killed(monkeypatch):
     first.wait()
     first.stdout.close()
     assert is_gone(pid)
+
+
+def test_where_no_cache_can_be_written_both_use_the_same_temporary_one(tmp_path):
+    (tmp_path / "file").touch()
+    program = (
+        "from core.second_process import SecondProcess; from tests.test_second_process import *\n"
+        "with SecondProcess() as beside: print(beside.submit(cache_folder, 0).result())\n"
+        "print(cache_folder(0))"
+    )
+    surroundings = os.environ | {"PYTHONPATH": str(ROOT), "NUMBA_CACHE_DIR": str(tmp_path / "file")}
+    ran = subprocess.run(
+        [sys.executable, "-c", program], env=surroundings, capture_output=True, text=True, check=True
+    )  # fmt: skip
+    of_second, of_first = ran.stdout.split()
+    assert of_second == of_first
+    assert not Path(of_first).exists()

@@ -13,7 +13,7 @@ from rich.table import Table
 
 from core.cli import output
 from core.cli.language import told, tr
-from core.cli.measuring import Shown, alone_with, exit_code
+from core.cli.measuring import Shown, alone_with, exit_code, tell_of_cache
 from core.cli.options import ExitCode, one_of
 from core.errors import InputError
 from core.files.atomic import make_folder
@@ -52,6 +52,7 @@ def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) 
     asked, folder = read_plan(plan), out or source
     if out is not None:
         make_folder(out)
+    tell_of_cache()
     with alone_in(folder) if folder.is_dir() else nullcontext():
         return inspect_step(source, asked, plan.parent, out, progress)
 
