@@ -141,7 +141,8 @@ def typed_alike(command):
         choices = one.type_descriptor.choices or ()
         yield from (*one.opts, *one.secondary_opts, one.metavar or "", *(choice.value for choice in choices))
         yield str(getattr(one.default, "value", one.default))
-    yield from (*getattr(command, "commands", ()), "--language", "CODE", "--help", "-h")
+    everywhere = ("--quiet", "-q", "--verbose", "-v", "--language", "CODE", "--help", "-h")
+    yield from (*getattr(command, "commands", ()), *everywhere)
 
 
 @pytest.mark.parametrize(
