@@ -42,7 +42,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile clean
+.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -143,6 +143,47 @@ wheel: compile            ## build the wheel, with compiled loops in it, and try
 	build/wheel/venv/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt build/wheel/trisect-*.whl
 	cd build/wheel && NUMBA_CACHE_DIR=cache venv/bin/trisect demo --quick --out demo
 	test -z "$$(find build/wheel/cache -type f)"
+
+# What locks and bundles are made with has an environment of its own: none of it is part of the program.
+TOOLS   := build/tools/.ready
+BUNDLE  := build/bundle
+FROZEN  := $(BUNDLE)/venv/.ready
+HASHED  := install --quiet --disable-pip-version-check --require-hashes --requirement
+COMPILE := build/lock/bin/uv pip compile --quiet --universal --python-version 3.11.5 --generate-hashes --no-emit-index-url \
+	--no-annotate --no-header $(if $(UPGRADE),--upgrade)
+
+lock:                     ## versions and hashes of all that is installed, for every system; UPGRADE=1 takes newer ones
+	$(PYTHON) -m venv build/lock
+	build/lock/bin/pip install --quiet --disable-pip-version-check uv
+	$(COMPILE) --all-extras pyproject.toml --output-file locks/dev.txt
+	$(COMPILE) $(EXTRAS:%=--extra %) --group bundle --constraint locks/dev.txt pyproject.toml --output-file locks/bundle.txt
+	$(COMPILE) --group tools --constraint locks/dev.txt --output-file locks/tools.txt
+	@# pip takes no folder, so not this one, where a constraint has a hash
+	{ echo '# Versions this was tested with; pip install -c constraints.txt. Written by `make lock`; with hashes: locks/'; \
+	sed -n 's/ *\\$$//; /==/p' locks/dev.txt; } > constraints.txt
+
+EXTRAS = $(shell sed -n 's/^EXTRAS = //p' bundle/contents.py | tr -d '(),"')
+
+bundle: $(FROZEN) $(TOOLS) ## the program as one folder to double-click, .tar.xz and .deb, in build/bundle: five minutes and 4 GB
+	build/tools/venv/bin/cyclonedx-py environment --pyproject pyproject.toml --output-reproducible \
+	--output-file $(BUNDLE)/sbom.cdx.json $(BUNDLE)/venv/bin/python
+	$(BUNDLE)/venv/bin/python bundle/build.py
+	cat $(BUNDLE)/sizes.txt && ls -l $(BUNDLE)/trisect*
+
+try-bundle:               ## try the .deb in a bare Debian 13 without Python, with a window: needs root, debootstrap and `make bundle`
+	bundle/try_out.sh $(BUNDLE)
+
+$(TOOLS): locks/tools.txt
+	$(PYTHON) -m venv build/tools/venv
+	build/tools/venv/bin/pip $(HASHED) locks/tools.txt
+	touch $@
+
+$(FROZEN): pyproject.toml locks/bundle.txt $(TOOLS)
+	rm -rf $(BUNDLE)/venv && $(PYTHON) -m venv $(BUNDLE)/venv
+	$(BUNDLE)/venv/bin/pip $(HASHED) locks/bundle.txt
+	PYTHONPATH=$$(echo build/tools/venv/lib/python3*/site-packages) \
+	$(BUNDLE)/venv/bin/pip install --quiet --disable-pip-version-check --no-deps --no-build-isolation --editable .
+	touch $@
 
 $(CORE): pyproject.toml constraints.txt
 	$(ENVIRONMENT)
