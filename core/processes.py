@@ -11,7 +11,10 @@ import sys
 from pathlib import Path
 
 MODULE = "--module"
-"""First argument of a frozen program that is to run one module: the module's name and arguments follow."""
+"""First argument of a frozen program that is to run one module: its name, or a file NAME.py, and arguments follow.
+
+With a file it takes the place of the Python that such a program does not bring: scripts that import `core` run so.
+"""
 
 
 def is_frozen() -> bool:
@@ -38,5 +41,8 @@ def run_asked_module() -> bool:
     if sys.argv[1:2] != [MODULE] or len(sys.argv) < 3:
         return False
     sys.argv = sys.argv[2:]
-    runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
+    if sys.argv[0].endswith(".py"):
+        runpy.run_path(sys.argv[0], run_name="__main__")
+    else:
+        runpy.run_module(sys.argv[0], run_name="__main__", alter_sys=True)
     return True

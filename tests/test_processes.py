@@ -64,6 +64,13 @@ def test_a_frozen_program_answers_with_that_module_its_arguments_and_its_exit_co
     assert (ran.stdout, ran.returncode) == ("__main__ ['one', '--two']\n", 3), ran.stderr
 
 
+def test_a_frozen_program_runs_a_script_as_python_would(tmp_path):
+    script = tmp_path / "script.py"
+    script.write_text("import sys, core\nprint(__name__, core.__version__, sys.argv[1:])\n")
+    ran = answer(tmp_path, processes.MODULE, str(script), "one")
+    assert ran.stdout.split(" ", 1)[0] == "__main__" and "['one']" in ran.stdout, ran.stderr
+
+
 @pytest.mark.parametrize("arguments", [(), ("demo",), ("demo", processes.MODULE, "of_ours"), (processes.MODULE,)])
 def test_other_arguments_are_the_programs_own(tmp_path, arguments):
     assert answer(tmp_path, *arguments).stdout == f"the program itself {list(arguments)}\n"
