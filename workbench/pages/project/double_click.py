@@ -23,13 +23,14 @@ from PySide6.QtWidgets import QWidget
 from core.errors import InputError
 from core.files.atomic import make_folder, write_text
 from core.files.project.folder import OPENER
+from core.files.project.packing import PACKED
 from core.messages import Message
 from core.processes import program_command
 from workbench.language import tr
 from workbench.notices import Notices
 from workbench.views import ask
 
-MIME = "application/x-trisect-project"
+MIME, PACKED_MIME = "application/x-trisect-project", "application/x-trisect-packed"
 CLASS = "Trisect.Project"
 PLATFORM = str(sys.platform)
 CLASSES = r"HKEY_CURRENT_USER\Software\Classes"
@@ -124,14 +125,19 @@ def _wanted(command: tuple[str, ...]) -> Mapping[Path, str]:
                 "advice.open_in_window", "open a project with File, Open project, or drop its folder on the window"
             ),
         )
-    started = " ".join(map(_quoted, command))
-    entry = template("desktop", "trisect.desktop").format(command=started, mime=MIME)
-    package = template("desktop", "trisect.xml").format(mime=MIME, opener=OPENER)
     data = _data_home()
+    return {data / name: text for name, text in entries(command).items()}
+
+
+def entries(command: tuple[str, ...]) -> Mapping[str, str]:
+    """The files by which desktops of freedesktop.org know the program, by their names below `share`; and their text."""
+    kinds = {"mime": MIME, "packed_mime": PACKED_MIME}
+    entry = template("desktop", "trisect.desktop").format(command=" ".join(map(_quoted, command)), **kinds)
+    package = template("desktop", "trisect.xml").format(opener=OPENER, packed=PACKED, **kinds)
     return {
-        data / "applications" / "trisect.desktop": entry,
-        data / "mime" / "packages" / "trisect.xml": package,
-        data / "icons" / "hicolor" / "scalable" / "apps" / "trisect.svg": template("icons", "trisect.svg"),
+        "applications/trisect.desktop": entry,
+        "mime/packages/trisect.xml": package,
+        "icons/hicolor/scalable/apps/trisect.svg": template("icons", "trisect.svg"),
     }
 
 

@@ -53,12 +53,13 @@ def test_the_entry_starts_the_program_with_the_file_and_names_the_kind_of_file(d
     desktop = entry(data)
     assert desktop["Type"] == "Application" and desktop["Terminal"] == "false"
     assert desktop["Exec"] == '"/opt/tri sect/bin/trisect-workbench" %f'
-    assert desktop["MimeType"] == "application/x-trisect-project;"
+    assert desktop["MimeType"] == "application/x-trisect-project;application/x-trisect-packed;"
     root = ElementTree.parse(data / "mime" / "packages" / "trisect.xml").getroot()
-    kind = root.find(f"{SPECIFIED}mime-type")
-    assert kind is not None and kind.get("type") == "application/x-trisect-project"
-    globs = [glob.get("pattern") for glob in kind.iter(f"{SPECIFIED}glob")]
-    assert globs == ["*.trisect"]
+    globs = {
+        kind.get("type"): [glob.get("pattern") for glob in kind.iter(f"{SPECIFIED}glob")]
+        for kind in root.iter(f"{SPECIFIED}mime-type")
+    }
+    assert globs == {"application/x-trisect-project": ["*.trisect"], "application/x-trisect-packed": ["*.trisectz"]}
     assert "<svg" in (data / "icons" / "hicolor" / "scalable" / "apps" / "trisect.svg").read_text()
 
 
