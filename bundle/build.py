@@ -1,0 +1,119 @@
+"""`make bundle`: one folder to double-click, packed, and as a package for Debian; all in build/bundle.
+
+Run by the Python of an environment that holds the program and PyInstaller, and nothing that tests it.
+"""
+
+from __future__ import annotations
+
+import platform
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+from contents import EXTRAS, ROOT
+from deb import build_deb
+from icons import write_icons
+from sizes import sizes
+
+from core import __version__, compiled, sources
+from core.pipeline.compile_ahead import compile_ahead
+
+BUILD = ROOT / "build" / "bundle"
+FOLDER = BUILD / "dist" / "trisect"
+"""The folder itself."""
+INSIDE = FOLDER / "_internal"
+"""Where PyInstaller puts all but the two programs."""
+WORTH_STRIPPING = 100_000
+"""Bytes of a library whose names for a debugger are worth taking out: of all libraries together they are a sixth."""
+
+NOTE = """
+This folder was built by PyInstaller, whose start program is in it: GPL-2.0-or-later with an exception that allows to
+pass on programs built with it under any licence. Python's own licence (PSF-2.0) is in licences/python.txt, those of the
+packages are in _internal/NAME.dist-info. Libraries under the LGPL (Qt, PySide6, FFmpeg, Open CASCADE) lie in _internal
+as files of their own and may be replaced there. sbom.cdx.json lists every package with its version (CycloneDX).
+"""
+
+
+def main() -> None:
+    """Build the folder, say what is in it, and pack it."""
+    save_code()
+    write_icons(BUILD)
+    spec = str(Path(__file__).with_name("trisect.spec"))
+    places = ("--distpath", str(BUILD / "dist"), "--workpath", str(BUILD / "work"))
+    run(sys.executable, "-m", "PyInstaller", "--noconfirm", "--log-level", "WARN", *places, spec)
+    put_notices()
+    if sys.platform == "linux":
+        strip()
+        (FOLDER / "trisect-workbench").hardlink_to(FOLDER / "trisect")
+    (BUILD / "sizes.txt").write_text(sizes(FOLDER), encoding="utf-8")
+    pack()
+
+
+def run(*command: str) -> None:
+    """Run a program in the checkout; it must succeed."""
+    subprocess.run(command, cwd=ROOT, check=True)
+
+
+def save_code() -> None:
+    """Compile what a measurement needs, measure once, and take along all that was compiled."""
+    compile_ahead()
+    run(sys.executable, "-m", "core.cli", "demo", "--quick", "--out", str(BUILD / "first"))
+    kept = BUILD / "saved_code"
+    shutil.rmtree(kept, ignore_errors=True)
+    shutil.copytree(compiled.FOLDER, kept / compiled.FOLDER.name)
+    (kept / sources.BUILT.name).write_text(sources.to_be_built(compiled._FILES), encoding="utf-8")
+
+
+def put_notices() -> None:
+    """Version, licences and the list of packages, where somebody finds them who looks into the folder."""
+    (FOLDER / "VERSION").write_text(f"trisect {__version__} ({', '.join(EXTRAS)})\n", encoding="utf-8")
+    shutil.copy(ROOT / "LICENSE", FOLDER)
+    notice = (ROOT / "NOTICE").read_text(encoding="utf-8")
+    (FOLDER / "NOTICE").write_text(notice + NOTE, encoding="utf-8")
+    shutil.copy(BUILD / "sbom.cdx.json", FOLDER)
+    licences = FOLDER / "licences"
+    licences.mkdir(exist_ok=True)
+    (licences / "python.txt").write_text(pythons_licence(), encoding="utf-8")
+
+
+def pythons_licence() -> str:
+    """The licence of Python as it comes with it."""
+    version = f"python{sys.version_info.major}.{sys.version_info.minor}"
+    for path in (
+        Path(sys.base_prefix, "lib", version, "LICENSE.txt"),
+        Path(sys.base_prefix, "LICENSE.txt"),
+        Path("/usr/share/doc", version, "copyright"),
+    ):
+        if path.exists():
+            return path.read_text(encoding="utf-8", errors="replace")
+    raise SystemExit("bundle: Python's own licence was not found beside it")
+
+
+def strip() -> None:
+    """Take the names for a debugger out of the libraries that bring them; `make try-bundle` loads each of them."""
+    for library in INSIDE.rglob("*.so*"):
+        if library.is_symlink() or library.stat().st_size < WORTH_STRIPPING:
+            continue
+        table = subprocess.run(["readelf", "-S", "-W", str(library)], capture_output=True, text=True, check=True).stdout
+        if ".symtab" in table:
+            run("strip", "--strip-unneeded", str(library))
+
+
+def pack() -> None:
+    """The folder as one file for each way to install it."""
+    name = f"trisect-{__version__}-{sys.platform}-{platform.machine().lower()}"
+    if sys.platform == "linux":
+        packed = BUILD / f"{name}.tar.xz"
+        packed.unlink(missing_ok=True)
+        tar = ("tar", "--owner=0", "--group=0", "--sort=name", "-C", str(FOLDER.parent), "-I", "xz -T0 -6", "-cf")
+        run(*tar, str(packed), FOLDER.name)
+        build_deb(FOLDER, BUILD, __version__)
+    else:
+        shutil.make_archive(
+            str(BUILD / name), "zip", FOLDER.parent, "Trisect.app" if sys.platform == "darwin" else "trisect"
+        )
+
+
+if __name__ == "__main__":
+    main()
