@@ -6,6 +6,7 @@ Run by the Python of an environment that holds the program and PyInstaller, and 
 from __future__ import annotations
 
 import platform
+import re
 import shutil
 import subprocess
 import sys
@@ -26,6 +27,10 @@ INSIDE = FOLDER / "_internal"
 """Where PyInstaller puts all but the two programs."""
 WORTH_STRIPPING = 100_000
 """Bytes of a library whose names for a debugger are worth taking out: of all libraries together they are a sixth."""
+LIBRARY = re.compile(r"\.so(\.\d+)*$")
+"""How the name of a shared library ends."""
+PAGE = 4096
+"""Bytes of a page of memory."""
 
 NOTE = """
 This folder was built by PyInstaller, whose start program is in it: GPL-2.0-or-later with an exception that allows to
@@ -91,13 +96,29 @@ def pythons_licence() -> str:
 
 
 def strip() -> None:
-    """Take the names for a debugger out of the libraries that bring them; `make try-bundle` loads each of them."""
-    for library in INSIDE.rglob("*.so*"):
-        if library.is_symlink() or library.stat().st_size < WORTH_STRIPPING:
+    """Take the names for a debugger out of the libraries that bring them.
+
+    What was changed after it was linked, as many libraries in wheels were, may be spoilt by it: it is left as it is.
+    """
+    stripped = BUILD / "stripped"
+    for library in sorted(path for path in INSIDE.rglob("*") if LIBRARY.search(path.name) and not path.is_symlink()):
+        if library.stat().st_size < WORTH_STRIPPING or ".symtab" not in readelf("-S", library):
             continue
-        table = subprocess.run(["readelf", "-S", "-W", str(library)], capture_output=True, text=True, check=True).stdout
-        if ".symtab" in table:
-            run("strip", "--strip-unneeded", str(library))
+        run("strip", "--strip-unneeded", "-o", str(stripped), str(library))
+        if can_be_mapped(stripped):
+            shutil.copyfile(stripped, library)
+    stripped.unlink(missing_ok=True)
+
+
+def can_be_mapped(library: Path) -> bool:
+    """Whether each loaded part of a library lies in the file where its pages can be mapped from."""
+    loaded = [line.split() for line in readelf("-l", library).splitlines() if line.split()[:1] == ["LOAD"]]
+    return all((int(offset, 16) - int(address, 16)) % PAGE == 0 for _, offset, address, *_ in loaded)
+
+
+def readelf(what: str, library: Path) -> str:
+    """What a shared library says of its sections (-S) or of what is loaded of it (-l)."""
+    return subprocess.run(["readelf", "-W", what, str(library)], capture_output=True, text=True, check=True).stdout
 
 
 def pack() -> None:

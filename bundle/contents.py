@@ -22,11 +22,14 @@ NOT_NEEDED = (
     "tkinter", "IPython", "ipykernel", "jupyter_client", "qtconsole", "zmq", "pytest", "_pytest", "setuptools", "pip",
     "sphinx", "mypy", "docutils", "dask", "distributed", "pandas", "pypylon",
     "matplotlib.tests", "mpl_toolkits.tests", "numpy.tests", "scipy.tests", "numba.tests", "numba.cuda",
+    "numba.np.ufunc.tbbpool", "numba.np.ufunc.omppool", "readline",
     "llvmlite.tests",
     "PySide6.QtQml", "PySide6.QtQuick", "PySide6.QtDesigner", "PySide6.QtSql", "PySide6.QtHelp",
     "pyqtgraph.examples", "trame", "vtk",
 )  # fmt: skip
-"""Modules that some library would import if asked for what this program never asks for."""
+"""Modules that some library would import if asked for what this program never asks for. readline is GPL-3.0."""
+UNSEEN = ("resources", "numba._devicearray")
+"""Modules that are imported where no reading of the code shows it."""
 
 QT_PLUGINS = (
     "platforms",
@@ -81,29 +84,23 @@ def packages() -> list[str]:
     return found
 
 
-def vtk_left_out() -> list[str]:
-    """VTK's modules that are not imported where the program has drawn a picture in 3D: tried in a process."""
+def vtk_modules() -> tuple[list[str], list[str]]:
+    """VTK's modules that are imported where the program has drawn a picture in 3D, tried in a process; and the others.
+
+    pyvista imports them when they are asked for, which no reading of its code shows.
+    """
     code = (
         "import json, sys; from workbench.views.scene import surfaces; "
         "assert surfaces.works(), 'nothing can be drawn here'; import pyvistaqt; "
         "print(json.dumps(sorted(name for name in sys.modules if name.startswith('vtkmodules.'))))"
     )
     ran = subprocess.run([sys.executable, "-c", code], cwd=ROOT, stdout=subprocess.PIPE, text=True, check=True)
-    needed = set(json.loads(ran.stdout.splitlines()[-1]))
+    needed = json.loads(ran.stdout.splitlines()[-1])
     import vtkmodules
 
-    folder = Path(vtkmodules.__path__[0])
-    extensions = {
-        f"vtkmodules.{file.name.split('.')[0]}" for file in folder.glob("vtk*") if file.suffix in (".so", ".pyd")
-    }
-    return [
-        *sorted(extensions - needed),
-        "vtkmodules.all",
-        "vtkmodules.web",
-        "vtkmodules.tk",
-        "vtkmodules.wx",
-        "vtkmodules.test",
-    ]
+    files = (file for file in Path(vtkmodules.__path__[0]).glob("vtk*") if file.suffix in (".so", ".pyd"))
+    others = {f"vtkmodules.{file.name.split('.')[0]}" for file in files}.difference(needed)
+    return needed, [*sorted(others), *(f"vtkmodules.{name}" for name in ("all", "web", "tk", "wx", "test"))]
 
 
 def wanted_binaries(binaries: list[tuple[str, str, str]]) -> Iterator[tuple[str, str, str]]:

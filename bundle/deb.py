@@ -15,6 +15,7 @@ DEPENDS = (
     "libc6", "libstdc++6", "libgcc-s1", "libegl1", "libgl1", "libopengl0", "libfontconfig1", "libfreetype6",
     "libdbus-1-3",
     "libglib2.0-0 | libglib2.0-0t64", "libx11-6", "libx11-xcb1", "libxext6", "libxrender1", "libsm6", "libice6",
+    "libgssapi-krb5-2",
     "libxcb1", "libxcb-cursor0", "libxcb-icccm4", "libxcb-image0", "libxcb-keysyms1", "libxcb-randr0",
     "libxcb-render-util0", "libxcb-render0", "libxcb-shape0", "libxcb-shm0", "libxcb-sync1", "libxcb-xfixes0",
     "libxcb-xkb1", "libxkbcommon0", "libxkbcommon-x11-0",

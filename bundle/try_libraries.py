@@ -4,6 +4,8 @@
 """
 
 import ctypes
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -18,6 +20,7 @@ OF_DESKTOPS = (
 )
 """Parts of Qt for desktops that the system may not have: Qt passes over them."""
 ONE = "--one"
+LIBRARY = re.compile(r"\.so(\.\d+)*$")
 
 
 def main() -> int:
@@ -27,13 +30,11 @@ def main() -> int:
             try:
                 ctypes.CDLL(path)
             except OSError as error:
-                print(f"{path}: {error}")
-        return 0
+                print(f"{path}: {error}", flush=True)
+        os._exit(0)  # what so many libraries do at their end is not tried
     folder = Path(sys.executable).resolve().parent / "_internal"
-    libraries = [
-        str(path) for path in sorted(folder.rglob("*.so*"))
-        if not path.is_symlink() and not any(part in path.as_posix() for part in OF_DESKTOPS)
-    ]  # fmt: skip
+    found = (path for path in sorted(folder.rglob("*")) if LIBRARY.search(path.name) and not path.is_symlink())
+    libraries = [str(path) for path in found if not any(part in path.as_posix() for part in OF_DESKTOPS)]
     ran = subprocess.run(
         [sys.executable, "--module", sys.argv[0], ONE, *libraries], capture_output=True, text=True, check=False
     )

@@ -7,7 +7,7 @@ import pkgutil
 import sys
 from collections.abc import Iterator
 
-PACKAGES = ("core", "workbench", "resources")
+PACKAGES = ("core", "workbench", "trisect", "resources")
 
 
 def modules() -> Iterator[str]:

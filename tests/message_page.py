@@ -121,11 +121,11 @@ def is_name(code: str) -> bool:
 def errors() -> dict[str, list[str]]:
     """By the code of an error, what the calls that tell it say to do."""
     shared: Named = {}
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         for name, known in _named(syntax_tree(path).body).items():
             shared.setdefault(name, []).extend(known)
     found: dict[str, list[str]] = {}
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         for code, advice in errors_of(nodes(path), shared):
             said = found.setdefault(code, [])
             said += [one for one in advice if one not in said]

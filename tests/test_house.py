@@ -55,7 +55,7 @@ def unexplained(text: str, tree: ast.Module) -> Iterator[tuple[int, str]]:
 def test_every_number_at_the_top_of_a_module_says_what_it_is():
     found = [
         f"{path.relative_to(ROOT)}:{line} {name}"
-        for path in modules("core", "workbench")
+        for path in modules("core", "workbench", "trisect")
         for line, name in unexplained(path.read_text(encoding="utf-8"), syntax_tree(path))
     ]
     assert found == [], "say its unit and its reason beside it"
@@ -84,7 +84,7 @@ def is_command(function: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
 
 def test_no_function_has_more_than_eight_parameters():
     found = []
-    for path in modules("core", "workbench", "tests"):
+    for path in modules("core", "workbench", "trisect", "tests"):
         for node in nodes(path):
             if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) and not is_command(node):
                 all_of_them = [*node.args.posonlyargs, *node.args.args, *node.args.kwonlyargs]
@@ -111,7 +111,7 @@ def first_sentences(path: Path) -> Iterator[tuple[int, str]]:
 def test_the_first_sentence_of_a_docstring_names_who_and_what_is_meant():
     found = [
         f"{path.relative_to(ROOT)}:{line} {sentence}"
-        for path in modules("core", "workbench")
+        for path in modules("core", "workbench", "trisect")
         for line, sentence in first_sentences(path)
         if RIDDLES.search(sentence)
     ]
@@ -207,7 +207,7 @@ def cuts(tree: ast.Module, telling: Collection[str]) -> Iterator[tuple[int, str]
 
 
 def test_no_logic_looks_at_a_shown_text():
-    trees = {path: syntax_tree(path) for path in modules("core", "workbench")}
+    trees = {path: syntax_tree(path) for path in modules("core", "workbench", "trisect")}
     telling = telling_in(list(trees.values()))
     found = [
         f"{path.relative_to(ROOT)}:{line} {source}"

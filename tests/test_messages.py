@@ -177,7 +177,7 @@ def test_nobody_writes_a_date_for_people_in_a_way_of_their_own():
     root = Path(__file__).parents[1]
     found = [
         str(path.relative_to(root))
-        for folder in ("core", "workbench")
+        for folder in ("core", "workbench", "trisect")
         for path in sorted((root / folder).rglob("*.py"))
         if "%Y-%m-%d" in path.read_text(encoding="utf-8")
     ]

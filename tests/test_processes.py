@@ -34,7 +34,7 @@ def frozen(monkeypatch):
 def test_one_module_alone_knows_what_starts_python():
     found = [
         f"{path.relative_to(ROOT)}:{node.lineno}"
-        for path in modules("core", "workbench")
+        for path in modules("core", "workbench", "trisect")
         if path not in MAKES
         for node in nodes(path)
         if isinstance(node, ast.Attribute) and node.attr in ("executable", "_base_executable")

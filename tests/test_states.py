@@ -94,7 +94,7 @@ def test_the_words_of_states_stand_in_one_table():
     """Elsewhere a word of the table is told by its key: as a literal it would be forgotten when the table changes."""
     words = {word for table in TABLES for word in table.values()} - {"not known"}  # as a number may be, too
     found = []
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         if path == ROOT / "core" / "states.py":
             continue
         for node in nodes(path):

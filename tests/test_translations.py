@@ -44,7 +44,7 @@ def test_a_code_has_one_text():
 
 def test_code_and_text_of_a_message_stand_in_the_call():
     found = []
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         for node in nodes(path):
             if isinstance(node, ast.Call) and translations.called(node) in translations.CODED:
                 given = node.args[: translations.CODED[translations.called(node)] + 1]
@@ -216,7 +216,7 @@ def bypassing(of_module):
 
 def test_no_sentence_bypasses_the_catalogues():
     found = []
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         where = path.relative_to(translations.ROOT).as_posix()
         if not where.startswith(tuple(ALLOWED)):
             found += [f"{where}:{line}: {text}" for line, text in bypassing(nodes(path))]
@@ -229,7 +229,7 @@ def calls(path, *names):
 
 def test_no_error_is_passed_on_as_its_english_text():
     found = []
-    for path in modules("core", "workbench"):
+    for path in modules("core", "workbench", "trisect"):
         told = [call for call in calls(path, "plain", "InputError") if call.args]
         found += [
             f"{path.relative_to(translations.ROOT)}:{call.lineno}"

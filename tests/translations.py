@@ -53,7 +53,7 @@ class Text:
 def all_texts() -> tuple[Text, ...]:
     """Every text of the program's modules, by module and line."""
     found: list[Text] = []
-    for folder in ("core", "workbench"):
+    for folder in ("core", "workbench", "trisect"):
         for path in modules(folder):
             found += sorted(texts_of(nodes(path), path.relative_to(ROOT).as_posix()), key=lambda text: text.line)
     return tuple(found)
