@@ -28,7 +28,7 @@ from core.messages import Message
 from core.processes import module_command
 from core.progress import Progress, silent
 from core.stage_times import StageTimes
-from core.threads import MOST_WORKERS, ordered_map, result_of
+from core.threads import MOST_WORKERS, cores, ordered_map, result_of
 
 Item = TypeVar("Item", contravariant=True)
 Result = TypeVar("Result", covariant=True)
@@ -43,13 +43,6 @@ class Call(Protocol[Item, Result]):
     """What either process can do: known by its name, and told of as any job."""
 
     def __call__(self, item: Item, /, *, progress: Progress = silent) -> Result: ...
-
-
-def cores() -> int:
-    """Processor cores that this process may use."""
-    with suppress(AttributeError):
-        return len(os.sched_getaffinity(0))  # where an administrator or `taskset` leaves it some of them only
-    return os.cpu_count() or 1
 
 
 class SecondProcess:

@@ -6,6 +6,7 @@ import os
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import Future, ThreadPoolExecutor, wait
+from contextlib import suppress
 from typing import TypeVar
 
 Item = TypeVar("Item")
@@ -17,6 +18,13 @@ MOST_WORKERS = 4
 """Threads that are used unless more are asked for: decoding and filtering gain little by more."""
 READ_AHEAD = 1
 """Items for each worker that are begun before their turn: each may hold a picture."""
+
+
+def cores() -> int:
+    """Processor cores that this process may use."""
+    with suppress(AttributeError):
+        return len(os.sched_getaffinity(0))  # where an administrator or `taskset` leaves it some of them only
+    return os.cpu_count() or 1
 
 
 def ordered_map(
@@ -32,7 +40,7 @@ def ordered_map(
     While a result is waited for, `idle` is called now and then, on the caller's thread; when it raises, what is under
     way is left to end by itself.
     """
-    workers = workers or min(MOST_WORKERS, os.cpu_count() or 1)
+    workers = workers or min(MOST_WORKERS, cores())
     pool = ThreadPoolExecutor(workers)
     waiting: deque[Future[Result]] = deque()
     try:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import TypeVar
 
-from core.threads import ordered_map
+from core.threads import cores, ordered_map
 
 T = TypeVar("T")
 
@@ -29,4 +28,4 @@ def read_ahead(
     def job(path: Path) -> tuple[Path, T]:
         return path, read(path)
 
-    return ordered_map(job, paths, threads or min(MOST_THREADS, os.cpu_count() or 1))
+    return ordered_map(job, paths, threads or min(MOST_THREADS, cores()))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import multiprocessing
-import os
 import signal
 import threading
 from collections.abc import Iterator
@@ -15,11 +14,14 @@ from typing import Any
 
 from core.errors import InputError
 from core.messages import Message
+from core.threads import cores
 
 PROCESSES, THREADS, DASK = "processes", "threads", "dask://"
 INSTALL = Message(
     "options.install_cluster", "A cluster needs Dask's distributed: install it with pip install 'trisect[cluster]'"
 )
+MOST_WORKERS = 61
+"""Sets measured at a time on one machine: Windows waits for no more processes at once."""
 CONNECT_S = 10.0
 """How long in s a cluster's scheduler may take to answer."""
 
@@ -33,7 +35,7 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
     text
         "processes" or "threads" of this machine, or "dask://HOST:PORT", the scheduler of a Dask cluster.
     workers
-        How many sets are measured at a time; None: as many as there are cores. A cluster knows its own number.
+        How many sets are measured at a time; 61 at most; None: as many as there are cores. A cluster knows its own.
 
     Raises
     ------
@@ -46,7 +48,7 @@ def executor_of(text: str, workers: int | None = None) -> Iterator[Executor]:
             where="--workers",
             todo=Message("advice.give_one_or_more", "give 1 or more"),
         )
-    count = workers or os.cpu_count() or 1
+    count = min(workers or cores(), MOST_WORKERS)
     if text == THREADS:
         with ThreadPoolExecutor(count) as threads:
             yield threads

@@ -8,6 +8,7 @@ import sys
 import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import nullcontext
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,7 +19,7 @@ from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording.options import Options
 from core.image.stripes.stripe import StripeSettings
-from core.pipeline import batch
+from core.pipeline import batch, executors
 from core.pipeline.batch import STEP, STOP, run_batch, sets_in
 from core.pipeline.executors import executor_of
 from core.pipeline.run import run
@@ -198,6 +199,15 @@ def test_the_table_names_every_set_and_what_kept_one_from_being_measured(quick, 
     assert lines[1].split()[:5] == ["a", "50.000", "mm", "0.020", "mm"]
     assert "not measured" in lines[2]
     assert "there is no rig.toml" in lines[3]
+
+
+@pytest.mark.parametrize(("cores", "workers", "begun"), [(2, None, 2), (128, None, 61), (4, 100, 61), (128, 3, 3)])
+def test_no_more_processes_are_made_than_windows_waits_for(monkeypatch, cores, workers, begun):
+    asked = []
+    monkeypatch.setattr(executors, "cores", lambda: cores)
+    monkeypatch.setattr(executors, "ProcessPoolExecutor", lambda count, *_, **__: asked.append(count) or nullcontext())
+    with executor_of("processes", workers):
+        assert asked == [begun]
 
 
 @pytest.mark.parametrize(
