@@ -32,6 +32,7 @@ from llvmlite import binding
 
 from core import sources
 from core.code_cache import code_cache, temporary_cache
+from core.held_files import HeldOpen, rename
 from core.processor import PROCESSOR
 from core.sources import PACKAGE, SHIPPED
 
@@ -177,7 +178,10 @@ class _Saved:
         content: bytes = dumps(code._reduce())  # type: ignore[no-untyped-call]
         with tempfile.NamedTemporaryFile(dir=FOLDER, delete=False) as beside:
             beside.write(hashlib.sha256(content).digest() + content)
-        Path(beside.name).replace(FOLDER / self._file(signature))
+        try:
+            rename(Path(beside.name), FOLDER / self._file(signature))
+        except HeldOpen:  # another process reads the same, which it has saved
+            Path(beside.name).unlink()
 
 
 _COMPLETE = "complete"

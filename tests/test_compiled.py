@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 import core
-from core import code_cache, compiled, errors, messages, processor, sources
+from core import code_cache, compiled, errors, held_files, messages, processor, sources
 from tests.simulated import copy_of
 
 CALLER = """
@@ -71,7 +71,7 @@ def put_package(place):
     """A small package of the same name with a compiled function that calls one of another file."""
     folder = place / "package" / "core"
     folder.mkdir(parents=True)
-    for module in (compiled, code_cache, errors, messages, processor, sources):
+    for module in (compiled, code_cache, errors, held_files, messages, processor, sources):
         shutil.copy(module.__file__, folder)
     (folder / "__init__.py").touch()
     (folder / "caller.py").write_text(CALLER)

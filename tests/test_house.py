@@ -239,3 +239,65 @@ def test_a_text_that_is_cut_is_seen(line, seen):
     source = f"def tip(self) -> str:\n    first = {{1: tr('a')}}[x]\n    return f'{{first}} b'\ndef f():\n    {line}\n"
     tree = ast.parse(source)
     assert bool(list(cuts(tree, telling_in([tree])))) == seen
+
+
+def unguarded(tree: ast.AST) -> Iterator[tuple[int, str]]:
+    """Line and source of each place where a path is renamed, or a tree removed, past `core.held_files`."""
+    for node in ast.walk(tree):
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute | ast.Name):
+            continue
+        name, arguments = called(node), len(node.args) + len(node.keywords)
+        owner = ast.unparse(node.func.value) if isinstance(node.func, ast.Attribute) else ""
+        cleans = any(one.arg in ("ignore_errors", "ignore_cleanup_errors") for one in node.keywords)
+        if (
+            (owner == "os" and name in ("rename", "renames", "replace"))
+            or (owner == "shutil" and name == "move")
+            or (name in ("rmtree", "TemporaryDirectory") and not cleans)
+            or (name == "rename" and owner not in ("", "os", "held_files"))
+            or (name == "replace" and owner not in ("", "os", "dataclasses") and arguments == 1 and len(node.args) == 1)
+        ):
+            yield node.lineno, ast.unparse(node)
+
+
+def test_every_rename_waits_for_another_program_that_holds_the_file():
+    found = [
+        f"{path.relative_to(ROOT)}:{line} {source}"
+        for path in modules("core", "workbench")
+        if path != ROOT / "core" / "held_files.py"
+        for line, source in unguarded(syntax_tree(path))
+    ]
+    assert found == [], "call core.held_files, or say ignore_errors where what is left does no harm"
+
+
+@pytest.mark.parametrize(
+    ("line", "seen"),
+    [
+        ("beside.replace(path)", True),
+        ("(a / 'b').replace(a / 'c')", True),
+        ("path.rename(to)", True),
+        ("os.replace(a, b)", True),
+        ("os.rename(a, b)", True),
+        ("shutil.move(a, b)", True),
+        ("shutil.rmtree(a)", True),
+        ("tempfile.TemporaryDirectory()", True),
+        ("rename(a, b)", False),
+        ("text.replace('a', 'b')", False),
+        ("when.replace(microsecond=0)", False),
+        ("replace(project, name='a')", False),
+        ("shutil.rmtree(a, ignore_errors=True)", False),
+        ("tempfile.TemporaryDirectory(ignore_cleanup_errors=True)", False),
+    ],
+)
+def test_a_rename_past_the_rule_is_seen(line, seen):
+    assert bool(list(unguarded(ast.parse(line)))) == seen
+
+
+def test_one_function_says_how_many_cores_there_are():
+    found = [
+        f"{path.relative_to(ROOT)}:{node.lineno}"
+        for path in modules("core", "workbench")
+        for node in nodes(path)
+        if isinstance(node, ast.Call) and called(node) in ("cpu_count", "process_cpu_count", "sched_getaffinity")
+        if path != ROOT / "core" / "threads.py"
+    ]
+    assert found == [], "call core.threads.cores: an administrator may leave this process some of them only"

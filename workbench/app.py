@@ -22,6 +22,7 @@ from PySide6.QtWidgets import QApplication
 from core import __version__
 from core.code_cache import code_cache, note_on_cache
 from core.errors import InputError
+from core.held_files import PATIENCE_S
 from core.translations import PSEUDO, language, languages, preferred
 from workbench.language import choose, text_of, tr
 from workbench.settings import THEMES, AppSettings
@@ -32,6 +33,9 @@ if TYPE_CHECKING:
     from workbench.bench import Bench
     from workbench.main_window import MainWindow
     from workbench.pages.project.double_click import Outcome
+
+WINDOW_PATIENCE_S = 0.2
+"""How long in s the window waits for a file that another program holds: more would be seen as a standstill."""
 
 
 class Application(QApplication):
@@ -108,6 +112,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
         return _associate(double_click.install if given.install_desktop else double_click.uninstall)
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C in the terminal ends it like a crash: the autosave is there
+    PATIENCE_S.set(WINDOW_PATIENCE_S)
     app = Application(sys.argv[:1])
     settings = AppSettings()
     apply_colours(app, given.theme or settings.theme)

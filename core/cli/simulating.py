@@ -207,7 +207,7 @@ def _sample(progress: Progress, *, quick: bool) -> Iterator[Path]:
         yield sample_set(progress)
         return
     scenario = replace(sample_scenario(), scale=_QUICK_SCALE, frames=_QUICK_FRAMES)
-    with tempfile.TemporaryDirectory() as folder:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         path = Path(folder) / "sample"
         simulate_set(scenario, path, progress)
         yield path

@@ -4,15 +4,19 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import glob
 import os
 import secrets
 import shutil
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 
+from core import held_files
 from core.errors import InputError
+from core.held_files import HeldOpen, is_held, remove_tree, rename
 from core.messages import Message, plain
 
 ANOTHER_OUT = Message("advice.another_out", "choose another folder with --out")
@@ -21,6 +25,19 @@ _FREE_SPACE = Message("advice.free_space", "free some space or choose another fo
 _ANOTHER_FOLDER = Message("advice.choose_another_folder", "choose another folder")
 _NO_PERMISSION = Message("file.no_permission", "there is no permission to write here")
 _FILE_IN_THE_WAY = Message("file.file_for_folder", "a file stands where a folder is needed")
+
+_HELD_OPEN = (
+    Message("file.held_open", "another program holds it open"),
+    Message("advice.close_elsewhere", "close it in the other program, then try again"),
+)
+_TOO_LONG = (
+    Message("file.path_too_long", "its name or its path is longer than this system takes"),
+    Message("advice.shorter_path", "choose a folder with a shorter path"),
+)
+_LONGEST_ON_WINDOWS = 248
+"""Characters of a path from which Windows, unless long paths are switched on, calls a folder or a file not found."""
+_NOT_FOUND, _NAME_TOO_LONG = 3, 206
+"""Windows: ERROR_PATH_NOT_FOUND and ERROR_FILENAME_EXCED_RANGE."""
 
 _REASONS = {
     errno.ENOSPC: (Message("file.disk_full", "the disk is full"), _FREE_SPACE),
@@ -73,10 +90,10 @@ def write_beside(path: Path, put: Callable[[Path], None]) -> None:
     """Have `put` write a new file beside `path`, and rename it to `path` when it is whole; raises as `write_bytes`."""
     if not path.name:
         raise cannot_write(path, IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR)))
-    beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
+    beside = beside_of(path)
     try:
         put(beside)
-        beside.replace(path)
+        rename(beside, path)
     except BaseException as error:
         with contextlib.suppress(OSError):
             beside.unlink()
@@ -93,9 +110,43 @@ def write_text(path: Path, text: str, *, sync: bool = True) -> None:
 def remove(path: Path) -> None:
     """Remove a file, if it is there; InputError if it cannot be."""
     try:
-        path.unlink(missing_ok=True)
+        held_files.remove(path)
     except OSError as error:
         raise cannot_write(path, error) from error
+
+
+_LONGEST_NAME = 32
+"""Characters of a name for what is not whole yet; more only if the whole one's has more: so it is seldom too long."""
+
+
+def beside_of(path: Path) -> Path:
+    """A new name beside `path` for what is to become it; what a killed program leaves is known by it."""
+    return path.with_name(f".{_stem(path.name)}.{secrets.token_hex(4)}.part")
+
+
+def _stem(name: str) -> str:
+    """What such a name keeps of `name`."""
+    added = len("..12345678.part")
+    return name[: max(len(name), _LONGEST_NAME) - added]
+
+
+@contextmanager
+def folder_beside(to: Path) -> Iterator[Path]:
+    """Make a folder beside `to` to be filled, then renamed to it; it goes in the end, with all that is left in it.
+
+    Raises
+    ------
+    InputError
+        For every OSError: nothing can be written there.
+    """
+    beside = beside_of(to)
+    try:
+        beside.mkdir(parents=True)
+        yield beside
+    except OSError as error:
+        raise cannot_write(to, error) from error
+    finally:
+        remove_tree(beside, leave=True)
 
 
 def make_folder(path: Path) -> Path:
@@ -133,10 +184,20 @@ def vanished(folder: Path) -> InputError:
 
 def cannot_write(path: Path, error: OSError) -> InputError:
     """The sentence for a file or folder that could not be written."""
-    what, todo = _REASONS.get(error.errno or 0, (plain(error.strerror or str(error)), ANOTHER_OUT))
+    if isinstance(error, HeldOpen):
+        path = Path(error.filename2 or error.filename or path)  # of several files the one that is held
+    known = _HELD_OPEN if is_held(error) else _TOO_LONG if _is_too_long(path, error) else _REASONS.get(error.errno or 0)
+    what, todo = known or (plain(error.strerror or str(error)), ANOTHER_OUT)
     return InputError(
         Message("file.cannot_be_written", "cannot be written, because {what}", what=what), where=path, todo=todo
     )
+
+
+def _is_too_long(path: Path, error: OSError) -> bool:
+    number = getattr(error, "winerror", None)
+    told = max(len(str(name)) for name in (path, error.filename or "", error.filename2 or ""))
+    hidden = number == _NOT_FOUND and told >= _LONGEST_ON_WINDOWS
+    return error.errno == errno.ENAMETOOLONG or number == _NAME_TOO_LONG or hidden
 
 
 QUIET_S = 15 * 60.0
@@ -154,7 +215,7 @@ def remove_leftovers(folder: Path, quiet_s: float = QUIET_S) -> None:
         Leave alone what has changed within so many seconds: another program may be at it.
     """
     try:
-        found = [path for path in folder.parent.glob(f".{folder.name}.*") if path.is_dir()]
+        found = [path for path in folder.parent.glob(f".{glob.escape(_stem(folder.name))}.*") if path.is_dir()]
     except OSError:
         return  # nothing there, or nothing to be seen
     for path in found:

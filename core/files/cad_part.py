@@ -59,7 +59,7 @@ def read_corners(path: Path, chord_mm: float, progress: Progress = silent) -> Ar
             ),
             where=path,
         )
-    with tempfile.TemporaryDirectory(prefix="trisect-step-") as folder:
+    with tempfile.TemporaryDirectory(prefix="trisect-step-", ignore_cleanup_errors=True) as folder:
         glb = Path(folder) / "part.glb"
         _tessellate(path, glb, chord_mm, progress)
         return _corners(glb)

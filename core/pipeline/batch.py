@@ -10,7 +10,7 @@ from concurrent.futures import FIRST_COMPLETED, Executor, Future, ThreadPoolExec
 from pathlib import Path
 
 from core.errors import Cancelled, InputError, NoThickness
-from core.files.atomic import cannot_write, make_folder
+from core.files.atomic import make_folder, remove
 from core.files.reading import cannot_read, refused_path, resolved
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RIG
@@ -85,7 +85,7 @@ def run_batch(
     """
     places = _places(sets, resolved(make_folder(out)))
     stop = resolved(out) / STOP
-    _remove(stop)
+    remove(stop)
     chosen = options or Options()
     near = {number: _UnderWay() for number in range(len(places))} if isinstance(executor, ThreadPoolExecutor) else {}
     futures = [
@@ -245,7 +245,7 @@ def _stop(futures: Sequence[Future[SetResult]], stop: Path) -> None:
         future.cancel()
     wait(futures, _LET_END_S)
     with contextlib.suppress(InputError):
-        _remove(stop)
+        remove(stop)
 
 
 def _result(future: Future[SetResult], folder: Path, out: Path) -> SetResult:
@@ -267,13 +267,6 @@ def _result(future: Future[SetResult], folder: Path, out: Path) -> SetResult:
 def _fault(error: Exception) -> Message:
     kind, reason = type(error).__name__, str(error)
     return Message("set.fault", "an error in the program: {kind}: {reason}", kind=kind, reason=reason[:_LONGEST_REASON])
-
-
-def _remove(stop: Path) -> None:
-    try:
-        stop.unlink(missing_ok=True)
-    except OSError as error:
-        raise cannot_write(stop, error) from error
 
 
 def _stopped_by(stop: Path, told: Progress) -> Progress:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import closing
 from dataclasses import asdict, replace
@@ -14,8 +13,9 @@ import numpy as np
 
 from core.calibrate.change import displaced_fan
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, write_bytes, write_text
+from core.files.atomic import folder_beside, write_bytes, write_text
 from core.files.pictures import write_picture
+from core.held_files import remove_tree, rename
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane, Pose
 from core.progress import Progress, silent, steps
@@ -79,14 +79,10 @@ def simulate_set(
             Message("simulate.no_place_for_truth", "this is where the truth would go, but it is something else"),
             where=beside_it,
         )
-    make_folder(folder.parent)
-    try:
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
-            made, hidden = Path(beside) / "set", Path(beside) / "truth"
-            _render(scenario, rig or scenario_rig(scenario), made, hidden, progress, calibration_from)
-            _put_in_place(made, hidden, folder)
-    except OSError as error:
-        raise cannot_write(folder, error) from error
+    with folder_beside(folder) as beside:
+        made, hidden = beside / "set", beside / "truth"
+        _render(scenario, rig or scenario_rig(scenario), made, hidden, progress, calibration_from)
+        _put_in_place(made, hidden, folder)
 
 
 def _render(scenario: Scenario, rig: Rig, made: Path, hidden: Path, progress: Progress, earlier: Path | None) -> None:
@@ -282,9 +278,8 @@ def _copy_calibration(earlier: Path, made: Path, rig: Rig) -> tuple[dict[str, Po
 def _put_in_place(made: Path, hidden: Path, folder: Path) -> None:
     """Move set and truth to their places; the set last, so that a set that is there always has its truth."""
     beside = truth_folder(folder)
-    if beside.exists():
-        shutil.rmtree(beside)
+    remove_tree(beside)
     if folder.exists():
         folder.rmdir()
-    hidden.rename(beside)
-    made.rename(folder)
+    rename(hidden, beside)
+    rename(made, folder)

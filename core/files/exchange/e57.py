@@ -7,8 +7,6 @@ uncertainty of each point's depth in mm, and the scan's name and description say
 from __future__ import annotations
 
 import hashlib
-import secrets
-from contextlib import suppress
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -18,7 +16,7 @@ import numpy as np
 from pye57 import libe57
 
 from core.errors import InputError
-from core.files.atomic import cannot_write
+from core.files.atomic import write_beside
 from core.messages import Message
 from core.scan.surface.cloud import Cloud
 
@@ -52,18 +50,15 @@ def write_e57(path: Path, cloud: Cloud, at: datetime, *, name: str = "", calibra
     """
     if not len(cloud):
         raise InputError(Message("file.empty_cloud", "the cloud has no point, and E57 takes none without"), where=path)
-    beside = path.with_name(f".{path.name}.{secrets.token_hex(4)}.part")
-    try:
+
+    def put(beside: Path) -> None:
         beside.touch(exist_ok=False)  # says what is wrong with the place, which the library does not
-        _write(beside, cloud, at, name, calibration_id)
-        beside.replace(path)
-    except OSError as error:
-        raise cannot_write(path, error) from error
-    except libe57.E57Exception as error:
-        raise cannot_write(path, OSError(0, "the E57 library failed; the disk may be full")) from error
-    finally:
-        with suppress(OSError):
-            beside.unlink(missing_ok=True)
+        try:
+            _write(beside, cloud, at, name, calibration_id)
+        except libe57.E57Exception as error:
+            raise OSError(0, "the E57 library failed; the disk may be full") from error
+
+    write_beside(path, put)
 
 
 def _write(path: Path, cloud: Cloud, at: datetime, name: str, calibration_id: str) -> None:

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import secrets
 import shutil
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write
+from core.files.atomic import folder_beside
 from core.files.project.folder import AUTOSAVE, require_free
 from core.files.project.lock import LOCK
 from core.files.reading import resolved
+from core.held_files import rename
 from core.messages import Message
 from core.progress import Progress, silent, steps
 
@@ -36,19 +36,13 @@ def copy_project(folder: Path, to: Path, progress: Progress = silent) -> Path:
             where=to,
             todo=Message("advice.choose_another_folder", "choose another folder"),
         )
-    beside = to.with_name(f".{to.name}.{secrets.token_hex(4)}.part")
-    try:
-        beside.mkdir(parents=True)
+    with folder_beside(to) as beside:
         files = [path for path in sorted(folder.rglob("*")) if path.is_file() and not _left_behind(folder, path)]
         for path in steps(files, progress, "copying", len(files)):
             place = beside / path.relative_to(folder)
             place.parent.mkdir(parents=True, exist_ok=True)
             shutil.copyfile(path, place)  # the content alone: the copy need not be read-only, too
-        beside.rename(to)
-    except OSError as error:
-        raise cannot_write(to, error) from error
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        rename(beside, to)
     return to
 
 

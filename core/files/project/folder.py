@@ -28,7 +28,7 @@ from itertools import count
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, vanished, write_bytes, write_text
+from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, remove, vanished, write_bytes, write_text
 from core.files.project.audit import Signed, What, append
 from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
@@ -193,8 +193,8 @@ def remove_autosave(folder: Path) -> None:
     """Remove the autosaved state, if there is one; InputError if it cannot be removed."""
     path = folder / AUTOSAVE
     try:
-        path.unlink(missing_ok=True)
-    except OSError as error:
+        remove(path)
+    except InputError as error:
         raise _unsaved(path, error) from error
 
 
@@ -327,7 +327,7 @@ def _keep(folder: Path, path: Path, keep_s: float) -> None:
     copy = folder / f"project-{newest + 1:05d}-{saved:%Y%m%d-%H%M%S}.json"
     write_bytes(copy, data, sync=False)
     for _, oldest in sorted({**numbered, newest + 1: copy}.items())[:-KEPT]:
-        oldest.unlink(missing_ok=True)
+        remove(oldest)
 
 
 def _numbered(folder: Path) -> dict[int, Path]:

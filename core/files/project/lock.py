@@ -30,6 +30,7 @@ from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.running import is_running
 from core.files.tables import TIME_WORDS, Time
+from core.held_files import remove, rename
 from core.messages import Message
 
 LOCK = ".lock.json"
@@ -105,7 +106,7 @@ class ProjectLock:
         holder = read_holder(self.folder)
         if holder is not None and holder.key == self.holder.key:
             with contextlib.suppress(OSError):
-                (self.folder / LOCK).unlink()
+                remove(self.folder / LOCK)
         if self._handle >= 0:
             os.close(self._handle)
             self._handle = -1
@@ -175,7 +176,7 @@ def _take(folder: Path, *, take_over: bool) -> ProjectLock:
         if before is not None and not take_over:
             raise ProjectInUse(before, folder)
         if take_over or path.exists():
-            beside.replace(path)
+            rename(beside, path)
         else:
             _put_if_none(beside, path)
         now = read_holder(folder)
@@ -236,9 +237,9 @@ def _put_if_none(beside: Path, path: Path) -> None:
     except FileExistsError:
         raise
     except OSError:
-        beside.replace(path)
+        rename(beside, path)
     else:
-        beside.unlink()
+        remove(beside)
 
 
 def _is_left_behind(path: Path, holder: LockOwner) -> bool:

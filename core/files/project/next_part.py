@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import shutil
-import tempfile
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder
+from core.files.atomic import folder_beside, make_folder
 from core.files.project.calibration_store import FOLDER as CALIBRATIONS
 from core.files.project.data import Project, ProjectFile, Sources
 from core.files.project.folder import create_project, read_project, require_free, source_folder
@@ -18,6 +17,7 @@ from core.files.project.people import Person, read_rules, write_rules
 from core.files.project.report_template import logo_beside
 from core.files.reading import resolved
 from core.files.results.nominal_surface import nominal_names
+from core.held_files import rename
 from core.inspect.plan.feature_spec import FaceAt, Polygon
 from core.messages import Message
 from core.progress import Progress, silent, steps
@@ -57,20 +57,16 @@ def next_part(
         )
     file = read_project(folder)
     copied = list(_copied(folder, file.project))
-    make_folder(to.parent)
-    try:
-        with tempfile.TemporaryDirectory(prefix=f".{to.name}.", dir=to.parent) as beside:
-            made = make_folder(Path(beside) / to.name)
-            create_project(made, _renewed(folder, file, serial.strip(), operator.strip(), to.name))
-            for path in steps(copied, progress, "copying", len(copied)):
-                place = made / path.relative_to(resolved(folder))
-                place.parent.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(path, place)
-            if (rules := read_rules(folder)).people or rules.reasons:
-                write_rules(made, rules, by)
-            made.rename(to)
-    except OSError as error:
-        raise cannot_write(to, error) from error
+    with folder_beside(to) as beside:
+        made = make_folder(beside / to.name)
+        create_project(made, _renewed(folder, file, serial.strip(), operator.strip(), to.name))
+        for path in steps(copied, progress, "copying", len(copied)):
+            place = made / path.relative_to(resolved(folder))
+            place.parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(path, place)
+        if (rules := read_rules(folder)).people or rules.reasons:
+            write_rules(made, rules, by)
+        rename(made, to)
     return to
 
 

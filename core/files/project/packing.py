@@ -9,7 +9,6 @@ from __future__ import annotations
 import hashlib
 import os
 import re
-import secrets
 import shutil
 import tempfile
 import zipfile
@@ -24,7 +23,7 @@ from pydantic import Field
 
 from core import __version__
 from core.errors import InputError
-from core.files.atomic import cannot_write, write_beside
+from core.files.atomic import folder_beside, write_beside
 from core.files.complaints import checked_json
 from core.files.json_text import to_json
 from core.files.limits import TEXT_BYTES, check_bytes, check_file
@@ -41,6 +40,7 @@ from core.files.recording.recording_set import CHECK, PARTS
 from core.files.recording.rig import Table
 from core.files.results.nominal_surface import nominal_names
 from core.files.tables import TIME_WORDS, Time
+from core.held_files import rename
 from core.messages import Message
 from core.progress import Progress, silent, steps
 
@@ -105,7 +105,7 @@ def pack_project(folder: Path, to: Path, progress: Progress = silent) -> Packed:
     packed, outside = _with_all_within(folder, file)
     files |= outside
     _check_names(files, folder)
-    with tempfile.TemporaryDirectory() as beside:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as beside:
         if packed != file:
             files |= _rewritten(folder, Path(beside), file, packed)
         return _pack(files, to, progress)
@@ -153,22 +153,16 @@ def unpack_project(path: Path, to: Path, progress: Progress = silent) -> Path:
     """
     require_free(to)
     check_file(path)
-    beside = to.with_name(f".{to.name}.{secrets.token_hex(4)}.part")
-    try:
-        with _opened(path) as archive:
-            contents = _contents(archive, path)
-            _check_room(sum(one.bytes for one in contents.files.values()), to)
-            beside.mkdir(parents=True)
+    with _opened(path) as archive:
+        contents = _contents(archive, path)
+        _check_room(sum(one.bytes for one in contents.files.values()), to)
+        with folder_beside(to) as beside:
             for name, one in steps(contents.files.items(), progress, "unpacking", len(contents.files)):
                 place = beside / name
                 place.parent.mkdir(parents=True, exist_ok=True)
                 _take_out(archive, name, one, place, path)
-        read_project(beside)
-        beside.rename(to)
-    except OSError as error:
-        raise cannot_write(to, error) from error
-    finally:
-        shutil.rmtree(beside, ignore_errors=True)
+            read_project(beside)
+            rename(beside, to)
     return to
 
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from core.files.atomic import cannot_write
 from core.files.linking import link
 from core.files.recording.set_listing import further_exposures, pictures_in
+from core.held_files import rename
 from core.progress import Progress, silent
 
 _OFF = "_off"
@@ -30,7 +31,7 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
     try:
         new = _renamed(pictures_in(recorded), taken)
         for path, name in new.items():
-            path.rename(path.with_name(name))
+            rename(path, path.with_name(name))
         further = further_exposures(before)
         for number, path in enumerate(old, start=1):
             for one in (path, *further.get(path, {}).values()):

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import secrets
-import shutil
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -13,7 +11,7 @@ from typing import Any
 
 from core import __version__
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, remove_leftovers, write_bytes
+from core.files.atomic import beside_of, cannot_write, make_folder, remove_leftovers, write_bytes
 from core.files.json_text import write_json
 from core.files.linking import Way, link
 from core.files.reading import MISSING, read_bytes, read_json, resolved
@@ -21,6 +19,7 @@ from core.files.recording.import_plan import ImportPlan, Where
 from core.files.recording.recording_set import CHECK, PARTS, RIG
 from core.files.recording.rig import read_rig
 from core.files.recording.set_listing import check_sizes, pictures_in
+from core.held_files import remove_tree, rename
 from core.messages import Message, as_json, plural_message
 from core.progress import Progress, silent
 
@@ -67,7 +66,7 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     try:
         for part, pictures in parts.items():
             remove_leftovers(target / part)
-            beside = target / f".{part}.{secrets.token_hex(4)}"
+            beside = beside_of(target / part)
             beside.mkdir()
             made[beside] = target / part
             for one in pictures:
@@ -79,12 +78,12 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
         for beside, place in made.items():
             if place.is_dir():
                 place.rmdir()  # empty: looked at before
-            beside.rename(place)
+            rename(beside, place)
     except OSError as error:
         raise cannot_write(target, error) from error
     finally:
         for beside in made:
-            shutil.rmtree(beside, ignore_errors=True)
+            remove_tree(beside, leave=True)
     if rig is not None:
         write_bytes(target / RIG, read_bytes(rig))
     counts: Counter[Way] = Counter(ways.values())

@@ -9,7 +9,7 @@ from typing import get_args
 
 from core.acquire.source import Step
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_inner_folder, write_text
+from core.files.atomic import make_inner_folder, remove, write_text
 from core.files.reading import read_json
 from core.files.recording.set_listing import pictures_in
 
@@ -34,10 +34,7 @@ def note_recording(project: Path, step: Step, folder: Path) -> None:
 
 def forget_recording(project: Path) -> None:
     """The recording is part of the project, or is not wanted; InputError if the note cannot be removed."""
-    try:
-        (project / NOTE).unlink(missing_ok=True)
-    except OSError as error:
-        raise cannot_write(project / NOTE, error) from error
+    remove(project / NOTE)
 
 
 def unfinished_recording(project: Path) -> Unfinished | None:

@@ -8,6 +8,7 @@ from typing import Any, Protocol
 
 from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture, WaitingSource
 from core.files.pictures import write_picture
+from core.held_files import rename
 from core.messages import Message
 from core.pipeline.live.commands import Command, LiveRequest
 from core.pipeline.live.display import Display
@@ -147,7 +148,7 @@ class LiveContext:
             aside = self.request.folder / DISCARDED
             aside.mkdir(exist_ok=True)
             for path in there:
-                path.replace(aside / path.name)
+                rename(path, aside / path.name)
         return bool(there)
 
 

@@ -86,7 +86,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
         If a file of the project is damaged, or the rig cannot measure a block.
     """
     text = toml_text({**rig_tables(rig_in_its_air(project)), "plan": _known(folder, project)})
-    with tempfile.TemporaryDirectory() as place:
+    with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         file = Path(place) / RIG
         write_text(file, text, sync=False)
         foretold = foretell_rig(file, language, progress, sigma_cut_mm=project.options.sigma_cut_mm)

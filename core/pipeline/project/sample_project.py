@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import cannot_write, make_folder, remove_leftovers
+from core.files.atomic import folder_beside, make_folder, remove_leftovers
 from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import create_project, project_from_set
+from core.held_files import rename
 from core.messages import Message
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.whole import measure_all
@@ -38,14 +38,10 @@ def sample_project(folder: Path, speaks: str = "en", progress: Progress = silent
         )
     remove_leftovers(folder)
     unmeasured = sample_to_measure(speaks, progress)
-    make_folder(folder.parent)
-    try:
-        with tempfile.TemporaryDirectory(prefix=f".{folder.name}.", dir=folder.parent) as beside:
-            made = make_folder(Path(beside) / "project")
-            create_project(made, finished_project(made, unmeasured, progress))
-            made.rename(folder)
-    except OSError as error:
-        raise cannot_write(folder, error) from error
+    with folder_beside(folder) as beside:
+        made = make_folder(beside / "project")
+        create_project(made, finished_project(made, unmeasured, progress))
+        rename(made, folder)
     return folder
 
 

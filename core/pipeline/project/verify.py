@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import write_bytes
+from core.files.atomic import remove, write_bytes
 from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
 from core.files.project.keys import changed, rests_on
@@ -58,10 +58,10 @@ def noting_results(folder: Path, *, reported: bool = False) -> Iterator[None]:
         told = _told_of(read_trail(folder).entries)
         if _hashes(folder) != (dict(told.files) if told else {}):
             note_results(folder)
-        mark.unlink(missing_ok=True)
+        remove(mark)
         raise
     note_results(folder, reported=reported)
-    mark.unlink(missing_ok=True)
+    remove(mark)
 
 
 def note_results(folder: Path, *, reported: bool = False) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import time
 from collections.abc import Collection, Iterator, Mapping
 from contextlib import contextmanager
@@ -24,6 +23,7 @@ from core.files.recording.recording_set import RecordingSet, require_outside
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.run_file import RunRecord, read_run, write_run
+from core.held_files import remove, remove_tree, rename
 from core.memory import give_back
 from core.messages import Command, Message
 from core.model import Camera
@@ -153,7 +153,7 @@ class Workspace:
         folder = self.out / RIDGES
         try:
             for old in folder.glob("*-ridge.png"):
-                old.unlink()
+                remove(old)
             if folder.is_dir() and not any(folder.iterdir()):
                 folder.rmdir()
         except OSError as error:
@@ -218,7 +218,7 @@ def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> Non
     new = {name for name in FILES if (beside / FILES[name]).exists()}
     same = {name for name in new if _same(beside / FILES[name], out / FILES[name])}
     for name in same:
-        (beside / FILES[name]).unlink()
+        (beside / FILES[name]).unlink()  # made just now
     old = {name for name in {*new, *gone} - same if (out / FILES[name]).exists()}
     old |= {one for name in old for one in _REST_ON.get(name, ())} - same
     run = out / FILES["run"]
@@ -238,15 +238,15 @@ def made_beside(out: Path) -> Iterator[Path]:
         If it cannot be made.
     """
     beside = out / NEW_FOLDER
-    shutil.rmtree(beside, ignore_errors=True)  # of a program that was killed
     try:
-        beside.mkdir(exist_ok=True)
+        remove_tree(beside)  # of a program that was killed; what is in it would be taken for new
+        beside.mkdir()
     except OSError as error:
         raise cannot_write(out, error) from error
     try:
         yield beside
     finally:
-        shutil.rmtree(beside, ignore_errors=True)
+        remove_tree(beside, leave=True)
 
 
 def put_results(out: Path, beside: Path | None, gone: Collection[str]) -> None:
@@ -262,10 +262,10 @@ def put_results(out: Path, beside: Path | None, gone: Collection[str]) -> None:
     """
     try:
         for name in sorted(gone, key=CLEARED.index):
-            (out / FILES[name]).unlink(missing_ok=True)
+            remove(out / FILES[name])
         for name in _PLACED if beside is not None else ():
             if beside is not None and (beside / FILES[name]).exists():
-                (beside / FILES[name]).replace(out / FILES[name])
+                rename(beside / FILES[name], out / FILES[name])
     except OSError as error:
         raise cannot_write(out, error) from error
 
