@@ -35,7 +35,15 @@ READ_BY = {
 
 Versions of libraries count for every proof; translations where windows are proven: no number depends on a text.
 """
-PACKED_BY = ("pyproject.toml", "constraints", "locks/", "bundle/", ".ci/bare_root", "hatch_build.py", "resources/desktop/")
+PACKED_BY = (
+    "pyproject.toml",
+    "constraints",
+    "locks/",
+    "bundle/",
+    ".ci/bare_root",
+    "hatch_build.py",
+    "resources/desktop/",
+)
 """How the paths of files begin that decide what is packed and how it is tried, beside the compiled loops."""
 
 
