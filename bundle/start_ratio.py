@@ -10,7 +10,7 @@ import time
 from pathlib import Path
 
 BUILD = Path(__file__).parents[1] / "build" / "bundle"
-TURNS = 5
+TURNS = 3
 """Of each; one more before them, in which files get into the disk's memory, does not count."""
 AT_MOST = 1.5
 """The frozen window may take so many times as long."""
