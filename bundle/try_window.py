@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import QRect, QTimer
+from PySide6.QtGui import QImage
 
 import workbench.app as program
 from workbench.main_window import MainWindow
@@ -22,8 +23,10 @@ LOOK_MS = 50
 """How often it is looked whether what is waited for has come."""
 PATIENCE_S = 240.0
 """Longer than the sample takes on a slow machine of two cores."""
-DRAWN = 0.01
-"""Share of the picture's points that are not its background, at least, where a cloud is seen."""
+DRAWN = 0.05
+"""Share of the view's middle that is coloured, at least, where a cloud is seen: plates and scales are not so much."""
+COLOURED = 60
+"""Grey levels between the strongest and the weakest colour of a point that is coloured."""
 
 Wanted = Callable[[], object]
 failures: list[str] = []
@@ -65,7 +68,6 @@ def visitor(window: MainWindow) -> Iterator[tuple[str, Wanted]]:
         alive(f"child {pid} runs", sys.platform != "linux" or Path(f"/proc/{pid}").exists())
     bad = [f"{notice.text} {notice.details}" for notice in notices if notice.level.name in ("ERROR", "WARNING")]
     alive(f"nothing is complained of: {bad}", not bad)
-    window.grab().save(os.environ.get("TRISECT_SHOT", "window.png"))
 
 
 def is_drawn(view: SceneView) -> bool:
@@ -73,8 +75,12 @@ def is_drawn(view: SceneView) -> bool:
     state = view.state()
     if not view.isVisible() or state.kind != "embedded" or not state.points or not state.complete:
         return False
-    picture = view.picture()
-    return float(np.mean(np.any(picture != picture[0, 0], axis=-1))) > DRAWN
+    shown = view.screen().grabWindow(view.window().winId())  # of the screen: Qt's own pictures leave OpenGL out
+    shown.save(os.environ.get("TRISECT_SHOT", "window.png"))
+    corner = view.mapTo(view.window(), view.rect().center()) - view.rect().center() / 2
+    image = shown.copy(QRect(corner, view.size() / 2)).toImage().convertToFormat(QImage.Format.Format_RGB32)
+    pixels = np.frombuffer(image.constBits(), np.uint8).reshape(image.height(), image.width(), 4)[..., :3]
+    return float(np.mean(np.ptp(pixels, axis=-1) > COLOURED)) > DRAWN
 
 
 def alive(what: str, holds: bool) -> None:
