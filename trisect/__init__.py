@@ -13,28 +13,7 @@ done and total that may raise `Cancelled`.
 The method is that of Sun et al., Sensors 2023, 23, 13, doi:10.3390/s23010013, with all frames of a scan tied together.
 """
 
-from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.change import Stability
-from core.calibrate.results import CameraCalibration, FanCalibration
-from core.errors import Cancelled, InputError
-from core.files.recording.options import Options
-from core.image.crossings.crossing import Crossing
-from core.image.stripes.centreline import Centreline
-from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
-from core.image.targets.target_view import TargetView
-from core.inspect.characteristic import Characteristic as Length
-from core.inspect.plan.feature_spec import FeatureSpec as Feature
-from core.inspect.results import GaugeResult as Gauge
-from core.inspect.uncertainty.part import Part
-from core.model import Camera, Fan, LightPlane
-from core.pipeline.project.opened import open_project
-from core.scan.surface.cloud import Cloud
-from core.scan.surface.fused_surface import Mesh
-from trisect.calibration import calibrate_camera, calibrate_fan
-from trisect.folders import open_set, read_cloud, report, run, simulate, write_cloud
-from trisect.inspection import measure_features, measure_thickness
-from trisect.pictures import extract_stripes, find_crossings, find_target, read_picture
-from trisect.scan import SolvedScan, build_mesh, fuse, solve_scan, triangulate
+from typing import TYPE_CHECKING
 
 __all__ = [
     "BlackSquare",
@@ -81,3 +60,19 @@ __all__ = [
     "triangulate",
     "write_cloud",
 ]
+
+if TYPE_CHECKING:
+    from trisect.promised import *
+else:
+
+    def __getattr__(name: str) -> object:
+        """Import what is asked for: `trisect.start` looks whose `core` this is before anything imports it."""
+        if name not in __all__:
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from trisect import promised
+
+        return getattr(promised, name)
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)

@@ -11,6 +11,7 @@ import pytest
 import trisect
 from core.model import Camera
 from tests.simulated import CUT
+from trisect import promised
 
 PROMISED = {
     "read_picture", "extract_stripes", "find_crossings", "find_target", "calibrate_camera", "calibrate_fan",
@@ -26,7 +27,9 @@ OWN = [getattr(trisect, name) for name in PROMISED if name[0].islower() and name
 
 
 def test_every_promised_name_is_there_and_no_other():
-    assert set(trisect.__all__) == PROMISED
+    assert set(trisect.__all__) == set(promised.__all__) == set(dir(trisect)) == PROMISED
+    with pytest.raises(AttributeError, match="no attribute 'nothing'"):
+        trisect.__getattr__("nothing")
     assert all(hasattr(trisect, name) for name in PROMISED)
 
 

@@ -1,0 +1,70 @@
+"""Everything that `trisect` exports, imported: it looks here when a name is asked for first."""
+
+from core.calibrate.board_shape import BoardTolerance
+from core.calibrate.change import Stability
+from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import Cancelled, InputError
+from core.files.recording.options import Options
+from core.image.crossings.crossing import Crossing
+from core.image.stripes.centreline import Centreline
+from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
+from core.image.targets.target_view import TargetView
+from core.inspect.characteristic import Characteristic as Length
+from core.inspect.plan.feature_spec import FeatureSpec as Feature
+from core.inspect.results import GaugeResult as Gauge
+from core.inspect.uncertainty.part import Part
+from core.model import Camera, Fan, LightPlane
+from core.pipeline.project.opened import open_project
+from core.scan.surface.cloud import Cloud
+from core.scan.surface.fused_surface import Mesh
+from trisect.calibration import calibrate_camera, calibrate_fan
+from trisect.folders import open_set, read_cloud, report, run, simulate, write_cloud
+from trisect.inspection import measure_features, measure_thickness
+from trisect.pictures import extract_stripes, find_crossings, find_target, read_picture
+from trisect.scan import SolvedScan, build_mesh, fuse, solve_scan, triangulate
+
+__all__ = [
+    "BlackSquare",
+    "BoardTolerance",
+    "Camera",
+    "CameraCalibration",
+    "Cancelled",
+    "Centreline",
+    "Charuco",
+    "Checkerboard",
+    "CircleGrid",
+    "Cloud",
+    "Crossing",
+    "Fan",
+    "FanCalibration",
+    "Feature",
+    "Gauge",
+    "InputError",
+    "Length",
+    "LightPlane",
+    "Mesh",
+    "Options",
+    "Part",
+    "SolvedScan",
+    "Stability",
+    "TargetView",
+    "build_mesh",
+    "calibrate_camera",
+    "calibrate_fan",
+    "extract_stripes",
+    "find_crossings",
+    "find_target",
+    "fuse",
+    "measure_features",
+    "measure_thickness",
+    "open_project",
+    "open_set",
+    "read_cloud",
+    "read_picture",
+    "report",
+    "run",
+    "simulate",
+    "solve_scan",
+    "triangulate",
+    "write_cloud",
+]
