@@ -134,15 +134,20 @@ check: $(READY)
 docs: $(READY)            ## the manual as pages for a browser, in build/manual; dead links are errors
 	$(BIN)/sphinx-build -n -W --keep-going -q -b html resources/manual build/manual
 
-wheel: compile            ## build the wheel, with compiled loops in it, and try it in an empty environment: it compiles nothing
-	rm -rf build/wheel core/saved_code && mkdir -p build/wheel core/saved_code
+# A measurement in an empty environment $(1) with the wheel $(2), and the machine code that it had to make in `cache`.
+TRY = $(PYTHON) -m venv build/wheel/$(1) && \
+	build/wheel/$(1)/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt build/wheel/$(2) && \
+	cd build/wheel/$(1) && NUMBA_CACHE_DIR=cache bin/trisect demo --quick --out demo
+
+wheel: compile            ## build two wheels and try each in an empty environment: a plain one, and one for this system and Python that compiles nothing
+	rm -rf build/wheel
 	$(BIN)/trisect demo --quick --out build/wheel/first
-	cp -r "$$($(BIN)/python -c 'from core.compiled import FOLDER; print(FOLDER)')" core/saved_code/
-	$(BIN)/python -m build --wheel --outdir build/wheel . ; built=$$?; rm -rf core/saved_code; exit $$built
-	$(PYTHON) -m venv build/wheel/venv
-	build/wheel/venv/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt build/wheel/trisect-*.whl
-	cd build/wheel && NUMBA_CACHE_DIR=cache venv/bin/trisect demo --quick --out demo
-	test -z "$$(find build/wheel/cache -type f)"
+	$(BIN)/python -m build --wheel --outdir build/wheel .
+	TRISECT_SAVED_CODE="$$($(BIN)/python -c 'from core.compiled import FOLDER; print(FOLDER)')" $(BIN)/python -m build --wheel --outdir build/wheel .
+	$(call TRY,tagged,trisect-*-cp3*.whl)
+	test -z "$$(find build/wheel/tagged/cache -type f)"
+	$(call TRY,plain,trisect-*-py3-none-any.whl)
+	test -n "$$(find build/wheel/plain/cache -type f)"
 
 # What locks and bundles are made with has an environment of its own: none of it is part of the program.
 TOOLS   := build/tools/.ready
