@@ -154,7 +154,7 @@ TOOLS   := build/tools/.ready
 BUNDLE  := build/bundle
 FROZEN  := $(BUNDLE)/venv/.ready
 HASHED  := install --quiet --disable-pip-version-check --require-hashes --requirement
-COMPILE := build/lock/bin/uv pip compile --quiet --universal --python-version 3.11.5 --generate-hashes --no-emit-index-url \
+COMPILE := build/lock/bin/uv pip compile --quiet --universal --python-version 3.11 --generate-hashes --no-emit-index-url \
 	--no-annotate --no-header $(if $(UPGRADE),--upgrade)
 
 lock:                     ## versions and hashes of all that is installed, for every system; UPGRADE=1 takes newer ones
