@@ -10,8 +10,9 @@ from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera import calibration
 from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.calibrate.fan.poses.plane_pose import measure_plane_pose
+from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.image.targets import Target
 from core.image.targets.target_view import TargetView
 from core.pipeline.steps.planes_step import check_agreement
@@ -78,6 +79,7 @@ def calibrate_fan(
     angle: float | None = None,
     tolerance: BoardTolerance | None = None,
     accept_few_poses: bool = False,
+    compression: Compression = UNCOMPRESSED,
     progress: Progress = silent,
 ) -> FanCalibration:
     """Calibrate the light planes of the fixed laser by a flat target held into its light.
@@ -99,6 +101,8 @@ def calibrate_fan(
         How true the target is; None: nothing is known of it, and what is assumed is in the uncertainty.
     accept_few_poses
         Whether planes that rest on a minority of the poses are taken.
+    compression
+        Of the files, by `compression_of`.
     progress
         Called with how far it is.
 
@@ -124,7 +128,7 @@ def calibrate_fan(
     >>> len(fan.fan.planes), max(fan.rms_mm) < 0.1
     (3, True)
     """
-    poses = []
+    poses, beside = [], Beside(None, compression)
     for number, (on, off) in enumerate(pairs):
         progress("plane poses", number, len(pairs))
         name = f"pose {number + 1}"
@@ -132,7 +136,7 @@ def calibrate_fan(
         dark = None if off is None else checked_picture(off, name)
         if dark is not None:
             same_size(lit, dark, name)
-        poses.append(measure_plane_pose(name, lit, dark, target, camera.camera))
+        poses.append(measure_plane_pose(name, lit, dark, target, camera.camera, beside=beside))
     known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
     fan = fit_fan(poses, camera.camera, known, progress)
     check_agreement(fan, accept_few_poses)

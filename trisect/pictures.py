@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -14,7 +15,7 @@ from core.files import pictures
 from core.image.crossings.crossing import Crossing, cross_centrelines
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
-from core.image.stripes.noise import estimate_noise, estimate_noise_of_pair
+from core.image.stripes.noise import UNCOMPRESSED, Compression, estimate_noise, estimate_noise_of_pair
 from core.image.stripes.settings import choose_settings
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import Target, detect
@@ -53,6 +54,27 @@ def read_picture(path: str | Path, channel: Channel | None = None) -> Picture:
     ((550, 768), 'uint8')
     """
     return pictures.read_picture(Path(path), channel)
+
+
+def compression_of(path: str | Path, channel: Channel | None = None) -> Compression:
+    """Tell how far compression leaves a picture file off, by its own tables.
+
+    Parameters
+    ----------
+    path, channel
+        As `read_picture` has them.
+
+    Returns
+    -------
+    Compression
+        None for a file that is lossless or cannot be read; hand it to what takes the picture.
+
+    Examples
+    --------
+    >>> compression_of(small.frames[0]).grey
+    0.0
+    """
+    return pictures.compression_of(Path(path), channel)
 
 
 def checked_picture(picture: ArrayLike, where: str) -> Picture:
@@ -96,6 +118,7 @@ def extract_stripes(
     *,
     width_px: float | None = None,
     contrast: float | None = None,
+    compression: Compression = UNCOMPRESSED,
 ) -> tuple[Centreline, ...]:
     """Extract the centrelines of the laser's stripes in a picture, to a fraction of a pixel.
 
@@ -109,6 +132,8 @@ def extract_stripes(
     width_px, contrast
         Visible width of the stripes in px, and their height above the background in grey levels; None: chosen by the
         picture.
+    compression
+        Of the files, by `compression_of`: an array does not show it, and σ would be too small.
 
     Returns
     -------
@@ -138,12 +163,13 @@ def extract_stripes(
     white = float(np.iinfo(lit.dtype).max)
     light = lit.astype(np.float32)
     if background is None:
-        noise = estimate_noise(light)
+        noise = replace(estimate_noise(light), compression=compression)
     else:
         dark = checked_picture(background, "background")
         same_size(lit, dark, "background")
         without = dark.astype(np.float32)
-        noise = estimate_noise_of_pair(light, without).of_difference(float(np.median(without)))
+        one = replace(estimate_noise_of_pair(light, without), compression=compression)
+        noise = one.of_difference(float(np.median(without)))
         light -= without
     if (width_px is None) != (contrast is None):
         raise InputError(

@@ -10,6 +10,7 @@ from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 from core.image.targets.target_view import TargetView
 from core.inspect.characteristic import Characteristic as Length
+from core.inspect.plan.feature_kind import FeatureKind, ResultKind
 from core.inspect.plan.feature_spec import FeatureSpec as Feature
 from core.inspect.results import GaugeResult as Gauge
 from core.inspect.uncertainty.part import Part
@@ -20,7 +21,7 @@ from core.scan.surface.fused_surface import Mesh
 from trisect.calibration import calibrate_camera, calibrate_fan
 from trisect.folders import open_set, read_cloud, report, run, simulate, write_cloud
 from trisect.inspection import measure_features, measure_thickness
-from trisect.pictures import extract_stripes, find_crossings, find_target, read_picture
+from trisect.pictures import compression_of, extract_stripes, find_crossings, find_target, read_picture
 from trisect.scan import SolvedScan, build_mesh, fuse, solve_scan, triangulate
 
 __all__ = [
@@ -38,6 +39,7 @@ __all__ = [
     "Fan",
     "FanCalibration",
     "Feature",
+    "FeatureKind",
     "Gauge",
     "InputError",
     "Length",
@@ -45,12 +47,14 @@ __all__ = [
     "Mesh",
     "Options",
     "Part",
+    "ResultKind",
     "SolvedScan",
     "Stability",
     "TargetView",
     "build_mesh",
     "calibrate_camera",
     "calibrate_fan",
+    "compression_of",
     "extract_stripes",
     "find_crossings",
     "find_target",

@@ -14,6 +14,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.calibrate.rig_spread import stability_by_pictures
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline
+from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane
@@ -133,6 +134,7 @@ def solve_scan(
     stability: Stability | None = None,
     sigma_cut_mm: float = SIGMA_CUT_MM,
     row_time_us: float | None = None,
+    compression: Compression = UNCOMPRESSED,
     progress: Progress = silent,
 ) -> SolvedScan:
     """Measure a still surface by frames in which a line laser is moved over it by hand.
@@ -152,13 +154,16 @@ def solve_scan(
         Points whose depth is less sure are left out.
     row_time_us
         From one row of a picture to the next of a rolling shutter, 0 for a global one; None: not known.
+    compression
+        Of the files, by `compression_of`.
     progress
         Called with how far it is.
 
     Returns
     -------
     SolvedScan
-        Its `cloud` has n points with σ.
+        Its `cloud` has n points with σ. That the light's section has changed since the calibration is not looked for
+        here, as it is in `run`.
 
     Raises
     ------
@@ -200,9 +205,10 @@ def solve_scan(
         same_size(picture, base, _name(number))
     width, height = camera.camera.image_size
     same_size(base, np.empty((height, width), base.dtype), "camera")
-    seen = read_reference(base, FeatureOptions(camera=camera.camera))
+    looking = FeatureOptions(camera=camera.camera, compression=compression)
+    seen = read_reference(base, looking)
     named = ((_name(number), picture) for number, picture in enumerate(pictures))
-    features = extract_features(seen, named, len(pictures), FeatureOptions(camera=camera.camera), progress)
+    features = extract_features(seen, named, len(pictures), looking, progress)
     sweeps = [piece for frame in features.frames for piece in frame.centrelines]
     faults = (*faults_of(seen), *notes_on_shine(features.fan, sweeps, seen.full_scale))
     features = replace(features, notes=(*faults, *features.notes))

@@ -5,6 +5,7 @@ import json
 import subprocess
 import sys
 
+import cv2
 import numpy as np
 import pytest
 
@@ -21,9 +22,12 @@ PROMISED = {
     # what these take and give
     "BlackSquare", "BoardTolerance", "CameraCalibration", "Centreline", "Charuco", "Checkerboard", "CircleGrid",
     "Crossing", "FanCalibration", "Feature", "Options", "Part", "SolvedScan", "Stability", "TargetView",
+    "compression_of",
+    # what a package with kinds of features of its own declares
+    "FeatureKind", "ResultKind",
 }  # fmt: skip
 """A name goes from here only after a version that warns of it."""
-OWN = [getattr(trisect, name) for name in PROMISED if name[0].islower() and name != "open_project"]
+OWN = [getattr(trisect, name) for name in sorted(PROMISED) if name[0].islower() and name != "open_project"]
 
 
 def test_every_promised_name_is_there_and_no_other():
@@ -37,7 +41,9 @@ def test_every_promised_name_is_there_and_no_other():
 def test_each_function_says_what_it_takes_gives_and_refuses_with_an_example(function):
     text = inspect.getdoc(function)
     sections = ["Returns\n---", "Examples\n---", ">>> "]
-    sections += ["Raises\n---"] * (function is not trisect.find_crossings)  # which refuses nothing
+    sections += ["Raises\n---"] * (
+        function not in (trisect.find_crossings, trisect.compression_of)
+    )  # which refuse nothing
     sections += ["Parameters\n---"] * (len(inspect.signature(function).parameters) > 1)
     assert [one for one in sections if one not in text] == []
     annotations = inspect.signature(function)
@@ -173,6 +179,16 @@ def test_scans_that_cannot_be_solved_are_refused(calibrated):
         trisect.solve_scan([frame[:-1] for frame in frames], camera, fan, reference=reference[:-1])
     with pytest.raises(trisect.InputError):
         trisect.solve_scan([np.zeros_like(frame) for frame in frames], camera, fan)
+
+
+def test_compressed_pictures_have_less_sure_stripes(tmp_path):
+    v, u = np.mgrid[:80, :160]
+    noise = np.random.default_rng(2).normal(0, 0.3, v.shape)
+    picture = (30 + noise + 100 * np.exp(-0.5 * ((v - 40 - 0.1 * u) / 2.5) ** 2)).astype(np.uint8)
+    cv2.imwrite(str(tmp_path / "one.jpg"), picture, [cv2.IMWRITE_JPEG_QUALITY, 40])
+    read = trisect.read_picture(tmp_path / "one.jpg")
+    told = trisect.extract_stripes(read, compression=trisect.compression_of(tmp_path / "one.jpg"))
+    assert np.median(told[0].sigma) > np.median(trisect.extract_stripes(read)[0].sigma)
 
 
 def test_an_empty_picture_has_no_stripes_and_these_no_crossings():

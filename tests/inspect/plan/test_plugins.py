@@ -16,7 +16,7 @@ from tests.inspect.block_scan import BlockScan
 SOURCE = """
 from dataclasses import replace
 from core.inspect.features.plane import measure_plane
-from core.inspect.plan.feature_kind import FeatureKind, ResultKind
+from trisect import FeatureKind, ResultKind
 
 def measure_wear(spec, scene):
     if spec.name == "broken":
