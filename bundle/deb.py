@@ -21,7 +21,7 @@ DEPENDS = (
     "libxcb-xkb1", "libxkbcommon0", "libxkbcommon-x11-0",
 )  # fmt: skip
 """What the window and the 3D view need of the system: X11, OpenGL, fonts."""
-LEVEL = "-z6"
+LEVEL = "-z12"
 
 CONTROL = """Package: trisect
 Version: {version}
@@ -61,7 +61,7 @@ def build_deb(folder: Path, into: Path, version: str) -> Path:
     )
     _write(root / "DEBIAN" / "control", control)
     package = into / f"trisect_{version}_{architecture}.deb"
-    subprocess.run(["dpkg-deb", "--root-owner-group", "-Zxz", LEVEL, "--build", str(root), str(package)], check=True)
+    subprocess.run(["dpkg-deb", "--root-owner-group", "-Zzstd", LEVEL, "--build", str(root), str(package)], check=True)
     shutil.rmtree(root)
     return package
 
