@@ -135,7 +135,7 @@ docs: $(READY)            ## the manual as pages for a browser, in build/manual;
 	$(BIN)/sphinx-build -n -W --keep-going -q -b html resources/manual build/manual
 
 # A measurement in an empty environment $(1) with the wheel $(2), and the machine code that it had to make in `cache`.
-TRY = $(PYTHON) -m venv build/wheel/$(1) && \
+TRY = $(BIN)/python -m venv build/wheel/$(1) && \
 	build/wheel/$(1)/bin/pip install --quiet --disable-pip-version-check --constraint constraints.txt build/wheel/$(2) && \
 	cd build/wheel/$(1) && NUMBA_CACHE_DIR=cache bin/trisect demo --quick --out demo
 

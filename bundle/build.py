@@ -5,6 +5,7 @@ Run by the Python of an environment that holds the program and PyInstaller, and 
 
 from __future__ import annotations
 
+import os
 import platform
 import re
 import shutil
@@ -42,6 +43,7 @@ as files of their own and may be replaced there. sbom.cdx.json lists every packa
 
 def main() -> None:
     """Build the folder, say what is in it, and pack it."""
+    os.umask(0o022)  # everybody may read what is packed
     save_code()
     write_icons(BUILD)
     spec = str(Path(__file__).with_name("trisect.spec"))

@@ -19,9 +19,9 @@ import hashlib
 import os
 import pickle
 import re
+import secrets
 import shutil
 import sys
-import tempfile
 import time
 from collections.abc import Callable
 from importlib.metadata import version
@@ -31,8 +31,8 @@ from typing import TYPE_CHECKING, Any, TypeVar, cast
 from llvmlite import binding
 
 from core import sources
-from core.code_cache import code_cache, temporary_cache
-from core.held_files import HeldOpen, rename
+from core.code_cache import code_cache, temporary_cache, usual_cache
+from core.held_files import rename
 from core.processor import PROCESSOR
 from core.sources import PACKAGE, SHIPPED
 
@@ -123,11 +123,15 @@ def _folder(name: str) -> Path:
     """The folder of saved code of this name, made if need be; a temporary one where none can be written."""
     folder = code_cache() / name
     try:
-        if not folder.exists():
-            folder.mkdir()
-            _sweep(folder.parent)
+        is_new = not folder.exists()
+        folder.mkdir(exist_ok=True)  # another process may have made it meanwhile
         os.utime(folder)
+        if is_new:
+            _sweep(folder.parent)
+        writable = os.access(folder, os.W_OK | os.X_OK)
     except OSError:
+        writable = False
+    if not writable:
         folder = temporary_cache() / name
         folder.mkdir(exist_ok=True)
     return folder
@@ -136,13 +140,16 @@ def _folder(name: str) -> Path:
 def _sweep(base: Path) -> None:
     """Remove the saved code that has not been used for long."""
     for old in base.iterdir():
-        if time.time() - old.stat().st_mtime > _SWEPT_AFTER_S:
-            shutil.rmtree(old, ignore_errors=True)
+        with contextlib.suppress(FileNotFoundError):  # another process sweeps, too
+            if time.time() - old.stat().st_mtime > _SWEPT_AFTER_S:
+                shutil.rmtree(old, ignore_errors=True)
 
 
 _FILES = _files(PACKAGE)
 FOLDER = _folder(_key(_FILES))
-"""Where this version's saved code is."""
+"""Where this version's saved code is put."""
+_PLACES = tuple(dict.fromkeys((FOLDER, usual_cache() / FOLDER.name, SHIPPED / FOLDER.name)))
+"""Where it is looked for: a cache that can only be read serves as well."""
 
 
 class _Saved:
@@ -160,28 +167,29 @@ class _Saved:
     def load_overload(self, signature: object, target_context: Any) -> Any:
         """The code for these types; None where it was not saved, or not whole."""
         target_context.refresh()
-        for folder in (FOLDER, SHIPPED / FOLDER.name):
+        for folder in _PLACES:
             try:
                 saved = (folder / self._file(signature)).read_bytes()
-            except FileNotFoundError:
+            except OSError:
                 continue
             if hashlib.sha256(saved[32:]).digest() == saved[:32]:
                 return CompileResult._rebuild(target_context, *pickle.loads(saved[32:]))  # type: ignore[no-untyped-call]
         return None
 
     def save_overload(self, signature: object, code: Any) -> None:
-        """Keep the code, unless a file has changed since this process read it."""
+        """Keep the code, unless a file has changed since this process read it, or nothing can be written."""
         if code.library.has_dynamic_globals:
             raise TypeError(f"{self._name} holds an array or address of this process and cannot be saved")
         if any(file.read_bytes() != text for file, text in _FILES.items()):
             return
         content: bytes = dumps(code._reduce())  # type: ignore[no-untyped-call]
-        with tempfile.NamedTemporaryFile(dir=FOLDER, delete=False) as beside:
-            beside.write(hashlib.sha256(content).digest() + content)
+        beside = FOLDER / f"{self._file(signature)}.{secrets.token_hex(4)}.part"
         try:
-            rename(Path(beside.name), FOLDER / self._file(signature))
-        except HeldOpen:  # another process reads the same, which it has saved
-            Path(beside.name).unlink()
+            beside.write_bytes(hashlib.sha256(content).digest() + content)
+            rename(beside, FOLDER / self._file(signature))
+        except OSError:  # a full disk; or another process reads the same, which it has saved
+            with contextlib.suppress(OSError):
+                beside.unlink()
 
 
 _COMPLETE = "complete"
@@ -190,7 +198,7 @@ _COMPLETE = "complete"
 
 def is_complete() -> bool:
     """Whether all that a measurement needs was saved, here or with the package."""
-    return any((folder / _COMPLETE).exists() for folder in (FOLDER, SHIPPED / FOLDER.name))
+    return any((folder / _COMPLETE).exists() for folder in _PLACES)
 
 
 def keep_complete() -> None:

@@ -18,6 +18,11 @@ BUILT = SHIPPED / "sources.json"
 """Hash of each source file, by its name; and those alone that become compiled code. `bundle/` writes it."""
 
 
+def brings_code() -> bool:
+    """Whether compiled loops came with the package. Light: nothing is compiled or loaded for it."""
+    return any(SHIPPED.glob("*/complete"))
+
+
 def texts(package: Path = PACKAGE) -> dict[Path, bytes]:
     """What the source files say, as they are now; empty in a frozen program."""
     return {file: file.read_bytes() for file in sorted(package.rglob("*.py"))}

@@ -78,9 +78,12 @@ def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
         ("resources/style.qss", {"seen"}),
         ("constraints.txt", PROOFS),
         ("README.md", set()),
+        ("resources/other.dat", PROOFS),
+        ("locks/dev.txt", set()),
     ],
 )
 def test_a_proof_is_run_again_when_something_that_it_imports_or_asks_for_has_changed(checkout, path, proofs):
+    (checkout / path).parent.mkdir(exist_ok=True)
     with (checkout / path).open("a", encoding="utf-8") as file:
         file.write("ADDED = 1\n")
     assert run_again(checkout) == proofs

@@ -174,6 +174,7 @@ ALLOWED = {
     "core/files/results/comparison_file.py": "what the file says to other programs",
     "core/files/results/mesh_export.py": "what the file says to other programs",
     "core/files/results/ply.py": "what the file says to other programs",
+    "trisect/start.py": "what is said where the program's own folders are not found, and its translations neither",
     "core/files/project/folder.py": "what the file says that a double click opens",
 }
 """Where sentences may stand by themselves, and why."""

@@ -7,8 +7,8 @@ any version.
 Arrays go in, records come out; only `read_picture`, `read_cloud`, `write_cloud` and what works on whole folders
 (`open_set`, `run`, `simulate`, `report`, `open_project`) touch files. Lengths are in mm, angles in rad, places in a
 picture in px with (0, 0) in the middle of its first pixel; points lie in the camera's frame, z away from it. What
-cannot be done raises `InputError` with one sentence: what, where, why, what to do. `progress` is a function of stage,
-done and total that may raise `Cancelled`.
+cannot be done raises `InputError` with one sentence: what, where, why, what to do; a record of values that cannot be,
+as a board of no corners, a ValueError. `progress` is a function of stage, done and total that may raise `Cancelled`.
 
 The method is that of Sun et al., Sensors 2023, 23, 13, doi:10.3390/s23010013, with all frames of a scan tied together.
 """
@@ -38,6 +38,7 @@ __all__ = [
     "Mesh",
     "Options",
     "Part",
+    "ReconstructOptions",
     "ResultKind",
     "SolvedScan",
     "Stability",
@@ -72,6 +73,10 @@ else:
         """Import what is asked for: `trisect.start` looks whose `core` this is before anything imports it."""
         if name not in __all__:
             raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from trisect.start import complaint
+
+        if (what := complaint()) is not None:
+            raise ImportError(what)
         from trisect import promised
 
         return getattr(promised, name)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from core.calibrate.board_shape import BoardTolerance
@@ -12,9 +13,11 @@ from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.errors import InputError
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.image.targets import Target
 from core.image.targets.target_view import TargetView
+from core.messages import Message, plain
 from core.pipeline.steps.planes_step import check_agreement
 from core.progress import Progress, silent
 from trisect.pictures import checked_picture, same_size
@@ -65,6 +68,12 @@ def calibrate_camera(
     >>> camera.rms_px < 0.1
     True
     """
+    if len(image_size) != 2 or not all(isinstance(side, int | np.integer) and side > 0 for side in image_size):
+        raise InputError(
+            Message("api.no_image_size", "{size} is no size of pictures", size=str(image_size)),
+            where="image_size",
+            todo=Message("api.advice_image_size", "give (width, height) in whole px"),
+        )
     known = BoardTolerance() if tolerance is None else tolerance
     options = CameraOptions(skew=skew, k3=k3)
     return calibration.calibrate_camera(views, image_size, options, progress, tolerance=known)
@@ -78,7 +87,6 @@ def calibrate_fan(
     lines: int = 3,
     angle: float | None = None,
     tolerance: BoardTolerance | None = None,
-    accept_few_poses: bool = False,
     compression: Compression = UNCOMPRESSED,
     progress: Progress = silent,
 ) -> FanCalibration:
@@ -99,8 +107,6 @@ def calibrate_fan(
         Between neighbouring planes in rad, as its maker states it; None: not known.
     tolerance
         How true the target is; None: nothing is known of it, and what is assumed is in the uncertainty.
-    accept_few_poses
-        Whether planes that rest on a minority of the poses are taken.
     compression
         Of the files, by `compression_of`.
     progress
@@ -114,7 +120,8 @@ def calibrate_fan(
     Raises
     ------
     InputError
-        If an array is no picture, no pose is usable, fewer lines are seen than there are, or the poses are too alike.
+        If an array is no picture, no pose is usable, fewer lines are seen than there are, the poses are too alike, or
+        most of them do not agree: leave out those that are wrong.
 
     References
     ----------
@@ -128,16 +135,22 @@ def calibrate_fan(
     >>> len(fan.fan.planes), max(fan.rms_mm) < 0.1
     (3, True)
     """
+    try:
+        known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
+    except ValueError as error:
+        advice = Message("api.advice_laser", "give one line or more, and the angle in rad, as radians(5.0)")
+        raise InputError(plain(str(error)), where="lines, angle", todo=advice) from error
     poses, beside = [], Beside(None, compression)
+    width, height = camera.camera.image_size
     for number, (on, off) in enumerate(pairs):
         progress("plane poses", number, len(pairs))
         name = f"pose {number + 1}"
         lit = checked_picture(on, name)
+        same_size(lit, np.empty((height, width), lit.dtype), f"{name}, camera")
         dark = None if off is None else checked_picture(off, name)
         if dark is not None:
             same_size(lit, dark, name)
         poses.append(measure_plane_pose(name, lit, dark, target, camera.camera, beside=beside))
-    known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
     fan = fit_fan(poses, camera.camera, known, progress)
-    check_agreement(fan, accept_few_poses)
+    check_agreement(fan, decided=False)
     return fan

@@ -16,6 +16,7 @@ from core.inspect.results import GaugeResult as Gauge
 from core.inspect.uncertainty.part import Part
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.project.opened import open_project
+from core.scan.reconstruct import ReconstructOptions
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from trisect.calibration import calibrate_camera, calibrate_fan
@@ -47,6 +48,7 @@ __all__ = [
     "Mesh",
     "Options",
     "Part",
+    "ReconstructOptions",
     "ResultKind",
     "SolvedScan",
     "Stability",

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from core.calibrate.change import Stability, changes, judge
 from core.calibrate.deviations import calibration_deviations
-from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
 from core.calibrate.rig_spread import stability_by_pictures
 from core.errors import InputError
 from core.image.stripes.centreline import Centreline
@@ -27,7 +27,7 @@ from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_first, faults_of
 from core.scan.features.reference import quantile_reference, sample_indices
-from core.scan.reconstruct import SIGMA_CUT_MM, ReconstructOptions
+from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 from core.scan.surface import fusion, mesh
@@ -37,6 +37,8 @@ from core.scan.surface.fused_surface import Mesh, Surface
 from core.scan.surface.normals import with_normals
 from trisect.pictures import checked_picture, same_size
 
+MOST_SIGMA_CUT_MM = 10.0
+"""Standard uncertainty of depth in mm: points less sure say nothing of a part (as on the command line)."""
 FEWEST_FRAMES = 3
 """Without a picture of the fan alone one is made of the frames: of three, the darkest third is one."""
 
@@ -132,8 +134,7 @@ def solve_scan(
     *,
     reference: ArrayLike | None = None,
     stability: Stability | None = None,
-    sigma_cut_mm: float = SIGMA_CUT_MM,
-    row_time_us: float | None = None,
+    options: ReconstructOptions | None = None,
     compression: Compression = UNCOMPRESSED,
     progress: Progress = silent,
 ) -> SolvedScan:
@@ -150,10 +151,9 @@ def solve_scan(
     stability
         How far the rig may have changed since its calibration; None: not known, and what is assumed is in the
         uncertainty.
-    sigma_cut_mm
-        Points whose depth is less sure are left out.
-    row_time_us
-        From one row of a picture to the next of a rolling shutter, 0 for a global one; None: not known.
+    options
+        `sigma_cut_mm`: points whose depth is less sure are left out; `row_time_us`: from one row of a picture to the
+        next of a rolling shutter, 0 for a global one, None where it is not known.
     compression
         Of the files, by `compression_of`.
     progress
@@ -182,10 +182,13 @@ def solve_scan(
     >>> pairs = [(read_picture(pose.on), read_picture(pose.off)) for pose in small.planes]
     >>> fan = calibrate_fan(pairs, small.rig.plane_target, camera, angle=small.rig.angle)
     >>> frames = [read_picture(path) for path in small.frames]
-    >>> scan = solve_scan(frames, camera, fan, reference=read_picture(small.reference), sigma_cut_mm=0.3)
+    >>> coarse = ReconstructOptions(sigma_cut_mm=0.3)
+    >>> scan = solve_scan(frames, camera, fan, reference=read_picture(small.reference), options=coarse)
     >>> scan.cloud.points.shape == (len(scan.cloud), 3), len(scan.cloud) > 1000
     (True, True)
     """
+    solving = _checked(options or ReconstructOptions())
+    _check_known(camera)
     pictures = [checked_picture(frame, _name(number)) for number, frame in enumerate(frames)]
     if reference is not None:
         base = checked_picture(reference, "reference")
@@ -212,11 +215,42 @@ def solve_scan(
     sweeps = [piece for frame in features.frames for piece in frame.centrelines]
     faults = (*faults_of(seen), *notes_on_shine(features.fan, sweeps, seen.full_scale))
     features = replace(features, notes=(*faults, *features.notes))
-    solving = ReconstructOptions(sigma_cut_mm=sigma_cut_mm, row_time_us=row_time_us)
     with faults_first(features.notes):
         even, scan = reconstruct_twice(features, camera.camera, fan.fan, solving, progress)
-    scan = replace(scan, notes=(*scan.notes, *assumed_shutter(row_time_us, scan)))
+    scan = replace(scan, notes=(*scan.notes, *assumed_shutter(solving.row_time_us, scan)))
     return _judged(even, scan, camera, fan, stability, progress)
+
+
+def _checked(options: ReconstructOptions) -> ReconstructOptions:
+    """Return options that can be; InputError for other ones."""
+    row_time = 0.0 if options.row_time_us is None else options.row_time_us
+    if 0 < options.sigma_cut_mm <= MOST_SIGMA_CUT_MM and 0 <= row_time < np.inf:
+        return options
+    raise InputError(
+        Message(
+            "api.no_options",
+            "a σ cut of {cut_mm} mm with {row_time} µs from row to row cannot be",
+            cut_mm=str(options.sigma_cut_mm),
+            row_time=str(options.row_time_us),
+        ),
+        where="options",
+        todo=Message("api.advice_options", "give a σ cut above 0 and at most 10 mm, and a time not below 0, or None"),
+    )
+
+
+def _check_known(camera: CameraCalibration) -> None:
+    """InputError if it is not known how sure a camera is: every uncertainty would be too small."""
+    covariance = np.asarray(camera.covariance)
+    size = len(CAMERA_PARAMETERS)
+    if covariance.shape == (size, size) and np.isfinite(covariance).all():
+        variances = np.diag(covariance)
+        if (variances >= 0).all() and variances.any():
+            return
+    raise InputError(
+        Message("api.no_camera_covariance", "the camera has no covariance of its parameters"),
+        where="camera",
+        todo=Message("api.advice_camera", "take the camera as calibrate_camera gives it"),
+    )
 
 
 def _name(number: int) -> str:

@@ -23,6 +23,7 @@ from core import __version__
 from core.code_cache import code_cache, note_on_cache
 from core.errors import InputError
 from core.held_files import PATIENCE_S
+from core.sources import brings_code
 from core.translations import PSEUDO, language, languages, preferred
 from workbench.language import choose, text_of, tr
 from workbench.settings import THEMES, AppSettings
@@ -126,7 +127,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
     code_cache()  # of all its processes: they find here which one it is
-    if (note := note_on_cache()) is not None:
+    if (note := note_on_cache()) is not None and not brings_code():
         bench.notices.warning(text_of(note))
 
     def put() -> MainWindow:

@@ -69,8 +69,8 @@ def run(
         accept_few_poses=accept_few_poses,
         channel=channel,
     )
-    arguments.require_run(folder, out)
     options = arguments.leaving_out(options, folder, exclude)
+    arguments.require_run(folder, out)
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
         from core.cli import measuring
 

@@ -55,8 +55,12 @@ def compile_ahead(progress: Progress = silent) -> None:
 
 
 def _end_with_the_first() -> None:
-    """End at once when the process that started this one is gone, and its end of standard input with it."""
-    sys.stdin.buffer.read()
+    """End at once when the process that started this one is gone, and its end of standard input with it.
+
+    Read below Python's buffer: a thread that holds that as the process ends would abort it.
+    """
+    while os.read(0, 1):
+        pass
     os._exit(1)
 
 

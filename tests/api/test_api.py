@@ -4,6 +4,8 @@ import inspect
 import json
 import subprocess
 import sys
+from dataclasses import replace
+from typing import Any, cast
 
 import cv2
 import numpy as np
@@ -21,8 +23,8 @@ PROMISED = {
     "Mesh", "Gauge", "Length", "InputError", "Cancelled",
     # what these take and give
     "BlackSquare", "BoardTolerance", "CameraCalibration", "Centreline", "Charuco", "Checkerboard", "CircleGrid",
-    "Crossing", "FanCalibration", "Feature", "Options", "Part", "SolvedScan", "Stability", "TargetView",
-    "compression_of",
+    "Crossing", "FanCalibration", "Feature", "Options", "Part", "ReconstructOptions", "SolvedScan", "Stability",
+    "TargetView", "compression_of",
     # what a package with kinds of features of its own declares
     "FeatureKind", "ResultKind",
 }  # fmt: skip
@@ -86,7 +88,8 @@ def solved(calibrated):
     frames, reference = frames_of(found)
     cut = float(CUT[CUT.index("--sigma-cut") + 1])
     return trisect.solve_scan(
-        frames, camera, fan, reference=reference, sigma_cut_mm=cut, row_time_us=found.rig.row_time_us,
+        frames, camera, fan, reference=reference,
+        options=trisect.ReconstructOptions(sigma_cut_mm=cut, row_time_us=found.rig.row_time_us),
         stability=found.rig.stability,
     )  # fmt: skip
 
@@ -107,7 +110,9 @@ def test_arrays_give_the_thickness_that_the_steps_give(calibrated, solved, measu
 def test_what_nobody_states_of_the_rig_is_in_u_and_told(calibrated, solved):
     found, camera, fan = calibrated
     frames, reference = frames_of(found)
-    unstated = trisect.solve_scan(frames, camera, fan, reference=reference, sigma_cut_mm=0.3)
+    unstated = trisect.solve_scan(
+        frames, camera, fan, reference=reference, options=trisect.ReconstructOptions(sigma_cut_mm=0.3)
+    )
     assert found.rig.stability is not None, "the simulated rig states it"
     assert trisect.measure_thickness(unstated).u_mm > trisect.measure_thickness(solved).u_mm
     assert any(note.code == "scan.shutter_assumed" for note in unstated.notes)
@@ -118,7 +123,9 @@ def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
     pairs = [(trisect.read_picture(pose.on), trisect.read_picture(pose.off)) for pose in found.planes]
     fan = trisect.calibrate_fan(pairs, found.rig.plane_target, camera, angle=found.rig.angle)
     frames, reference = frames_of(found)
-    scan = trisect.solve_scan(frames, camera, fan, reference=reference, sigma_cut_mm=0.3)
+    scan = trisect.solve_scan(
+        frames, camera, fan, reference=reference, options=trisect.ReconstructOptions(sigma_cut_mm=0.3)
+    )
     assert fan.scale_assumed and scan.doubt is not None
     gauge = trisect.measure_thickness(scan, nominal_mm=50.0, tolerance_mm=5.0)
     assert str(gauge.verdict) == "not proven" and scan.doubt in gauge.notes
@@ -155,7 +162,10 @@ GREY = np.full((40, 60), 20, np.uint8)
         (lambda: trisect.extract_stripes(GREY, GREY.astype(np.uint16)), "uint16"),
         (lambda: trisect.extract_stripes(GREY, width_px=8.0), "width and contrast"),
         (lambda: trisect.find_target(GREY, trisect.Checkerboard(8, 6, 5.0)), "picture"),
+        (lambda: trisect.find_target(GREY, cast(Any, "checkerboard")), "target: this is no calibration target"),
         (lambda: trisect.calibrate_camera([], (60, 40)), ""),
+        (lambda: trisect.calibrate_camera([], cast(Any, (60.5, 40))), "image_size: (60.5, 40) is no size"),
+        (lambda: trisect.calibrate_camera([], (0, 0)), "no size of pictures"),
         (lambda: trisect.read_picture("nowhere.png"), "nowhere.png"),
         (lambda: trisect.read_cloud("nowhere.ply"), "nowhere.ply"),
         (lambda: trisect.open_set("nowhere"), "nowhere"),
@@ -177,6 +187,12 @@ def test_scans_that_cannot_be_solved_are_refused(calibrated):
         trisect.solve_scan([frames[0], frames[1][:-1]], camera, fan, reference=reference)
     with pytest.raises(trisect.InputError, match="camera: the pictures differ"):
         trisect.solve_scan([frame[:-1] for frame in frames], camera, fan, reference=reference[:-1])
+    for wrong in ({"sigma_cut_mm": np.inf}, {"sigma_cut_mm": 0.0}, {"row_time_us": np.nan}, {"row_time_us": -5.0}):
+        with pytest.raises(trisect.InputError, match="options: a σ cut"):
+            trisect.solve_scan(frames, camera, fan, options=trisect.ReconstructOptions(**wrong))
+    for covariance in (0 * camera.covariance, camera.covariance[:3, :3], np.nan * camera.covariance):
+        with pytest.raises(trisect.InputError, match="no covariance"):
+            trisect.solve_scan(frames, replace(camera, covariance=covariance), fan)
     with pytest.raises(trisect.InputError):
         trisect.solve_scan([np.zeros_like(frame) for frame in frames], camera, fan)
 
@@ -189,6 +205,26 @@ def test_compressed_pictures_have_less_sure_stripes(tmp_path):
     read = trisect.read_picture(tmp_path / "one.jpg")
     told = trisect.extract_stripes(read, compression=trisect.compression_of(tmp_path / "one.jpg"))
     assert np.median(told[0].sigma) > np.median(trisect.extract_stripes(read)[0].sigma)
+
+
+def test_a_laser_that_cannot_be_and_pictures_of_another_camera_are_refused_at_once(calibrated):
+    found, camera, _ = calibrated
+    pair = (trisect.read_picture(found.planes[0].on), trisect.read_picture(found.planes[0].off))
+    for wrong in ({"lines": 0}, {"angle": 5.0}):
+        with pytest.raises(trisect.InputError, match="in rad"):
+            trisect.calibrate_fan([pair], found.rig.plane_target, camera, **wrong)
+    with pytest.raises(trisect.InputError, match="pose 1, camera: the pictures differ"):
+        trisect.calibrate_fan([(pair[0].T, pair[1].T)], found.rig.plane_target, camera)
+
+
+def test_a_foreign_core_is_told_in_a_sentence(tmp_path):
+    (tmp_path / "core").mkdir()
+    (tmp_path / "core/__init__.py").write_text("raise SystemExit(5)")
+    said = subprocess.run(
+        (sys.executable, "-c", "import trisect; trisect.Camera"), capture_output=True, text=True, cwd=tmp_path
+    )
+    assert said.returncode == 1
+    assert "is found before its own folder" in said.stderr.splitlines()[-1]
 
 
 def test_an_empty_picture_has_no_stripes_and_these_no_crossings():

@@ -53,11 +53,12 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         scan = read_scan(work.path("scan"))
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
+        regions = _regions(spec)
         with _no_thickness(), movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
-                regions=_regions(spec),
+                regions=regions,
                 nominal_mm=spec.nominal_mm,
                 tolerance_mm=spec.tolerance_mm,
                 progress=progress,
