@@ -74,3 +74,20 @@ def test_cancelled_it_leaves_no_process_behind(started):
         compile_ahead(cancel)
     assert [process.poll() is None for process in started] == [False, False]
     assert not compiled.is_complete()
+
+
+def test_a_process_that_compiles_ends_in_order_while_its_standard_input_is_open():
+    program = (
+        "import threading; from core.pipeline.compile_ahead import _end_with_the_first as watch;"
+        "threading.Thread(target=watch, daemon=True).start()"
+    )
+    process = START([sys.executable, "-c", program], stdin=subprocess.PIPE)
+    with process:
+        assert process.wait(60) == 0
+
+
+def test_a_process_that_compiles_ends_with_the_one_that_began_it():
+    program = "from core.pipeline.compile_ahead import _end_with_the_first as watch; watch()"
+    process = START([sys.executable, "-c", program], stdin=subprocess.PIPE)
+    process.stdin.close()
+    assert process.wait(60) == 1
