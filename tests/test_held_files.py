@@ -11,6 +11,7 @@ from core import held_files
 from core.errors import InputError
 from core.files.atomic import beside_of, cannot_write, folder_beside, write_bytes
 from core.held_files import HeldOpen, remove, remove_tree, rename
+from core.pipeline.steps.workspace import FILES, made_beside, put_results
 
 DENIED, SHARED, PATH_NOT_FOUND = 5, 32, 3
 CLOSE_IT = "cannot be written, because another program holds it open; close it in the other program, then try again."
@@ -156,3 +157,22 @@ def test_a_path_too_long_for_windows_is_told(tmp_path):
     assert "its path is longer than this system takes" in str(cannot_write(tmp_path, gone))
     gone.filename = None
     assert "longer" not in str(cannot_write(tmp_path, gone))
+
+
+def test_results_of_a_killed_run_that_are_held_are_never_taken_for_new(tmp_path, holding, impatient):
+    (tmp_path / ".new").mkdir()
+    (tmp_path / ".new" / "cloud.ply").write_bytes(b"stale")
+    holding("unlink", 10**6)
+    with pytest.raises(InputError, match="another program holds it open"), made_beside(tmp_path):
+        pytest.fail("it would be put among the results")
+
+
+def test_a_report_that_a_reader_holds_keeps_the_results_as_they_were(tmp_path, holding, impatient):
+    old = {name: tmp_path / FILES[name] for name in ("report", "gauge")}
+    for path in old.values():
+        path.write_bytes(b"old")
+    holding("unlink", 10**6)
+    with pytest.raises(InputError) as told:
+        put_results(tmp_path, None, tuple(old))
+    assert str(told.value) == f"{old['report']}: {CLOSE_IT}"
+    assert {path.read_bytes() for path in old.values()} == {b"old"}

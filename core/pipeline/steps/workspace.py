@@ -240,7 +240,7 @@ def made_beside(out: Path) -> Iterator[Path]:
     beside = out / NEW_FOLDER
     try:
         remove_tree(beside)  # of a program that was killed; what is in it would be taken for new
-        beside.mkdir()
+        beside.mkdir(exist_ok=True)
     except OSError as error:
         raise cannot_write(out, error) from error
     try:
