@@ -17,7 +17,7 @@ from core.errors import InputError
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.image.targets import Target
 from core.image.targets.target_view import TargetView
-from core.messages import Message, plain
+from core.messages import Message
 from core.pipeline.steps.planes_step import check_agreement
 from core.progress import Progress, silent
 from trisect.pictures import checked_picture, same_size
@@ -135,11 +135,15 @@ def calibrate_fan(
     >>> len(fan.fan.planes), max(fan.rms_mm) < 0.1
     (3, True)
     """
-    try:
-        known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
-    except ValueError as error:
-        advice = Message("api.advice_laser", "give one line or more, and the angle in rad, as radians(5.0)")
-        raise InputError(plain(str(error)), where="lines, angle", todo=advice) from error
+    if lines < 1 or (angle is not None and not 0 < angle < np.pi / 2):
+        raise InputError(
+            Message(
+                "api.no_laser", "{lines} lines with {angle} rad between them cannot be", lines=lines, angle=str(angle)
+            ),
+            where="lines, angle",
+            todo=Message("api.advice_laser", "give one line or more, and the angle in rad, as radians(5.0)"),
+        )
+    known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
     poses, beside = [], Beside(None, compression)
     width, height = camera.camera.image_size
     for number, (on, off) in enumerate(pairs):
