@@ -148,8 +148,12 @@ def _sweep(base: Path) -> None:
 _FILES = _files(PACKAGE)
 FOLDER = _folder(_key(_FILES))
 """Where this version's saved code is put."""
-_PLACES = tuple(dict.fromkeys((FOLDER, usual_cache() / FOLDER.name, SHIPPED / FOLDER.name)))
-"""Where it is looked for: a cache that can only be read serves as well."""
+_USUAL = usual_cache() / FOLDER.name
+
+
+def _places() -> tuple[Path, ...]:
+    """The folders that saved code is looked for in: a cache that can only be read serves as well."""
+    return FOLDER, _USUAL, SHIPPED / FOLDER.name
 
 
 class _Saved:
@@ -167,7 +171,7 @@ class _Saved:
     def load_overload(self, signature: object, target_context: Any) -> Any:
         """The code for these types; None where it was not saved, or not whole."""
         target_context.refresh()
-        for folder in _PLACES:
+        for folder in _places():
             try:
                 saved = (folder / self._file(signature)).read_bytes()
             except OSError:
@@ -198,7 +202,7 @@ _COMPLETE = "complete"
 
 def is_complete() -> bool:
     """Whether all that a measurement needs was saved, here or with the package."""
-    return any((folder / _COMPLETE).exists() for folder in _PLACES)
+    return any((folder / _COMPLETE).exists() for folder in _places())
 
 
 def keep_complete() -> None:

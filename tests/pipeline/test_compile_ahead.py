@@ -28,6 +28,7 @@ def started(monkeypatch, tmp_path):
         return processes[-1]
 
     monkeypatch.setattr(compiled, "FOLDER", tmp_path)
+    monkeypatch.setattr(compiled, "_USUAL", tmp_path)
     monkeypatch.setattr(subprocess, "Popen", start)
     return processes
 
