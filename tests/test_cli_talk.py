@@ -89,5 +89,6 @@ def test_a_shell_completes_commands_and_options_without_numba():
     assert {"repeats", "grr"} <= set(completed("trisect study "))
 
 
-def test_the_script_of_a_shell_is_shown():
+def test_the_script_of_a_shell_is_shown(monkeypatch):
+    monkeypatch.setattr("shellingham.detect_shell", lambda: ("bash", "/bin/bash"))  # not the one that runs the tests
     assert "_TRISECT_COMPLETE=complete_bash" in trisect("--show-completion", "bash").out

@@ -18,6 +18,17 @@ POSIX = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such 
 SOON_S = 60.0
 
 
+@pytest.fixture(autouse=True)
+def heard():
+    """Signals as a terminal leaves them: run by `nohup`, tests and what they start would ignore SIGHUP."""
+    if sys.platform == "win32":
+        yield
+        return
+    before = signal.signal(signal.SIGHUP, signal.SIG_DFL)
+    yield
+    signal.signal(signal.SIGHUP, before)
+
+
 @pytest.mark.parametrize("name", ["SIGINT", pytest.param("SIGTERM", marks=POSIX), pytest.param("SIGHUP", marks=POSIX)])
 def test_an_interrupt_lost_in_a_finaliser_still_cancels_at_the_next_progress(name):
     with bar() as progress:

@@ -107,7 +107,7 @@ def test_pictures_without_both_faces_are_named_and_when_none_has_both_it_is_told
     simulate_set(replace(THREE, object="plane", frames=1, camera_views=0, plane_poses=0), empty)
     shutil.copytree(out, tmp_path / "out")
     said = trisect("profile", empty, "--out", tmp_path / "out")
-    assert said.code == 2
+    assert said.code == 3
     assert "none of 1 pictures gives a step" in said.sentence
     shutil.copytree(folder, tmp_path / "mixed")
     shutil.copy(next((empty / "scan").iterdir()), tmp_path / "mixed/scan/frame0009.png")
@@ -122,7 +122,7 @@ def test_regions_in_the_rig_choose_what_is_looked_at(three, tmp_path):
     width, height = picture_size(out)
     corner = [[0, 0], [9, 0], [9, 9]]
     whole = [[0, 0], [width, 0], [width, height], [0, height]]
-    for regions, code in (((whole, corner), (0, 1)), ((corner, corner), (2,))):
+    for regions, code in (((whole, corner), (0, 1)), ((corner, corner), (3,))):
         text = (three[0] / "rig.toml").read_text()
         (folder / "rig.toml").write_text(
             text.replace("[gauge]", f"[gauge]\nupper_polygon_px = {regions[0]}\nlower_polygon_px = {regions[1]}")
