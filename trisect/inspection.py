@@ -136,4 +136,4 @@ def measure_features(
 
 
 def _points_of(scan: SolvedScan | Cloud) -> tuple[Cloud, PointErrors]:
-    return (scan, PointErrors(doubt=POINTS_ALONE)) if isinstance(scan, Cloud) else (scan.cloud, scan.errors)
+    return (scan, PointErrors(doubts=(POINTS_ALONE,))) if isinstance(scan, Cloud) else (scan.cloud, scan.errors)

@@ -13,13 +13,15 @@ from core.calibrate.deviations import calibration_deviations
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
 from core.calibrate.rig_spread import stability_by_pictures
 from core.errors import InputError
+from core.findings.proof import ScanFacts
+from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane
-from core.pipeline.steps.scan_step import assumed_shutter, unsteady
-from core.pipeline.steps.validity import doubt_of_calibration
+from core.pipeline.steps.scan_step import assumed_shutter, with_facts_of
+from core.pipeline.steps.validity import facts_of_planes
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import CommonErrors, solve_common
@@ -57,17 +59,17 @@ class SolvedScan:
         The centrelines and crossings that it rests on.
     common
         What displaced calibrations, and what may have changed since, do to the scan.
-    doubt
-        Why nothing measured in it proves conformity; None: nothing speaks against it.
+    facts
+        What decides whether anything measured in it can prove conformity.
     notes
-        What is to be known of it, the doubt first.
+        What is to be known of it, the gravest first.
     """
 
     cloud: Cloud
     result: ScanResult
     features: ScanFeatures
     common: CommonErrors
-    doubt: Message | None
+    facts: ScanFacts
     notes: tuple[Message, ...]
 
     @property
@@ -75,7 +77,7 @@ class SolvedScan:
         """How the errors of the points hang together: what an uncertainty is reckoned from."""
         scan = self.result
         errors = PointErrors.of_scan(self.features, scan.covariance, self.common, scan.speckle, scan.pis.shape[1])
-        return replace(errors, doubt=self.doubt)
+        return replace(errors, doubts=self.facts.doubts, size_unconfirmed=self.facts.size_unconfirmed is not False)
 
 
 def triangulate(stripe: Centreline, plane: LightPlane, camera: Camera, *, covariance: ArrayLike | None = None) -> Cloud:
@@ -274,9 +276,9 @@ def _judged(
     common = solve_common(features, scan, *calibrated, change.deviations, progress=progress)
     cloud = with_normals(scan.cloud, progress=progress)
     cloud = replace(cloud, sigma_common=common.sigma(cloud))
-    doubt = unsteady(scan) or change.doubt or doubt_of_calibration(fan)
-    notes = (*(() if doubt is None else (doubt,)), *change.notes, *scan.notes)
-    return SolvedScan(cloud, replace(scan, cloud=cloud), features, common, doubt, tuple(dict.fromkeys(notes)))
+    facts = with_facts_of(scan, change, None, facts_of_planes(fan))
+    notes = gravest_first((*facts.all_doubts, *change.notes, *scan.notes))
+    return SolvedScan(cloud, replace(scan, cloud=cloud), features, common, facts, notes)
 
 
 def fuse(cloud: Cloud, image_size: tuple[int, int], *, progress: Progress = silent) -> Surface:

@@ -91,13 +91,6 @@ class BoardTolerance:
         A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
         that not where its shape is known from them.
         """
-        size = Message(
-            "target.size_assumed",
-            "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as "
-            "standard uncertainty, as of an office laser printer's print.",
-            field=Field(f"{target}.scale_sd", whole=True),
-            per_mille=self.size_sd * 1e3,
-        )
         flatness = Message(
             "target.flatness_assumed",
             "How flat the target is, is not stated ({field}): {mm:g} mm is assumed as standard deviation.",
@@ -106,7 +99,7 @@ class BoardTolerance:
         )
         notes = []
         if self.scale_sd is None:
-            notes.append(size)
+            notes.append(size_assumed(target))
         if self.flatness_mm is None and target == "plane_target" and not shape_known:
             notes.append(flatness)
         return tuple(notes)
@@ -134,16 +127,16 @@ class BoardTolerance:
         return np.flatnonzero(self.sd)
 
 
-SIZE_ASSUMED, FLATNESS_ASSUMED = "target.size_assumed", "target.flatness_assumed"
-"""Codes of the notes on a size, and on a flatness, that is not stated."""
-SIZE_UNCONFIRMED = Message(
-    "target.size_unconfirmed",
-    "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, so that "
-    "only what is compared with a master proves anything: state its standard uncertainty by its source, measure a "
-    "known artefact, or take a picture of it fixed to the camera's target whose own size is stated.",
-    field=Field("plane_target.scale_sd", whole=True),
-)
-"""Why no length proves anything where the size of the plane target is assumed and nothing measured holds it."""
+def size_assumed(target: Literal["camera_target", "plane_target"]) -> Message:
+    """Note on a target whose size nobody has stated."""
+    return Message(
+        "target.size_assumed",
+        "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as standard "
+        "uncertainty, as of an office laser printer's print.",
+        field=Field(f"{target}.scale_sd", whole=True),
+        per_mille=SUSPECTED_SCALE * 1e3,
+    )
+
 
 TRUE = BoardTolerance(0.0, 0.0)
 """Of a target that is as it should be."""

@@ -44,16 +44,6 @@ PROVES_NOTHING = 0.001
 LEAST_INFORMATION = 0.05
 """A change of which pictures know less, for its size by default, is not looked at: they cannot tell."""
 
-CHANGED = Message(
-    "inspection.rig_has_changed",
-    "Laser or camera have surely changed since they were calibrated: nothing measured proves conformity.",
-)
-MAY_HAVE_CHANGED = Message(
-    "inspection.rig_may_have_changed",
-    "Laser or camera seem to have changed since they were calibrated, and no check of the day is in order: nothing "
-    "measured proves conformity. Check with one to three pictures of the plane target in the fan.",
-)
-
 
 @dataclass(frozen=True, slots=True)
 class Stability:
@@ -214,15 +204,18 @@ class Change:
     stability: Stability = DEFAULT_STABILITY
 
     @property
-    def doubt(self) -> Message | None:
-        """Why nothing measured proves conformity; None where changes are as small as is reckoned with.
+    def surely(self) -> bool:
+        """Whether camera or laser surely differ from their calibration: nothing measured then proves conformity."""
+        return self.p < PROVES_NOTHING
+
+    @property
+    def seemingly(self) -> bool:
+        """Whether they seem to, and no check of the day is in order, which proves nothing either.
 
         Who has no passed check has only the scan to go by, which sees little of most changes: what shows in it at all
         may be far larger than U allows for.
         """
-        if self.p < PROVES_NOTHING:
-            return CHANGED
-        return MAY_HAVE_CHANGED if self.p < P_TOLD and not self.checked else None
+        return PROVES_NOTHING <= self.p < P_TOLD and not self.checked
 
     @property
     def notes(self) -> tuple[Message, ...]:

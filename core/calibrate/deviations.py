@@ -17,7 +17,6 @@ from typing import Literal, cast
 
 import numpy as np
 
-from core.calibrate.board_shape import FLATNESS_ASSUMED
 from core.calibrate.camera.covariance import principal_deviations
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.results import CameraCalibration, FanCalibration, Readjustment
@@ -108,8 +107,7 @@ def _of_camera(camera: CameraCalibration, fan: FanCalibration) -> Iterator[Devia
 
 def _of_fan(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     values, vectors = np.linalg.eigh(np.asarray(fan.fan.covariance))
-    assumed = any(note.code == FLATNESS_ASSUMED for note in fan.notes)
-    source: Source = "assumed fan" if assumed else "fan"
+    source: Source = "fan" if fan.flatness_assumed is False else "assumed fan"
     for value, vector in zip(values[::-1], vectors.T[::-1], strict=True):
         if value > NEGLIGIBLE * values[-1]:
             yield Deviation(source, camera, moved_fan(fan.fan, np.sqrt(value) * vector))

@@ -59,7 +59,8 @@ class CameraCalibration:
     `tilt_range` the largest angle in rad between two views' target normals. `cross_validation_mm` is the RMS
     distance between the points that cameras solved from odd and from even views give over the work volume, NaN when
     there are too few views for two cameras. `notes` are for the technician. `board` is the shape of the
-    target as all views together tell it, which the residuals have taken into account.
+    target as all views together tell it, which the residuals have taken into account. `hot_pixels` is the number of
+    pixels that shine by themselves in all pictures; None where it is not known.
     """
 
     camera: Camera
@@ -72,6 +73,7 @@ class CameraCalibration:
     cross_validation_mm: float
     notes: tuple[Message, ...] = ()
     board: BoardShape = field(default_factory=BoardShape)
+    hot_pixels: int | None = None
 
     @property
     def sd(self) -> Mapping[str, float]:
@@ -187,6 +189,10 @@ class FanCalibration:
     shape of the plane target where its flatness is uncertain; else it is flat. `bends` (N, 3, 3) are how the light was
     seen to be off its planes, as in `Fan`: one standard uncertainty, for what bends it is not known; None where it is
     straight. `readjusted` where camera and fan were moved since by the pictures of a check.
+
+    Facts, None where they are not known: `converged`, whether planes and poses were solved to the end;
+    `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain;
+    `flatness_assumed`, whether nobody has stated how flat the target is.
     """
 
     fan: Fan
@@ -210,6 +216,9 @@ class FanCalibration:
     board: BoardShape = field(default_factory=BoardShape)
     bends: Array | None = None
     readjusted: Readjustment | None = None
+    converged: bool | None = None
+    points_off_alike: bool | None = None
+    flatness_assumed: bool | None = None
 
     @property
     def minority(self) -> Message | None:

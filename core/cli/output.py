@@ -25,6 +25,7 @@ from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
+from core.findings.table import gravest_first, is_grave
 from core.inspect.results import GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
@@ -33,7 +34,6 @@ from core.scan.results import FrameRecord
 from core.states import CHECKS, DECISIONS
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
-from core.urgent import is_urgent, urgent_first
 
 Rows = list[tuple[str, str]]
 _NAMES_SHOWN = 3
@@ -74,8 +74,8 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         table.add_row(tr("written"), tr("{name}: {value}", name=folder, value=names))
     if table.rows:
         out.print(table)
-    for note in urgent_first(notes):
-        style = "red" if is_urgent(note) else None
+    for note in gravest_first(notes):
+        style = "red" if is_grave(note) else None
         out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
 
 

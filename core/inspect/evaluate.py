@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.board_shape import SIZE_UNCONFIRMED
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
@@ -147,8 +146,7 @@ def evaluate(
         scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
     progress("features", len(ordered), len(ordered))
     results = tuple(scene.found[spec.name] for spec in plan.features)
-    doubt = scene.errors.doubt
-    notes = (*([doubt] if doubt else []), *([frame_problem] if frame_problem else []), *_missing(scene.errors))
+    notes = (*scene.errors.all_doubts, *([frame_problem] if frame_problem else []), *_missing(scene.errors))
     notes += _of_part(plan, scene.errors.part)
     inspection = Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
     return replace(inspection, notes=(*notes, *_of_plugins(inspection)))
@@ -210,10 +208,13 @@ def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
 def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> Characteristic:
     """A length by comparison with a master: the size of the plane target, if that is all the doubt, cancels in it."""
     found = compared(length, master)
-    unsized = errors.doubt is not None and errors.doubt.code == SIZE_UNCONFIRMED.code
-    if not unsized or not master.same_calibration or COMPARED not in {note.code for note in found.notes}:
+    if (
+        not errors.size_unconfirmed
+        or not master.same_calibration
+        or COMPARED not in {note.code for note in found.notes}
+    ):
         return found
-    proves = replace(errors, doubt=None).complete and doubt_of_light(found.budget) is None
+    proves = replace(errors, size_unconfirmed=False).complete and doubt_of_light(found.budget) is None
     return replace(found, complete=proves)
 
 
@@ -270,7 +271,7 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
     if errors is not None:
         lengths = [getattr(errors, one.name) for one in fields(errors)]
         arrays += [np.array([length for length in lengths if isinstance(length, float)])]
-        arrays += [] if errors.doubt is None else [np.frombuffer(str(errors.doubt).encode(), np.uint8)]
+        arrays += [np.frombuffer(str(doubt).encode(), np.uint8) for doubt in errors.all_doubts]
         arrays += [] if errors.part is None else [np.frombuffer(repr(errors.part).encode(), np.uint8)]
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]

@@ -192,7 +192,8 @@ def measure_gauge(
     )
     if errors.part is not None:
         gauge = adjusted(gauge, errors.part.thicker_mm, errors.part.surface_rows, errors.part.surface_notes, k=k)
-    for doubt in filter(None, (doubt_of_light(fit.budget), errors.doubt)):
+    of_light = doubt_of_light(fit.budget)
+    for doubt in (*([of_light] if of_light else []), *reversed(errors.all_doubts)):
         gauge = doubted(gauge, doubt)
     return gauge
 

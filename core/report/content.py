@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
 from core.inspect.characteristic import Characteristic, Limits
 from core.inspect.plan.conditions import AT_REFERENCE
@@ -27,7 +28,6 @@ from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.study.artefact_check import ArtefactCheck
 from core.study.repeats import RepeatStatistics, repeat_statistics
-from core.urgent import urgent_first
 
 MOST_CALLOUTS = 10
 """On the picture of the surface; the table of results has all."""
@@ -408,7 +408,7 @@ class ReportContent:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The urgent notes, then the report's own, those of the gauge and of both calibrations, each once."""
+        """The gravest notes, then the report's own, those of the gauge and of both calibrations, each once."""
         of_gauge = self.gauge.notes if self.gauge else ()
         of_each = [
             Message("report.note_of_result", "{name}: {note}", name=result_name(one), note=note)
@@ -416,7 +416,7 @@ class ReportContent:
             for note in one.notes
         ]
         every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)
-        return urgent_first({str(note): note for note in every}.values())
+        return gravest_first({str(note): note for note in every}.values())
 
     @property
     def frames_left_out(self) -> list[LeftOut]:

@@ -38,11 +38,6 @@ _BLOCK = 50.0
 _FEWEST_POSES, _FEWEST_BLOCKS = 3, 6
 """Poses, and stretches of calibration and scan each, whose scatter tells how sure their mean is."""
 
-DOUBT = Message(
-    "inspection.section_has_changed",
-    "The light of the fan reaches further to one side than when it was calibrated: nothing measured proves conformity.",
-)
-
 
 @dataclass(frozen=True, slots=True)
 class ChangedSection:

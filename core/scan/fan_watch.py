@@ -49,12 +49,6 @@ _PLACES = 60
 NEARLY_ALL = 0.8
 """Share of the stretches that moved from which on it was not the part alone: table, camera or fan."""
 
-MOVED_WITHIN = Message(
-    "inspection.moved_during_scan", "Something moved during the scan: nothing measured proves conformity."
-)
-DRIFTED_WITHIN = Message(
-    "inspection.drifted_during_scan", "The rig drifted during the scan: nothing measured proves conformity."
-)
 PART_WORDS = Message("scan.the_part", "the part")
 EVERYTHING_WORDS = Message("scan.everything", "the camera, the fan, or the table with the part")
 

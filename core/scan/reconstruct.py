@@ -151,6 +151,7 @@ def reconstruct(
         moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
         second_bounces=bounces,
         drifted=watched.drifts,
+        collapsed=sweeps.collapsed,
         unsure_share=_unsure_share(found, cloud),
     )
 
@@ -218,7 +219,7 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    explained = watched.unsteady or part.movements or of_hand or sweeps.notes
+    explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed or sweeps.fan_silenced
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,

@@ -59,6 +59,8 @@ class ScanResult:
         Whether camera or fan moved evenly from its first frame to its last.
     read_out
         How planes change while the camera reads its rows out.
+    collapsed
+        Whether the sweeps' light planes have fallen together into one, so that no depth can be trusted.
     unsure_share
         Share of the sweeps' points that are less sure than the σ cut, and left out.
     """
@@ -79,6 +81,7 @@ class ScanResult:
     read_out: ReadOut = AT_ONCE
     moved: bool = False
     drifted: bool = False
+    collapsed: bool = False
     unsure_share: float = 0.0
     second_bounces: SecondBounces = NO_BOUNCES
 

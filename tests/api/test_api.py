@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import trisect
+from core.findings.proof import SIZE_UNCONFIRMED
 from core.model import Camera
 from tests.simulated import CUT
 from trisect import promised
@@ -126,9 +127,9 @@ def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
     scan = trisect.solve_scan(
         frames, camera, fan, reference=reference, options=trisect.ReconstructOptions(sigma_cut_mm=0.3)
     )
-    assert fan.scale_assumed and scan.doubt is not None
+    assert fan.scale_assumed and scan.facts.size_unconfirmed
     gauge = trisect.measure_thickness(scan, nominal_mm=50.0, tolerance_mm=5.0)
-    assert str(gauge.verdict) == "not proven" and scan.doubt in gauge.notes
+    assert str(gauge.verdict) == "not proven" and SIZE_UNCONFIRMED in gauge.notes
 
 
 def test_points_alone_prove_nothing(solved):

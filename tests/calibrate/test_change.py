@@ -73,9 +73,9 @@ def seen(times: float) -> Evidence:
 @pytest.mark.parametrize(
     ("times", "of_unchecked", "of_checked"),
     [
-        (1.0, None, None),
-        (1.6, "inspection.rig_may_have_changed", None),
-        (2.0, "inspection.rig_has_changed", "inspection.rig_has_changed"),
+        (1.0, (False, False), (False, False)),
+        (1.6, (False, True), (False, False)),
+        (2.0, (True, False), (True, False)),
     ],
 )
 def test_what_may_be_chance_in_one_of_100_rigs_proves_nothing_unless_a_check_of_the_day_has_passed(
@@ -83,8 +83,8 @@ def test_what_may_be_chance_in_one_of_100_rigs_proves_nothing_unless_a_check_of_
 ):
     change = judge(CAMERA, FAN, DEVIATIONS, seen(times), DEFAULT_STABILITY)
     assert (0.001 < change.p < 0.01) is (times == 1.6)
-    doubts = [replace(change, checked=checked).doubt for checked in (False, True)]
-    assert [doubt and doubt.code for doubt in doubts] == [of_unchecked, of_checked]
+    changes = [replace(change, checked=checked) for checked in (False, True)]
+    assert [(one.surely, one.seemingly) for one in changes] == [of_unchecked, of_checked]
 
 
 def test_only_pictures_that_see_a_change_agree_with_the_calibrations():

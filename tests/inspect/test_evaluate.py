@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.board_shape import SIZE_UNCONFIRMED
 from core.errors import InputError
 from core.inspect.characteristic import Limits
 from core.inspect.conformity import Verdict
@@ -181,7 +180,7 @@ def test_flatness_scatters_as_much_as_its_uncertainty_says():
 
 
 def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_the_target_is_assumed(cloud):
-    doubted = replace(ERRORS, doubt=SIZE_UNCONFIRMED)
+    doubted = replace(ERRORS, size_unconfirmed=True)
     master = Master("M", 40.0, 1e-3, 40.001, ((POINT_NOISE, 1e-3),), ("height",))
     plan = InspectionPlan(
         (
@@ -202,6 +201,6 @@ def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_th
 def test_a_doubt_that_comes_or_goes_has_all_measured_again(cloud):
     plan = InspectionPlan(PLANES)
     before = evaluate(plan, cloud, errors=ERRORS)
-    after = evaluate(plan, cloud, errors=replace(ERRORS, doubt=SIZE_UNCONFIRMED), previous=before)
+    after = evaluate(plan, cloud, errors=replace(ERRORS, size_unconfirmed=True), previous=before)
     assert [row.complete for row in before.characteristics] == [True] * len(after.characteristics)
     assert [row.complete for row in after.characteristics] == [False] * len(after.characteristics)

@@ -4,7 +4,7 @@ from datetime import UTC, datetime
 import numpy as np
 import pytest
 
-from core.calibrate.change import CHANGED
+from core.findings.proof import CHANGED
 from core.messages import ENGLISH, plain
 from core.report.content import Overlay
 from core.report.layout.paragraph import Paragraph

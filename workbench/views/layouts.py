@@ -24,8 +24,8 @@ from PySide6.QtWidgets import (
 )
 from superqt import QElidingLabel
 
+from core.findings.table import gravest_first, is_grave
 from core.messages import Message, unparted
-from core.urgent import is_urgent, urgent_first
 from workbench.language import text_of
 
 NO_MARGINS = (0, 0, 0, 0)
@@ -295,11 +295,11 @@ def alarm() -> Sentence:
     return label
 
 
-def say_notes(notes: Iterable[Message], urgent: QLabel, others: QLabel) -> None:
-    """Show notes, the urgent ones where they are said first."""
-    told = urgent_first(notes)
-    for label, wanted in ((urgent, True), (others, False)):
-        say(label, "\n".join(text_of(note) for note in told if is_urgent(note) is wanted))
+def say_notes(notes: Iterable[Message], grave: QLabel, others: QLabel) -> None:
+    """Show notes, the grave ones where they are said first."""
+    told = gravest_first(notes)
+    for label, wanted in ((grave, True), (others, False)):
+        say(label, "\n".join(text_of(note) for note in told if is_grave(note) is wanted))
 
 
 def say(label: QLabel | QAbstractButton, text: str) -> None:

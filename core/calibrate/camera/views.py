@@ -16,9 +16,6 @@ from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.progress import Progress, silent
 
-HOT_PIXELS = "camera.hot_pixels"
-"""Code of the note on hot pixels, with their number `n`."""
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenView:
@@ -78,7 +75,7 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
             for quality in calibration.views
         ),
         where,
-        next((int(note.values["n"]) for note in calibration.notes if note.code == HOT_PIXELS), 0),
+        calibration.hot_pixels or 0,
     )
 
 

@@ -150,7 +150,13 @@ def fit_fan(
         joint = solve(verdict.start, _bundle_poses(located), camera, camera_covariance, plate=plate)
         again = fit_fan(features, joint.camera, options, progress, excluded)
         notes = again.notes if joint.converged else tuple(dict.fromkeys((NOT_CONVERGED, *again.notes)))
-        return replace(again, camera=joint.camera, camera_covariance=joint.camera_covariance, notes=notes)
+        return replace(
+            again,
+            camera=joint.camera,
+            camera_covariance=joint.camera_covariance,
+            notes=notes,
+            converged=again.converged and joint.converged,
+        )
     used = free
     if not isinstance(verdict.start, FreePlanes):
         used = solve(verdict.start, _bundle_poses(located), camera, plate=plate)
@@ -161,12 +167,15 @@ def fit_fan(
     summary = summarise(located, free, used, verdict, foretold, further, flat)
     converged = verdict.converged and all(one.converged for one in (free, used, flat) if one is not None)
     of_fit = () if converged else (NOT_CONVERGED,)
-    of_target = options.target.notes("plane_target", shape_known=options.seen_bowed is not None)
+    shape_known = options.seen_bowed is not None
+    of_target = options.target.notes("plane_target", shape_known=shape_known)
     return replace(
         summary,
         notes=(*of_fit, *summary.notes, *of_target),
         scale_sd=options.target.size_sd,
         scale_assumed=options.target.scale_sd is None,
+        converged=converged,
+        flatness_assumed=options.target.flatness_mm is None and not shape_known,
     )
 
 

@@ -24,8 +24,6 @@ from core.model import Camera, Pose
 from core.model.arrays import Array
 from core.model.residuals import Judgement, judge_residuals, of_vectors, over_picture
 
-OFF_ALIKE = ("fan.point_off_target", "fan.points_off_in_region")
-"""Codes of the notes on what lies off alike in all poses, which U need not contain."""
 TOLD_PX, TOLD_MM = 0.05, 0.05
 """What lies off by less at its strongest is not told: a camera's own uncertainty may be of this size."""
 

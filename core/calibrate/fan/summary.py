@@ -71,6 +71,7 @@ def summarise(
             bent_mm = off_planes_mm(_by_line([pose.points for pose in poses]), bends)
             of_lines = (*of_lines, bow_or_bend(on_flat))
     free_fan = fan_of(free.planes, free.covariance)
+    of_points = notes_on_points(judge_points(located, used))
     return FanCalibration(
         fan=fan_of(used.planes, used.covariance),
         free=free_fan,
@@ -85,7 +86,7 @@ def summarise(
             *notes,
             *_notes(located, poses),
             *of_lines,
-            *notes_on_points(judge_points(located, used)),
+            *of_points,
             *_notes_on_scatter(foretold.error_mm, max(used.expected_mm, bent_mm)),
             *_notes_on_predictions([pose.features.name for pose in located if pose.used], foretold),
             *_notes_on_bow(used.shape),
@@ -96,6 +97,7 @@ def summarise(
         cross_validation_mm=float(np.sqrt(np.mean(foretold.error_mm**2))),
         board=used.shape,
         bends=bends,
+        points_off_alike=bool(of_points),
     )
 
 

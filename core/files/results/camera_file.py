@@ -83,6 +83,7 @@ class _CameraFile(ResultFile):
     tilt_range_deg: OrNan = math.nan
     cross_validation_mm: OrNan = math.nan
     board: BoardTable | None = None
+    hot_pixels: Annotated[int, Field(ge=0)] | None = None
     views: list[_View] = Field(default_factory=list)
     notes: list[KeptMessage] = Field(default_factory=list)
 
@@ -129,6 +130,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
             "coverage": calibration.coverage,
             "tilt_range_deg": math.degrees(calibration.tilt_range),
             "cross_validation_mm": calibration.cross_validation_mm,
+            "hot_pixels": calibration.hot_pixels,
             "notes": [kept(note) for note in calibration.notes],
             "id": camera_id(camera),
             "version": __version__,
@@ -180,6 +182,7 @@ def _calibration(file: _CameraFile) -> CameraCalibration:
         cross_validation_mm=file.cross_validation_mm,
         notes=tuple(file.notes),
         board=board_shape(file.board),
+        hot_pixels=file.hot_pixels,
     )
 
 

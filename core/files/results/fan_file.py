@@ -103,6 +103,9 @@ class _PlanesFile(ResultFile):
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
     scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
     scale_assumed: bool = False
+    converged: bool | None = None
+    points_off_alike: bool | None = None
+    flatness_assumed: bool | None = None
     cross_validation_mm: OrNan = math.nan
     stripe_sd_mm: OrNan = math.nan
     corner_scale: OrNan = math.nan
@@ -211,6 +214,9 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             "by_camera": calibration.by_camera,
             "scale_sd": calibration.scale_sd,
             "scale_assumed": calibration.scale_assumed,
+            "converged": calibration.converged,
+            "points_off_alike": calibration.points_off_alike,
+            "flatness_assumed": calibration.flatness_assumed,
             "camera": _corrected_camera(calibration),
             "board": board_table(calibration.board) if calibration.board.values.any() else None,
             "bends": calibration.bends,
@@ -286,6 +292,9 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         board=board_shape(file.board),
         bends=None if file.bends is None else np.array(file.bends),
         readjusted=_readjusted(file.readjusted),
+        converged=file.converged,
+        points_off_alike=file.points_off_alike,
+        flatness_assumed=file.flatness_assumed,
     )
 
 

@@ -19,10 +19,10 @@ from core.files.complaints import checked
 from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.tables import Finite, KeptMessage, OptionalMessage, OrInfinite, OrNan, ResultFile, Time, kept
+from core.findings.table import gravest_first
 from core.messages import Command, Message, plain
 from core.processor import IMPORTED_BEFORE
 from core.scan.features.frames import CrossingUse, FrameRecord
-from core.urgent import urgent_first
 
 T = TypeVar("T")
 
@@ -99,8 +99,8 @@ class RunRecord:
 
     @property
     def all_notes(self) -> tuple[Message, ...]:
-        """The notes of all steps, each once: the urgent ones, then in the order the steps were done."""
-        return urgent_first(note for notes in self.notes.values() for note in notes)
+        """The notes of all steps, each once: the gravest first, else in the order the steps were done."""
+        return gravest_first(note for notes in self.notes.values() for note in notes)
 
 
 class _Frame(ResultFile):

@@ -6,7 +6,7 @@ thickness, without its pictures.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, fields
 from pathlib import Path
 from typing import Any
 
@@ -32,6 +32,7 @@ from core.files.arrays_file import (
     write_arrays,
     wrong_shape,
 )
+from core.findings.proof import ScanFacts
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.messages import Command, Message
@@ -46,6 +47,7 @@ _TODO = Message(
 )
 _NO_FRAME = -1
 """Stands in place of a frame's number where there is none."""
+_FACTS = tuple(one.name for one in fields(ScanFacts) if one.name != "of_the_day")
 _COMMON = ("sources", "cameras", "fans", "sweeps")
 _OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
 """Files of earlier versions call them as budgets do."""
@@ -69,7 +71,8 @@ _MEMBERS = {
     "notes": texts(None),
     "stripes": real(2, 2),
     "change_p": real(optional=True),
-    "doubt": texts(None, optional=True),
+    **{f"fact_{name}": truth(optional=True) for name in _FACTS},
+    "of_the_day": texts(None, optional=True),
     "unsure_share": real(optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "frame_fan_shifts_px": real("frames", None, optional=True),
@@ -126,8 +129,8 @@ class ScanFile:
         What the fan's own points and the sweeps are both wrong by; None if not known.
     change_p
         Probability that chance alone sets calibrations and pictures of the scan so far apart; 1 if not known.
-    doubt
-        Why nothing measured in the scan proves conformity, if calibration or check did not hold on its day; else None.
+    facts
+        What decides whether anything measured in the scan can prove conformity; what the file lacks is not known.
     second_bounces
         Frame and number of the sweeps' centrelines that were left out as second bounces.
     unsure_share
@@ -146,7 +149,7 @@ class ScanFile:
     common: CommonErrors | None = None
     speckle: FanSpeckle | None = None
     change_p: float = 1.0
-    doubt: Message | None = None
+    facts: ScanFacts = field(default_factory=ScanFacts)
     second_bounces: tuple[tuple[int, int], ...] = ()
     unsure_share: float = 0.0
 
@@ -171,7 +174,8 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         "change_p": np.array(scan.change_p),
-        "doubt": pack_messages((scan.doubt,)),
+        **{f"fact_{name}": np.array(getattr(scan.facts, name)) for name in _known(scan.facts)},
+        "of_the_day": pack_messages(scan.facts.of_the_day),
         "unsure_share": np.array(scan.unsure_share),
         **_pack_shifts(features),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
@@ -240,12 +244,22 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         common=_common(arrays, (width, height)),
         speckle=_speckle(arrays),
         change_p=float(arrays.get("change_p", 1.0)),
-        doubt=next(iter(unpack_messages(arrays["doubt"])), None) if "doubt" in arrays else None,
+        facts=_facts(arrays),
         second_bounces=tuple(
             (frame, piece) for frame, piece in arrays.get("second_bounces", np.zeros((0, 2))).tolist()
         ),
         unsure_share=float(arrays.get("unsure_share", 0.0)),
     )
+
+
+def _known(facts: ScanFacts) -> list[str]:
+    return [name for name in _FACTS if getattr(facts, name) is not None]
+
+
+def _facts(arrays: Arrays) -> ScanFacts:
+    known = {name: bool(arrays[f"fact_{name}"]) for name in _FACTS if f"fact_{name}" in arrays}
+    of_the_day = unpack_messages(arrays["of_the_day"]) if "of_the_day" in arrays else []
+    return ScanFacts(**known, of_the_day=tuple(filter(None, of_the_day)))
 
 
 def _pack_shifts(features: ScanFeatures) -> dict[str, NDArray[Any]]:

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import FANS, UNEXPLAINED, Source
+from core.findings.proof import SIZE_UNCONFIRMED
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.inspect.uncertainty.part import Part
@@ -51,8 +52,11 @@ class PointErrors:
         What the fan's points and the sweeps have in common; None: taken for independent of each other.
     stripe_px
         σ of the light's sections in the picture; 0: not known. On a curved surface they are uneven.
-    doubt
-        Why nothing measured proves conformity, however small its uncertainty; None: nothing speaks against it.
+    doubts
+        Why nothing measured proves conformity, however small its uncertainty; (): nothing speaks against it.
+    size_unconfirmed
+        Whether the target's size is neither stated nor confirmed: nothing proves conformity but a comparison with a
+        master, in which it cancels.
     """
 
     sweep_covariance: Array | None = None
@@ -61,7 +65,8 @@ class PointErrors:
     speckle_px: float = 12.0
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
-    doubt: Message | None = None
+    doubts: tuple[Message, ...] = ()
+    size_unconfirmed: bool = False
     part: Part | None = None
     """What is stated of the part; None: it is as opaque and as cold as it need be."""
     sweep_size: int = 3
@@ -72,7 +77,12 @@ class PointErrors:
     @property
     def complete(self) -> bool:
         """Whether uncertainties hold all that is known to act on the points; else they prove nothing."""
-        return self.sweep_covariance is not None and self.doubt is None
+        return self.sweep_covariance is not None and not self.all_doubts
+
+    @property
+    def all_doubts(self) -> tuple[Message, ...]:
+        """The doubts, and that of the target's size."""
+        return (*self.doubts, SIZE_UNCONFIRMED) if self.size_unconfirmed else self.doubts
 
     @classmethod
     def of_scan(

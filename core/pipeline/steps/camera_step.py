@@ -178,8 +178,9 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
 
 
 def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibration:
-    """The calibration with a note on hot pixels, where there are so many that some lie at corners and in stripes."""
+    """The calibration with the number of hot pixels; a note where so many that some lie at corners and in stripes."""
     width, height = calibration.camera.image_size
+    calibration = replace(calibration, hot_pixels=seen.hot)
     if seen.hot < FEWEST_HOT_SHARE * width * height:
         return calibration
     note = plural_message(

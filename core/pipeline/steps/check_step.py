@@ -294,7 +294,7 @@ def charted_spread(
         history = history_of(recording_set.rig, calibration.id)
         return history.spread(calibration.id, when or taken_at(recording_set.frames), stated)
     except InputError:
-        return None  # doubt_of_the_day tells that it cannot be read
+        return None  # facts_of_the_day tells that it cannot be read
 
 
 class Judged(NamedTuple):

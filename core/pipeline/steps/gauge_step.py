@@ -6,7 +6,6 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 
-from core.calibrate.change import CHANGED, PROVES_NOTHING
 from core.errors import InputError, NoThickness
 from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
@@ -23,7 +22,7 @@ from core.model.arrays import Array
 from core.pipeline.steps.check_step import checked_on_the_day
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
-from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN, WARM_UP
+from core.scan.fan_watch import WARM_UP
 from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
 
@@ -116,14 +115,14 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        if scan.doubt == MOVED_WITHIN:
+        if scan.facts.moved:
             what = Message(
                 "gauge.moved_and_no_faces",
                 "something moved during the scan; of what is left: {reason}",
                 reason=error.what,
             )
             raise InputError(what, where=error.where, todo=HOLD_STILL) from error
-        if scan.doubt == DRIFTED_WITHIN:
+        if scan.facts.drifted:
             what = Message(
                 "gauge.drifted_and_no_faces",
                 "the rig drifted during the scan; of what it measured so: {reason}",
@@ -157,9 +156,7 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    if scan.doubt is None and scan.change_p < PROVES_NOTHING:  # results of versions that did not keep this doubt
-        return replace(errors, doubt=CHANGED)
-    return replace(errors, doubt=scan.doubt)
+    return replace(errors, doubts=scan.facts.doubts, size_unconfirmed=scan.facts.size_unconfirmed is not False)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:

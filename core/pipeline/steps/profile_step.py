@@ -26,7 +26,7 @@ from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.scan_step import section_change
-from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
+from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import OF_CLOUD, Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan import changed_section
@@ -134,10 +134,18 @@ def profile_step(
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
         of_section = () if section is None else (section.note,)
-        doubt = change.doubt or doubt_of_the_day(work, calibration) or (changed_section.DOUBT if of_section else None)
+        facts = replace(
+            facts_of_the_day(work, calibration),
+            moved=False,
+            drifted=False,
+            collapsed=False,
+            rig_changed=change.surely,
+            rig_seems_changed=change.seemingly,
+            section_changed=section is not None,
+        )
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
-        if doubt is not None:
+        for doubt in reversed(facts.all_doubts):
             gauge = doubted(gauge, doubt)
         notes = (
             *channel.notes("scan"),

@@ -139,7 +139,7 @@ def _artefacts(work: Workspace) -> tuple[ArtefactCheck, ...]:
     try:
         history = history_of(work.recording_set.rig, calibration.id)
     except InputError:
-        return ()  # doubt_of_the_day has told it
+        return ()  # facts_of_the_day has told it
     return history.artefacts(calibration.id, taken_at(work.recording_set.frames))
 
 

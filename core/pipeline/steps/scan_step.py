@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
+from core.calibrate.change import Change
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
@@ -18,19 +19,20 @@ from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.fan_file import fan_id
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
+from core.findings.proof import ScanFacts
+from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message, plural_message
 from core.model import Camera
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.kept_features import features_key, kept_features
 from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan, require_frames
-from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
+from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan import changed_section
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.common_errors import solve_common
-from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.features.frames import left_out_notes
 from core.scan.features.picture_faults import faults_first
@@ -49,7 +51,6 @@ from core.scan.surface.mesh import build_mesh
 from core.scan.surface.normals import with_normals
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes, stage
-from core.urgent import urgent_first
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -119,13 +120,12 @@ def scan_step(
         common = solve_common(even, scan, camera, fan, deviations, options.method, progress)
         cloud, mesh = shaped()
         scan = replace(scan, cloud=replace(cloud, sigma_common=common.sigma(cloud)))
-        doubt = unsteady(scan) or change.doubt or doubt_of_the_day(work, calibration)
         of_section = () if section is None else (section.note,)
-        doubt = doubt or (changed_section.DOUBT if of_section else None)
+        facts = with_facts_of(scan, change, section, facts_of_the_day(work, calibration))
         said = (
             *change.notes,
             *of_section,
-            *([doubt] if doubt else []),
+            *facts.all_doubts,
             *notes_on_focus(work, calibration, features.fan),
         )
         if calibration.fan.readjusted is not None:
@@ -136,14 +136,14 @@ def scan_step(
             *assumed_stability(recording_set, change, calibration.fan),
             *assumed_shutter(recording_set.rig.row_time_us, scan),
         )
-        scan = replace(scan, notes=urgent_first(notes))
+        scan = replace(scan, notes=gravest_first(notes))
         log.frames.extend(scan.frames)
         left_out = left_out_notes(scan.frames)
         said_first = (*scan.notes, *left_out) if scan.moved else (*left_out, *scan.notes)
-        log.notes.extend(urgent_first((*said_first, *_lost(recording_set))))
+        log.notes.extend(gravest_first((*said_first, *_lost(recording_set))))
         file = _file(features, scan, calibration.id, features_key(recording_set, options, camera))
         with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
-            _write(log, scan, mesh, replace(file, common=common, change_p=change.p, doubt=doubt))
+            _write(log, scan, mesh, replace(file, common=common, change_p=change.p, facts=facts))
     return Measured(scan, mesh)
 
 
@@ -165,11 +165,19 @@ def make_surface(scanned: tuple[Cloud, tuple[int, int]], /, *, progress: Progres
     return cloud, build_mesh(surface, progress=progress)
 
 
-def unsteady(scan: ScanResult) -> Message | None:
-    """Say why nothing in the scan proves conformity, if something moved within it; None if nothing did."""
-    if scan.moved:
-        return MOVED_WITHIN
-    return DRIFTED_WITHIN if scan.drifted else None
+def with_facts_of(
+    scan: ScanResult, change: Change, section: changed_section.ChangedSection | None, of_planes: ScanFacts
+) -> ScanFacts:
+    """The facts of the planes and the day, with those that the scan shows itself."""
+    return replace(
+        of_planes,
+        moved=scan.moved,
+        drifted=scan.drifted,
+        collapsed=scan.collapsed,
+        rig_changed=change.surely,
+        rig_seems_changed=change.seemingly,
+        section_changed=section is not None,
+    )
 
 
 def section_change(

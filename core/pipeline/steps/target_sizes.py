@@ -8,7 +8,7 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from core.calibrate.board_shape import LARGEST_SCALE_SD, SIZE_ASSUMED
+from core.calibrate.board_shape import LARGEST_SCALE_SD, size_assumed
 from core.calibrate.results import FanCalibration
 from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
 from core.files.reading import file_hash
@@ -129,5 +129,5 @@ def with_compared_sizes(
 
 def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
     """The fan whose target has this standard uncertainty of its size, as a share: it is assumed no more."""
-    notes = tuple(note for note in fan.notes if note.code != SIZE_ASSUMED)
+    notes = tuple(note for note in fan.notes if note != size_assumed("plane_target"))
     return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False, notes=notes)

@@ -7,9 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from datetime import datetime, timedelta
 
-from core.calibrate.board_shape import LARGEST_SCALE_SD, SIZE_UNCONFIRMED
-from core.calibrate.fan.calibration import NOT_CONVERGED
-from core.calibrate.fan.picture_residuals import OFF_ALIKE
+from core.calibrate.board_shape import LARGEST_SCALE_SD
 from core.calibrate.results import FanCalibration, Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
@@ -17,6 +15,7 @@ from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
 from core.files.results.rig_history import PastCheck, RigHistory, read_history
 from core.files.results.run_file import RunRecord
+from core.findings.proof import ScanFacts
 from core.messages import Message, plural_message
 from core.pipeline.steps.target_sizes import with_known_size
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -24,20 +23,6 @@ from core.pipeline.steps.workspace import Calibration, Workspace
 _DAY_S = 86_400.0
 """Seconds of a day."""
 _WORST_FIRST = ("failed", "doubtful", "passed")
-
-
-POINTS_UNCONFIRMED = Message(
-    "validity.target_points_off",
-    "In all poses of the laser planes' calibration the target's points lie off alike, which U need not contain: "
-    "nothing measured proves conformity. Calibrate again with a true target and camera, or measure a known artefact.",
-)
-"""Why nothing proves conformity where target and camera did not fit each other."""
-UNSETTLED = Message(
-    "validity.planes_not_settled",
-    "The calibration of the laser planes had not settled: nothing measured proves conformity. Record more poses of the "
-    "target, at different distances and tilts, and calibrate again.",
-)
-"""Why nothing proves conformity where the planes' calibration was not solved to its end."""
 
 
 def history_name(rig: Rig, calibration_id: str) -> str:
@@ -50,52 +35,52 @@ def history_of(rig: Rig, calibration_id: str) -> RigHistory:
     return read_history(history_name(rig, calibration_id))
 
 
-def doubt_of_the_day(work: Workspace, calibration: Calibration) -> Message | None:
-    """Why nothing measured proves conformity on the day it was recorded; None if calibration and check held.
+def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
+    """What of the planes' calibration, and of the day of the recording, decides whether anything is proven.
 
-    The check nearest in time counts, before the recording or after it. What is not stated has no limit. A size of the
-    plane target that is assumed proves nothing on any day, nor does a calibration of the planes that had not settled.
-    Neither does a target whose points lie off alike in all poses, before U contains what an artefact has left possible.
+    The check nearest in time counts, before the recording or after it. What is not stated has no limit. That the
+    target's points lie off alike in all poses counts no more once U contains what an artefact has left possible.
     """
-    recording_set = work.recording_set
+    recording_set, fan = work.recording_set, calibration.fan
     when = taken_at(recording_set.frames)
+    facts = facts_of_planes(fan)
     try:
         checks = history_of(recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError as error:
-        return Message(
+        unreadable = Message(
             "validity.history_unreadable",
             "The history of this rig's checks cannot be read ({reason}): nothing measured proves conformity.",
             reason=error.message,
         )
-    if (known := calibration.fan.readjusted) is not None:
-        checks = (*checks, _as_check(known, calibration.id))
+        return replace(facts, of_the_day=(unreadable,))
+    if fan.readjusted is not None:
+        checks = (*checks, _as_check(fan.readjusted, calibration.id))
     nearest = _nearest(checks, when)
     if nearest is not None and nearest.verdict == "failed":
-        return Message(
+        failed = Message(
             "validity.check_failed",
             "The check of camera and laser of {date} failed: nothing measured with these calibrations proves "
             "conformity; calibrate again.",
             date=nearest.taken_at.astimezone(),
         )
-    lapsed = _calibration_lapsed(recording_set, work.record(), when) or _check_lapsed(recording_set.rig, nearest, when)
-    doubt = doubt_of_calibration(calibration.fan)
-    if lapsed is None and doubt == POINTS_UNCONFIRMED:
-        nearest = _passed_artefact(recording_set.rig, checks, when)
-        if nearest is not None and _left_possible(nearest) <= calibration.fan.scale_sd:
-            return None
-    return lapsed or doubt
+        return replace(facts, of_the_day=(failed,))
+    lapsed = (
+        _calibration_lapsed(recording_set, work.record(), when),
+        _check_lapsed(recording_set.rig, nearest, when),
+    )
+    artefact = _passed_artefact(recording_set.rig, checks, when)
+    if artefact is not None and _left_possible(artefact) <= fan.scale_sd:
+        facts = replace(facts, points_off_alike=False)
+    return replace(facts, of_the_day=tuple(why for why in lapsed if why is not None))
 
 
-def doubt_of_calibration(fan: FanCalibration) -> Message | None:
-    """Why the calibration of the planes by itself leaves nothing proven; None if it does not.
-
-    A size of the target that is assumed, a solution that had not settled, or points that lie off alike in all poses.
-    """
-    if fan.scale_assumed:
-        return SIZE_UNCONFIRMED
-    if any(note.code == NOT_CONVERGED.code for note in fan.notes):
-        return UNSETTLED
-    return POINTS_UNCONFIRMED if _off_alike(fan) else None
+def facts_of_planes(fan: FanCalibration) -> ScanFacts:
+    """What of the planes' calibration decides whether anything is proven."""
+    return ScanFacts(
+        planes_unsettled=None if fan.converged is None else not fan.converged,
+        points_off_alike=fan.points_off_alike,
+        size_unconfirmed=fan.scale_assumed,
+    )
 
 
 def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibration:
@@ -107,13 +92,13 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     was re-adjusted with, and is confirmed only by an artefact that says as much.
     """
     fan = calibration.fan
-    if not (fan.scale_assumed or _off_alike(fan)):
+    if not fan.scale_assumed and fan.points_off_alike is False:
         return calibration
     when = taken_at(work.recording_set.frames)
     try:
         checks = history_of(work.recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError:
-        return calibration  # doubt_of_the_day tells that it cannot be read
+        return calibration  # facts_of_the_day tells that it cannot be read
     nearest = _passed_artefact(work.recording_set.rig, checks, when)
     if nearest is None:
         return calibration
@@ -121,11 +106,6 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     if left > (fan.scale_sd if fan.readjusted is not None else LARGEST_SCALE_SD):
         return calibration
     return replace(calibration, fan=with_known_size(fan, left if fan.scale_assumed else max(fan.scale_sd, left)))
-
-
-def _off_alike(fan: FanCalibration) -> bool:
-    """Whether the target's points lay off alike in all poses of the planes' calibration."""
-    return any(note.code in OFF_ALIKE for note in fan.notes)
 
 
 def _left_possible(check: PastCheck) -> float:

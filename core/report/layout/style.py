@@ -26,7 +26,7 @@ from core.report.template import Paper
 from core.report.wording import Words
 
 ALARM = "#A61B1B"
-"""What is urgent is written in it."""
+"""What is grave is written in it."""
 ACCENT, INK, MUTED, HAIRLINE, TINT = "#14586E", "#1D2327", "#5C6870", "#CBD3D7", "#EFF4F6"
 """The accent, text, secondary text, thin rules, and the ground of the result box; hex, for plots as well."""
 
@@ -247,5 +247,5 @@ class ReportLook:
         return Paragraph(f'<a href="#{key}" color="{self.accent}">{self.markup(plain)}</a>', self.style(style))
 
     def bullets(self, sentences: tuple[str, ...], style: str = "bullet") -> list[Paragraph]:
-        """Each sentence behind a small bullet; "alarm": in the colour of what is urgent."""
+        """Each sentence behind a small bullet; "alarm": in the colour of what is grave."""
         return [Paragraph(self.markup(sentence), self.style(style), bulletText="•") for sentence in sentences]

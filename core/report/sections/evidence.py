@@ -8,6 +8,7 @@ from reportlab.lib.units import mm
 from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
+from core.findings.table import is_grave
 from core.messages import Message, plural_message
 from core.report.content import LeftOut, ReportContent
 from core.report.layout.blocks import (
@@ -29,7 +30,6 @@ from core.report.wording import decimals_of, grouped, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.states import CHECKS
 from core.study.artefact_check import KINDS
-from core.urgent import is_urgent
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -129,11 +129,11 @@ def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
     notes = content.all_notes
     if not notes:
         return []
-    urgent = sum(map(is_urgent, notes))
-    told = tuple(look.words.known(note) for note in notes[: max(urgent, limits.notes)])
+    grave = sum(map(is_grave, notes))
+    told = tuple(look.words.known(note) for note in notes[: max(grave, limits.notes)])
     body = [
-        *look.bullets(told[:urgent], "alarm"),
-        *look.bullets(told[urgent:]),
+        *look.bullets(told[:grave], "alarm"),
+        *look.bullets(told[grave:]),
         *more_line(look, len(notes) - len(told)),
     ]
     return [section(look, "notes", "Notes and warnings", body)]

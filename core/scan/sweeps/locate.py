@@ -37,6 +37,7 @@ class LocatedSweeps:
 
     `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
     `core.scan.network.adjustment.Network`; F = Q = 0 where not known. `judged`: what is wrong with the residuals.
+    `collapsed`: whether the planes have fallen together into one; `fan_silenced`: whether they disagree with the fan.
     """
 
     frames: NDArray[np.int64]
@@ -50,6 +51,8 @@ class LocatedSweeps:
     line_cells: NDArray[np.int64] = field(default_factory=lambda: np.zeros((0, 3), dtype=np.int64))
     line_covariance: Array = field(default_factory=lambda: np.zeros((0, 3)))
     judged: tuple[Message, ...] = ()
+    collapsed: bool = False
+    fan_silenced: bool = False
 
     @property
     def middle_planes(self) -> tuple[Array, Array]:
@@ -181,6 +184,8 @@ def locate_together(
         network.line_cells,
         network.line_covariance,
         notes_on_network(network.scale, network.fan_off, camera.image_size),
+        network.collapsed,
+        network.fan_silenced,
     )
 
 

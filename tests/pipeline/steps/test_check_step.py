@@ -39,7 +39,7 @@ from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
 from core.pipeline.steps.scan_pictures import look_at_scan
 from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step, section_change
-from core.pipeline.steps.validity import doubt_of_the_day
+from core.pipeline.steps.validity import facts_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.content import thickness_characteristic
 from core.report.wording import decision_sentence, verdict_sentence
@@ -538,8 +538,8 @@ def test_an_artefact_is_held_to_its_certificate_and_kept_in_the_same_history(mea
     assert wrong.code == 1 and json.loads(wrong.out)["verdict"] == "failed"
     assert trisect("artefact", made, "--out", out, "--id", "GB 9").code == 2
     work = Workspace.open(open_set(made), out)
-    told = doubt_of_the_day(work, work.calibration())
-    assert told is not None and told.code == "validity.check_failed", "what was measured then proves nothing"
+    (told,) = facts_of_the_day(work, work.calibration()).of_the_day
+    assert told.code == "validity.check_failed", "what was measured then proves nothing"
 
 
 STEP = """[[artefact]]

@@ -5,23 +5,23 @@ from types import SimpleNamespace
 import pytest
 
 from core.errors import InputError
+from core.findings.proof import ScanFacts
 from core.messages import Message
 from core.pipeline.steps import gauge_step
-from core.scan.fan_watch import DRIFTED_WITHIN, MOVED_WITHIN
 
 NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are parallel", n=1)
 
 
 @pytest.mark.parametrize(
-    ("doubt", "code", "todo"),
+    ("facts", "code", "todo"),
     [
-        (MOVED_WITHIN, "gauge.moved_and_no_faces", "hold both still"),
-        (DRIFTED_WITHIN, "gauge.drifted_and_no_faces", "warm up"),
-        (None, "gauge.no_parallel_faces", "scan both"),
+        (ScanFacts(moved=True), "gauge.moved_and_no_faces", "hold both still"),
+        (ScanFacts(drifted=True), "gauge.drifted_and_no_faces", "warm up"),
+        (ScanFacts(), "gauge.no_parallel_faces", "scan both"),
     ],
 )
-def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(doubt, code, todo):
-    with pytest.raises(InputError) as refused, gauge_step.movement_first(SimpleNamespace(doubt=doubt)):
+def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(facts, code, todo):
+    with pytest.raises(InputError) as refused, gauge_step.movement_first(SimpleNamespace(facts=facts)):
         raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
     assert refused.value.code == code
     assert "no two are parallel" in str(refused.value)

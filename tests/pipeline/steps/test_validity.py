@@ -9,16 +9,15 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from core.calibrate.fan.calibration import NOT_CONVERGED
 from core.calibrate.results import FanCalibration
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Validity, default_rig
 from core.files.recording.set_listing import PlanePair
 from core.files.results.rig_history import PastCheck, history_file, keep_check
 from core.files.results.run_file import RunRecord
-from core.messages import Message
+from core.findings.proof import OF_SCAN
 from core.model import Fan, LightPlane
-from core.pipeline.steps.validity import doubt_of_the_day, with_size_by_artefact
+from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from tests.check_cases import check
 
 NOON = datetime(2026, 5, 4, 12, tzinfo=UTC)
@@ -47,10 +46,17 @@ def checked(days, p=0.4):
     keep_check(ID, replace(PastCheck.of(check(p)), taken_at=NOON - timedelta(days=days), pictures_id=f"{days}"))
 
 
+def doubts(work, calibration):
+    """Codes of all doubts of a scan in which nothing moved or changed."""
+    facts = replace(facts_of_the_day(work, calibration), **dict.fromkeys(OF_SCAN, False))
+    return [doubt.code for doubt in facts.all_doubts]
+
+
 def doubt(work, readjusted=None):
-    fan = SimpleNamespace(readjusted=readjusted, scale_assumed=False, notes=())
-    told = doubt_of_the_day(work, SimpleNamespace(id=ID, fan=fan))
-    return "" if told is None else told.code
+    fan = SimpleNamespace(
+        readjusted=readjusted, scale_assumed=False, scale_sd=0.0, converged=True, points_off_alike=False
+    )
+    return ", ".join(doubts(work, SimpleNamespace(id=ID, fan=fan)))
 
 
 @dataclass(frozen=True)
@@ -64,7 +70,8 @@ class _Calibration:
 def calibrated(*, assumed):
     plane = LightPlane(np.array([0.0, 0.001, 0.002]))
     fan = FanCalibration(Fan((plane,)), Fan((plane,)), (0.0,), (), (), 0.0, None, None, ())
-    return _Calibration(replace(fan, scale_sd=5e-4, scale_assumed=assumed))
+    known = replace(fan, scale_sd=5e-4, scale_assumed=assumed, converged=True, points_off_alike=False)
+    return _Calibration(known)
 
 
 def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed", of=""):
@@ -77,8 +84,7 @@ def artefact_measured(days, error_mm=0.02, step_mm=50.0, verdict="passed", of=""
 
 
 def size_doubted(work, calibration):
-    told = doubt_of_the_day(work, with_size_by_artefact(work, calibration))
-    return told is not None and told.code == "target.size_unconfirmed"
+    return "target.size_unconfirmed" in doubts(work, with_size_by_artefact(work, calibration))
 
 
 def test_a_size_of_the_plane_target_that_nobody_stated_proves_nothing(tmp_path):
@@ -127,18 +133,16 @@ def test_a_readjusted_fan_is_confirmed_by_an_artefact_that_says_as_much_as_it_ho
     assert not with_size_by_artefact(work, readjusted).fan.scale_assumed
 
 
-@pytest.mark.parametrize("code", ["fan.point_off_target", "fan.points_off_in_region"])
-def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact_has_passed(tmp_path, code):
+def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact_has_passed(tmp_path):
     """A point printed aside in every pose shifts the planes, and U does not know by how much."""
     work, true = recorded(tmp_path, Validity(check_days=3)), calibrated(assumed=False)
-    off = replace(true, fan=replace(true.fan, notes=(Message(code, "off"),)))
+    off = replace(true, fan=replace(true.fan, points_off_alike=True))
 
     def doubted():
-        told = doubt_of_the_day(work, with_size_by_artefact(work, off))
-        return told is not None and told.code == "validity.target_points_off"
+        return doubts(work, with_size_by_artefact(work, off)) == ["validity.target_points_off"]
 
     checked(0.5)
-    assert doubt_of_the_day(work, true) is None
+    assert doubts(work, true) == []
     assert doubted(), "pictures of a check show the same target"
     artefact_measured(5)
     assert doubted(), "too long ago"
@@ -151,7 +155,7 @@ def test_a_target_that_does_not_fit_the_camera_proves_nothing_before_an_artefact
 def test_what_an_artefact_leaves_possible_of_points_off_alike_is_in_u(tmp_path):
     """An artefact that passes within a large U has seen little: so much larger is U of what is measured after it."""
     work, true = recorded(tmp_path), calibrated(assumed=False)
-    off = replace(true, fan=replace(true.fan, notes=(Message("fan.point_off_target", "off"),)))
+    off = replace(true, fan=replace(true.fan, points_off_alike=True))
     assert with_size_by_artefact(work, off).fan.scale_sd == 5e-4
     artefact_measured(2, step_mm=5.0)
     assert with_size_by_artefact(work, off).fan.scale_sd == pytest.approx(np.hypot(0.02, 0.03) / 5)
@@ -159,14 +163,21 @@ def test_what_an_artefact_leaves_possible_of_points_off_alike_is_in_u(tmp_path):
     artefact_measured(1, error_mm=0.0, step_mm=1000.0)
     assert with_size_by_artefact(work, off).fan.scale_sd == 5e-4, "it is never surer than stated"
     artefact_measured(0.5, step_mm=0.3)
-    told = doubt_of_the_day(work, with_size_by_artefact(work, off))
-    assert told is not None and told.code == "validity.target_points_off", "lengths within 12 % prove nothing"
+    told = doubts(work, with_size_by_artefact(work, off))
+    assert told == ["validity.target_points_off"], "lengths within 12 % prove nothing"
 
 
 def test_planes_that_had_not_settled_prove_nothing(tmp_path):
     true = calibrated(assumed=False)
-    told = doubt_of_the_day(recorded(tmp_path), replace(true, fan=replace(true.fan, notes=(NOT_CONVERGED,))))
-    assert told is not None and told.code == "validity.planes_not_settled"
+    told = doubts(recorded(tmp_path), replace(true, fan=replace(true.fan, converged=False)))
+    assert told == ["validity.planes_not_settled"]
+
+
+def test_planes_of_which_it_is_not_known_whether_they_had_settled_prove_nothing(tmp_path):
+    true = calibrated(assumed=False)
+    for unknown in ("converged", "points_off_alike"):
+        told = doubts(recorded(tmp_path), replace(true, fan=replace(true.fan, **{unknown: None})))
+        assert told == ["validity.planes_unknown"]
 
 
 def test_what_is_not_stated_has_no_limit(tmp_path):

@@ -8,7 +8,7 @@ import pytest
 from numpy.testing import assert_allclose
 from PySide6.QtCore import Qt
 
-from core.calibrate.change import CHANGED
+from core.findings.proof import CHANGED
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Sources

@@ -2,29 +2,23 @@
 
 import pytest
 
-from core.calibrate.change import CHANGED
 from core.cli import output
 from core.messages import Message, plain
-from core.scan.fan_watch import MOVED_WITHIN
-from core.urgent import URGENT, is_urgent, urgent_first
-from tests.translations import all_texts
+from core.findings.proof import CHANGED, MOVED_WITHIN
+from core.findings.table import gravest_first, is_grave
 
 ASSUMED, POINTLESS = plain("Assumed is a plate."), plain("5 frames gave no points.")
 
 
 def test_the_change_is_said_first_and_each_note_once():
-    assert urgent_first((ASSUMED, POINTLESS, MOVED_WITHIN, ASSUMED, CHANGED, MOVED_WITHIN)) == (
+    assert gravest_first((ASSUMED, POINTLESS, MOVED_WITHIN, ASSUMED, CHANGED, MOVED_WITHIN)) == (
         MOVED_WITHIN, CHANGED, ASSUMED, POINTLESS,
     )  # fmt: skip
 
 
-def test_what_is_said_of_a_result_is_as_urgent_as_what_is_said():
-    assert is_urgent(Message("report.note_of_result", "{name}: {note}", name="A", note=CHANGED))
-    assert not is_urgent(Message("report.note_of_result", "{name}: {note}", name="A", note=ASSUMED))
-
-
-def test_every_urgent_code_is_one_of_the_programs():
-    assert {text.code for text in all_texts()} >= URGENT
+def test_what_is_said_of_a_result_is_as_grave_as_what_is_said():
+    assert is_grave(Message("report.note_of_result", "{name}: {note}", name="A", note=CHANGED))
+    assert not is_grave(Message("report.note_of_result", "{name}: {note}", name="A", note=ASSUMED))
 
 
 @pytest.mark.parametrize("surroundings", [{}, {"NO_COLOR": "1"}, {"piped": "1"}])
