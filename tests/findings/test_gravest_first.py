@@ -3,9 +3,9 @@
 import pytest
 
 from core.cli import output
-from core.messages import Message, plain
 from core.findings.proof import CHANGED, MOVED_WITHIN
 from core.findings.table import gravest_first, is_grave
+from core.messages import Message, plain
 
 ASSUMED, POINTLESS = plain("Assumed is a plate."), plain("5 frames gave no points.")
 

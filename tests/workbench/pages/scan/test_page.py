@@ -8,11 +8,11 @@ import pytest
 from numpy.testing import assert_allclose
 from PySide6.QtCore import Qt
 
-from core.findings.proof import CHANGED
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Sources
 from core.files.project.keys import finished
+from core.findings.proof import CHANGED
 from core.inspect.shown.view_frame import FrameKind
 from core.messages import plain
 from core.model import LightPlane
