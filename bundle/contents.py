@@ -109,6 +109,7 @@ def wanted_binaries(binaries: list[tuple[str, str, str]]) -> Iterator[tuple[str,
         parts, name = Path(place).parts, Path(place).name
         if (
             sys.platform == "linux"
+            and kind != "EXTENSION"  # a system's Python keeps its own modules beside the system's libraries
             and str(Path(source).resolve()).startswith(SYSTEM)
             and not name.startswith(PYTHONS_OWN)
         ):
