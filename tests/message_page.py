@@ -14,6 +14,7 @@ from functools import cache
 from itertools import groupby
 from string import Formatter
 
+from core.findings.table import FINDINGS
 from tests.code import ROOT, modules, nodes, syntax_tree
 from tests.translations import CODED, all_texts, called
 
@@ -57,7 +58,9 @@ went well."""
 HEAD = """# Every error and warning, by code
 
 Written by `make messages` from the program itself: the English text, its values in {braces}, and what the program says
-to do about it. Where nothing stands there, the text says it, or what stands above the table does. *Usual cause* leads
+to do about it. Where nothing stands there, the text says it, or what stands above the table does. Notes of results have
+a weight, by which they are ordered and coloured, and an effect on what rests on the result: none, a larger U, no proof
+of conformity, or no result. *Usual cause* leads
 to the page on troubleshooting.
 """
 
@@ -97,13 +100,21 @@ def page() -> str:
     for room, within in groupby(codes(), lambda code: code.partition(".")[0]):
         about, general = about_rooms[room]
         general = f"{general[0].upper()}{general[1:]}"
-        parts.append(f"## {room}: {about}\n\n{general}.\n\n| code | text | what to do |\n|---|---|---|")
+        parts.append(
+            f"## {room}: {about}\n\n{general}.\n\n| code | text | weight, effect | what to do |\n|---|---|---|---|"
+        )
         for code in within:
             todo = ["; or: ".join(map(_shown, advice.get(code, ())))]
             todo += [f"{helps[code]} ([usual cause](troubleshooting.md))"] if code in helps else []
-            parts.append(f"| `{code}` | {_shown(texts[code])} | {'; '.join(filter(None, todo))} |")
+            parts.append(f"| `{code}` | {_shown(texts[code])} | {_weighed(code)} | {'; '.join(filter(None, todo))} |")
         parts.append("")
     return "\n".join(parts)
+
+
+def _weighed(code: str) -> str:
+    """How grave a note is and what it does to what rests on the result, by the table of findings; '' of an error."""
+    row = FINDINGS.get(code)
+    return "" if row is None else f"{row.weight.name.lower()}, {row.effect}"
 
 
 def _shown(text: str) -> str:

@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum, IntEnum
-
-from core.messages import Label, label
+from enum import IntEnum, StrEnum
 
 
 class Weight(IntEnum):
@@ -19,13 +17,13 @@ class Weight(IntEnum):
     """Something changed, moved or failed, or nothing is proven: said before all others, and in red."""
 
 
-class Effect(Enum):
-    """What a finding does to what rests on the result it is about; the values are words for people."""
+class Effect(StrEnum):
+    """What a finding does to what rests on the result it is about; the values stand in the manual."""
 
-    NONE = Label(label("none"))
-    WIDENS_U = Label(label("widens U"))
-    NO_PROOF = Label(label("no proof"))
-    NO_RESULT = Label(label("no result"))
+    NONE = "none"
+    WIDENS_U = "widens U"
+    NO_PROOF = "no proof"
+    NO_RESULT = "no result"
 
 
 @dataclass(frozen=True, slots=True)
