@@ -128,7 +128,7 @@ class BoardTolerance:
 
 
 def size_assumed(target: Literal["camera_target", "plane_target"]) -> Message:
-    """Note on a target whose size nobody has stated."""
+    """Say that the size of a target is not stated, and what is assumed."""
     return Message(
         "target.size_assumed",
         "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as standard "

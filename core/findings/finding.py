@@ -12,7 +12,7 @@ class Weight(IntEnum):
     INFORMATION = 0
     """Nothing is wrong."""
     CAUTION = 1
-    """To be looked at: a result is less sure than it could be, or rests on something that nobody has stated."""
+    """A result is less sure than it could be, or rests on something that the user has not stated."""
     GRAVE = 2
     """Something changed, moved or failed, or nothing is proven: said before all others, and in red."""
 

@@ -104,7 +104,7 @@ assert len(FINDINGS) == len(_ALL)
 
 
 def weight_of(note: Message) -> Weight:
-    """Weight of a note, or of the gravest one that it tells of a result; a note of somebody else's is a caution."""
+    """Weight of a note, or of the gravest one that it tells of a result; one of another package is a caution."""
     row = FINDINGS.get(note.code)
     told = [weight_of(one) for one in note.values.values() if isinstance(one, Message) and row is None]
     return max(told) if told else Weight.CAUTION if row is None else row.weight

@@ -1,14 +1,17 @@
 """Facts decide what is proven: each of them by itself, and what is not known."""
 
 from dataclasses import fields, replace
+from typing import Any
 
 import pytest
 
+from core.findings.finding import Effect
 from core.findings.proof import OF_PLANES, OF_SCAN, PLANES_UNKNOWN, SCAN_UNKNOWN, SIZE_UNCONFIRMED, ScanFacts
-from core.findings.table import FINDINGS, Effect
+from core.findings.table import FINDINGS
 from core.messages import plain
 
-NOTHING_WRONG = ScanFacts(**dict.fromkeys([*OF_SCAN, *OF_PLANES], False), size_unconfirmed=False)
+KNOWN: dict[str, Any] = dict.fromkeys([*OF_SCAN, *OF_PLANES, "size_unconfirmed"], False)
+NOTHING_WRONG = ScanFacts(**KNOWN)
 
 
 def test_nothing_speaks_against_a_scan_of_which_all_is_known_and_nothing_holds():

@@ -1,0 +1,97 @@
+"""What is known of a measured set reaches its verdict, whatever notes its files hold."""
+
+import json
+from dataclasses import replace
+
+import pytest
+
+from core.files.results.scan_file import read_scan, write_scan
+from core.findings.proof import OF_SCAN
+from core.messages import plain
+from tests.simulated import CUT, copy_of, trisect
+
+LIMITS = "\n[gauge]\nnominal_mm = 50.0\ntolerance_mm = 20.0\n"
+"""So wide that what the small set measures conforms."""
+
+
+@pytest.fixture(scope="module")
+def wide(simulated, tmp_path_factory):
+    """The small set with wide limits, measured: folders of the set and of its results."""
+    folder = tmp_path_factory.mktemp("wide")
+    made = copy_of(simulated, folder / "set")
+    rig = made / "rig.toml"
+    text = rig.read_text(encoding="utf-8")
+    if "[gauge]" in text:
+        head, _, rest = text.partition("[gauge]")
+        _, found, behind = rest.partition("\n[")
+        text = head + ("[" + behind if found else "")
+    rig.write_text(text + LIMITS, encoding="utf-8")
+    said = trisect("run", made, "--out", folder / "out", *CUT)
+    assert said.code in (0, 1), said.err
+    return made, folder / "out"
+
+
+@pytest.fixture
+def out(wide, tmp_path):
+    return copy_of(wide[1], tmp_path / "out")
+
+
+def verdict(out):
+    return json.loads((out / "gauge.json").read_text(encoding="utf-8"))["verdict"]
+
+
+def again(made, out, *steps):
+    for step in steps:
+        said = trisect(step, made, "--out", out, *(CUT if step == "scan" else ()))
+        assert said.code in (0, 1), said.err
+    return verdict(out)
+
+
+def changed(path, **values):
+    tables = json.loads(path.read_text(encoding="utf-8"))
+    for name, value in values.items():
+        tables.pop(name, None)
+        if value is not None:
+            tables[name] = value
+    path.write_text(json.dumps(tables), encoding="utf-8")
+
+
+def test_with_all_notes_stripped_from_all_files_the_verdict_is_as_before(wide, out):
+    made, _ = wide
+    assert verdict(out) == "conforming"
+    for path in out.glob("*.json"):
+        changed(path, notes={} if path.name == "run.json" else [])
+    scan = read_scan(out / "scan.npz")
+    write_scan(out / "scan.npz", replace(scan, features=replace(scan.features, notes=())))
+    assert again(made, out, "gauge") == "conforming"
+    changed(out / "planes.json", converged=False, notes=[])
+    assert again(made, out, "scan", "gauge") == "not proven"
+
+
+@pytest.mark.parametrize(
+    "facts",
+    [
+        {"converged": False},
+        {"converged": None},
+        {"points_off_alike": True},
+        {"points_off_alike": None},
+        {"scale_assumed": True},
+    ],
+)
+def test_a_fact_of_the_planes_takes_away_the_proof_and_so_does_its_lack(facts, wide, out):
+    changed(out / "planes.json", **facts)
+    assert again(wide[0], out, "scan", "gauge") == "not proven"
+
+
+@pytest.mark.parametrize("holds", [True, None])
+@pytest.mark.parametrize("fact", OF_SCAN)
+def test_a_fact_of_the_scan_takes_away_the_proof_and_so_does_its_lack(fact, holds, wide, out):
+    scan = read_scan(out / "scan.npz")
+    write_scan(out / "scan.npz", replace(scan, facts=replace(scan.facts, **{fact: holds})))
+    assert again(wide[0], out, "gauge") == "not proven"
+
+
+def test_what_speaks_against_the_day_takes_away_the_proof_whatever_its_words(wide, out):
+    scan = read_scan(out / "scan.npz")
+    write_scan(out / "scan.npz", replace(scan, facts=replace(scan.facts, of_the_day=(plain("It was too warm."),))))
+    assert again(wide[0], out, "gauge") == "not proven"
