@@ -8,24 +8,15 @@ from enum import StrEnum
 
 from core.files.project.data import Done, Project
 from core.files.project.keys import changed, rests_on
+from core.files.step_graph import PAGES, needed_by
 from core.messages import label
 from workbench.language import joined, time_of, tr
 
-ORDER = ("project", "camera", "planes", "scan", "inspect", "report")
-"""The steps in the order of work."""
-
-NEEDS: Mapping[str, tuple[str, ...]] = {
-    "project": (),
-    "camera": (),
-    "planes": ("camera",),
-    "scan": ("camera", "planes"),
-    "inspect": ("scan",),
-    "report": ("scan",),
-}
+ORDER = ("project", *PAGES)
+"""The pages of the steps in the order of work."""
+NEEDS: Mapping[str, tuple[str, ...]] = {"project": (), **{page: needed_by(page) for page in PAGES}}
 """What must be there before a step can be done."""
-
-
-STALE_WITH: Mapping[str, tuple[str, ...]] = {**NEEDS, "report": ("scan", "inspect")}
+STALE_WITH: Mapping[str, tuple[str, ...]] = {"project": (), **{page: needed_by(page, shown=True) for page in PAGES}}
 """What makes a step out of date when it is: a report prints the thickness, though it can do without one."""
 
 

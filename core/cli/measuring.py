@@ -25,6 +25,7 @@ from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import RigHistory, history_file
+from core.files.step_graph import READJUST
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
 from core.pipeline.batch import FAULT, run_batch
@@ -41,7 +42,7 @@ from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import READJUST, Workspace, read_calibration
+from core.pipeline.steps.workspace import Workspace, read_calibration
 from core.progress import Progress
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes

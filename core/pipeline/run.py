@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
+from core.files.step_graph import READJUST
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
@@ -22,7 +23,7 @@ from core.pipeline.steps.readjust_step import readjust_step
 from core.pipeline.steps.report_step import prepare_report, report_step
 from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import READJUST, Workspace
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.results import FrameRecord
 from core.second_process import SecondProcess

@@ -15,12 +15,12 @@ from typing import Any
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
 from core.files.recording.rig import part_table, rig_tables, without_warmth
+from core.files.step_graph import IN_PROJECT
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
-STEPS = ("camera", "planes", "check", "scan", "inspect", "features", "report")
-"""The steps that have a result, in the order of work; "check" is the interim check, "inspect" the thickness,
-"features" the plan's inspection."""
+STEPS = tuple(IN_PROJECT)
+"""The steps that have a result, in the order of work."""
 
 Keys = Mapping[str, str]
 """Name of an input, fixed words of the catalogues → its key."""

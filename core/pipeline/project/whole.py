@@ -6,13 +6,14 @@ note says that they are bad.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile
 from core.files.project.keys import finished, left_to_do
+from core.files.step_graph import IN_PROJECT
 from core.messages import Message
 from core.pipeline.project.calibration import (
     accept_camera,
@@ -75,21 +76,14 @@ def measure_all(
         Given the project after each step that was done.
     """
     work = _Work(folder, file, progress, watch or (lambda _: None), language)
-    for step, page, do in (
-        ("camera", "camera", work.camera),
-        ("planes", "planes", work.planes),
-        ("check", "scan", work.check),
-        ("scan", "scan", work.scan),
-        ("inspect", "inspect", work.thickness),
-        ("features", "inspect", work.features),
-        ("report", "report", work.report),
-    ):
-        if step not in left_to_do(work.file.project, work.file.results):
+    for name, step in IN_PROJECT.items():
+        if name not in left_to_do(work.file.project, work.file.results):
             continue
+        do = work.steps[name]
         try:
             stop = do()
         except InputError as error:
-            stop = Stop(page, error.message)
+            stop = Stop(step.page, error.message)
         if stop is not None:
             return WholeJob(work.file, stop)
     return WholeJob(work.file, None)
@@ -102,6 +96,19 @@ class _Work:
         self.file = file
         self._language = language
         self._folder, self._progress, self._watch = folder, progress, watch
+
+    @property
+    def steps(self) -> Mapping[str, Callable[[], Stop | None]]:
+        """What does each step of a project, by its name among the results."""
+        return {
+            "camera": self.camera,
+            "planes": self.planes,
+            "check": self.check,
+            "scan": self.scan,
+            "inspect": self.thickness,
+            "features": self.features,
+            "report": self.report,
+        }
 
     @property
     def _project(self) -> Project:

@@ -16,6 +16,7 @@ from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
+from core.files.step_graph import resting_on
 from core.inspect.face_region import inside_polygon
 from core.inspect.gauge import adjusted, doubted
 from core.inspect.results import GaugeResult
@@ -27,7 +28,7 @@ from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan_pictures import feature_options, taken_frames
 from core.pipeline.steps.scan_step import section_change
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
-from core.pipeline.steps.workspace import OF_CLOUD, Calibration, StepLog, Workspace, check_size
+from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
 from core.scan import changed_section
 from core.scan.common_errors import CommonErrors
@@ -39,7 +40,7 @@ from core.scan.surface.triangulate import join
 STAGE_SD = float(np.radians(0.1))
 """Standard uncertainty in rad of a stage's normal that a plate lying on it shows: thickness of its paper, burrs under
 it; its pose itself is known ten times better."""
-_REPLACED = ("cloud", "scan", "mesh", "report", *OF_CLOUD)
+_REPLACED = ("cloud", "scan", "mesh", "report", *resting_on("cloud"))
 """Results of a scan, which would not be of the part that these profiles are of."""
 
 

@@ -21,11 +21,12 @@ from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import write_fan
+from core.files.step_graph import READJUST
 from core.messages import Message
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import STEP_MM, charted_spread, check_paths, fresh_check, judged, measure_check
 from core.pipeline.steps.stated_change import change_at_check
-from core.pipeline.steps.workspace import READJUST, Calibration, Workspace
+from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 
 

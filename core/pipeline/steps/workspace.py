@@ -23,6 +23,7 @@ from core.files.recording.recording_set import RecordingSet, require_outside
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.run_file import RunRecord, read_run, write_run
+from core.files.step_graph import GRAPH, READJUST, resting_on
 from core.held_files import remove, remove_tree, rename
 from core.memory import give_back
 from core.messages import Command, Message
@@ -53,41 +54,15 @@ FILES = {
 }
 """Fixed names of the results."""
 
-CLEARED = (
-    *("report", "gauge", "faces", "inspection", "inspected"),
-    *("comparison", "compared", "comparison_table", "profile", "profile_table", "profiles"),
-    *("mesh", "cloud", "scan", "check", "calibrated", "planes", "poses", "camera", "run"),
-)
+_MADE_IN_ORDER = tuple(made for step in GRAPH for made in step.makes)
+CLEARED = (*reversed(_MADE_IN_ORDER), "run")
 """The same in the order in which they go: what rests on another goes before it, and what tells of all of them last."""
-_PLACED = (*(name for name in reversed(CLEARED) if name != "run"), "run")
+_PLACED = (*_MADE_IN_ORDER, "run")
 """And in which they come."""
 
 RIDGES = "planes"
 """Folder beside the results with a picture of each pose on which the last search found no stripe: NAME-ridge.png. It is
 of the recording set alone: no result rests on it, nor it on any, and it is there where no planes came of the search."""
-
-_OF_SURFACE = ("cloud", "mesh", "scan", "profiles", "profile", "profile_table")
-OF_CLOUD = ("gauge", "faces", "inspection", "inspected", "comparison", "compared", "comparison_table")
-"""What is measured on the points of a scan."""
-_REST_ON: Mapping[str, tuple[str, ...]] = {
-    "camera": ("planes", "poses", "calibrated", "check", *_OF_SURFACE, *OF_CLOUD),
-    "planes": ("calibrated", "check", *_OF_SURFACE, *OF_CLOUD),
-    "cloud": OF_CLOUD,
-    "profiles": OF_CLOUD,
-}
-"""What no longer holds once one of these is another. The report stays: it is whole, and says what it is of."""
-READJUST = "readjust"
-"""The step that moves the planes by a check, and leaves the record of how they were calibrated."""
-_MADE = {
-    "camera": "camera",
-    "planes": "planes",
-    "calibrated": READJUST,
-    "check": "check",
-    "cloud": "scan",
-    "profile": "profile",
-    "gauge": "gauge",
-}
-"""Steps, by the result that shows that they were done."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -220,10 +195,10 @@ def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> Non
     for name in same:
         (beside / FILES[name]).unlink()  # made just now
     old = {name for name in {*new, *gone} - same if (out / FILES[name]).exists()}
-    old |= {one for name in old for one in _REST_ON.get(name, ())} - same
+    old |= {one for name in old for one in resting_on(name)} - same
     run = out / FILES["run"]
     if run.exists() and old - {"report"}:  # it never tells of other results than those beside it
-        undone = {made for result, made in _MADE.items() if result in old} - ({"planes"} if step == READJUST else set())
+        undone = {one.name for one in GRAPH if one.decides in old} - ({"planes"} if step == READJUST else set())
         write_run(run, read_run(run).without({step, *undone}))
     put_results(out, beside, old)
 
