@@ -14,7 +14,6 @@ from core.translations import language
 from tests.workbench.pages.inspect_cases import gauge
 from workbench.language import text_of
 from workbench.pages.inspect.words import result_rows, thickness
-from workbench.pages.scan.words import condition_text
 from workbench.pages.words import mm
 from workbench.views.scene.colours import ticks
 
@@ -52,7 +51,6 @@ def test_a_page_in_german_writes_all_its_numbers_alike(monkeypatch: pytest.Monke
         *(row[1] for row in result_rows(measured)),
         thickness(measured),
         mm(0.125),
-        condition_text(12.0),
         *ticks(-0.5, 0.5, 5)[1],
     ]
     assert not [one for one in said if re.search(r"\d\.\d|-\d", one)]

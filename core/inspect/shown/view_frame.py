@@ -29,8 +29,8 @@ class FrameKind(StrEnum):
 
 
 FRAME_NAMES: Mapping[FrameKind, str] = {
-    FrameKind.CAMERA: label("camera frame"),
-    FrameKind.GROUND: label("frame of the lower face"),
+    FrameKind.CAMERA: label("as the camera sees it"),
+    FrameKind.GROUND: label("z up from the lower face"),
     FrameKind.PART: label("part coordinates"),
 }
 """As they are shown beside coordinates."""

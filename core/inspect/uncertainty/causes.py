@@ -6,10 +6,10 @@ from collections.abc import Mapping
 
 from core.messages import Message, plain
 
-POINT_NOISE = Message("inspection.cause_point_noise", "centreline noise of the sweeps' points")
-SWEEP_PLANES = Message("inspection.cause_sweep_planes", "light planes of the sweeps (network)")
-FAN_SPECKLE = Message("inspection.cause_fan_speckle", "centreline noise of the fan's points (speckle)")
-FORM = Message("inspection.cause_form", "form of the faces beyond the stated noise")
+POINT_NOISE = Message("inspection.cause_point_noise", "noise, hand laser")
+SWEEP_PLANES = Message("inspection.cause_sweep_planes", "position, hand laser")
+FAN_SPECKLE = Message("inspection.cause_fan_speckle", "noise, fixed laser")
+FORM = Message("inspection.cause_form", "form of the faces")
 UNEVEN_LIGHT = Message("inspection.cause_uneven_light", "light that lies unevenly on the curved surface")
 SAMPLING = Message("inspection.cause_sampling", "which stripes were scanned (range of 95 %)")
 SKEWED_LIGHT = Message("inspection.cause_skewed_light", "light that comes from below the surface, or to one side")
@@ -80,7 +80,14 @@ CALIBRATIONS: Mapping[str, Message] = {
 """By the sources of `core.calibrate.deviations`: what errs in all points of a scan at once."""
 
 _ALL = [one for one in list(globals().values()) if isinstance(one, Message)]
-_KNOWN = {str(one): one for one in _ALL} | {one.code: one for one in _ALL}
+_EARLIER = {
+    "centreline noise of the sweeps' points": POINT_NOISE,
+    "light planes of the sweeps (network)": SWEEP_PLANES,
+    "centreline noise of the fan's points (speckle)": FAN_SPECKLE,
+    "form of the faces beyond the stated noise": FORM,
+}
+"""By what earlier versions called them, in files and plans."""
+_KNOWN = {str(one): one for one in _ALL} | {one.code: one for one in _ALL} | _EARLIER
 
 
 def known_cause(kept: Message) -> Message:

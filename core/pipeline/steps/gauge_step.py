@@ -91,9 +91,8 @@ def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
     return (
         Message(
             "inspection.rig_not_checked",
-            "Camera and laser were not checked on the day of the scan: what may have changed since their calibration "
-            "is {part_mm:.3f} mm of U = {U_mm:.3f} mm, and as the faces are fitted so that it matters least, noise and "
-            "gloss matter more. One to three pictures of the plane target in the fan take most of that away.",
+            "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
+            "Take 3 pictures of the plane target in the fan (1 min).",
             part_mm=gauge.k * change,
             U_mm=gauge.U_mm,
         ),

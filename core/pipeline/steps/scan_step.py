@@ -217,7 +217,7 @@ def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Messag
     return (
         Message(
             "scan.shutter_assumed",
-            "Whether the camera's shutter is global or rolling is not stated ({field} in rig.toml); assumed is a "
+            "Whether the camera's shutter is global or rolling is not stated ({field}); assumed is a "
             "global one. With a rolling one and a hand that moves, points are off by more than their σ says. State 0 "
             "for a global shutter.",
             field=Field("[camera] row_time_us"),

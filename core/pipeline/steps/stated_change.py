@@ -122,7 +122,7 @@ def _warmer(since: Apart) -> Iterator[Message]:
         yield Message(
             "scan.warmer_than_usual",
             "The rig was calibrated at a temperature {kelvins:g} K away, and how far it changes by that is not stated "
-            "({field} in rig.toml): what is assumed for {usual:g} K is reckoned with in proportion.",
+            "({field}): what is assumed for {usual:g} K is reckoned with in proportion.",
             kelvins=since.kelvins,
             usual=USUAL_KELVINS,
             field=Field("[stability] per_kelvin"),

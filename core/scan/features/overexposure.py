@@ -60,7 +60,7 @@ def notes_on_shine(fan: Sequence[Centreline], sweeps: Sequence[Centreline], full
             "scan.shines",
             "{fan:.1f} % of the fan's points and {sweeps:.1f} % of the hand-held laser's are saturated: the surface "
             "shines there (gloss), or the exposure is too long. Nothing is measured there, and points beside it may be "
-            "off: expose {stops:g} f-stops less, add second exposures that much shorter (NAME@2.png beside NAME.png), "
+            "off: expose {stops:g} EV less, add second exposures that much shorter (NAME@2.png beside NAME.png), "
             "or spray the part matt.",
             fan=100 * of_fan,
             sweeps=100 * of_sweeps,

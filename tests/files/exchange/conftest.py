@@ -16,7 +16,7 @@ INF = math.inf
 def content():
     """An inspection with a characteristic of every sort: of a length, a form, an angle, one-sided, not known."""
     budget = (
-        Contribution(cause_named("centreline noise of the sweeps' points"), 0.004, 0.02),
+        Contribution(cause_named("noise, hand laser"), 0.004, 0.02),
         Contribution(cause_named("temperature of the part"), 0.003, 0.5, "rectangular", 8.0, 20.4, "°C"),
     )
     rows = (

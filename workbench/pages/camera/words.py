@@ -24,10 +24,12 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
         (
             tr("RMS"),
             px(calibration.rms_px),
-            tr("Root mean square distance of the corners from where they should be"),
+            tr(
+                "Root mean square distance of the corners from where they should be; on the mean {mean}",
+                mean=px(calibration.mean_px),
+            ),
             "",
         ),
-        (tr("Mean"), px(calibration.mean_px), tr("Mean distance of the corners from where they should be"), ""),
         used_row(tr("Views"), calibration.views, tr("Views used, and all there are"), VIEWS),
         (
             tr("Coverage"),
@@ -44,15 +46,17 @@ def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgemen
             (degrees(TILT.good, 0), degrees(TILT.poor, 0)),
         ),
     ]
-    if not math.isnan(calibration.cross_validation_mm):
-        tip = tr("RMS distance between what cameras from the odd and from the even views see, over the work volume")
-        rows.append((tr("Halves differ"), mm(calibration.cross_validation_mm), tip, ""))
     if judgement is not None and judgement.expected:
         expected = judgement.expected[1]
         tip = tr(
             "Standard uncertainty (k = 1) of where a point lies, from the camera alone, at depth {depth}",
             depth=mm(expected.depth_mm, 0),
         )
+        if not math.isnan(calibration.cross_validation_mm):
+            tip += "\n" + tr(
+                "Cameras from the odd and from the even views differ by {distance} RMS over the work volume",
+                distance=mm(calibration.cross_validation_mm),
+            )
         text = tr("{median}, worst {worst}", median=mm(expected.median_mm), worst=mm(expected.worst_mm))
         rows.append((tr("Expected error"), text, tip, ""))
     return rows

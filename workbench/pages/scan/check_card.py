@@ -283,7 +283,7 @@ def limits(history: RigHistory | None, past: PastCheck | None) -> list[ValueRow]
     text = tr("{lower} … {upper} mm", lower=number(chart.lower, "+.3f"), upper=number(chart.upper, "+.3f"))
     return [
         (
-            tr("Its history allows") if chart.own else tr("Its stability allows"),
+            tr("Allowed by its history") if chart.own else tr("Allowed by its stability"),
             text,
             tip,
             "" if history.beyond(past) is None else "warn",
@@ -307,9 +307,9 @@ def figures(look: InterimCheck | None, allowed: Sequence[ValueRow]) -> list[Valu
         ),
         *allowed,
         (
-            tr("Detects errors from"),
+            tr("A step of {step} may be off by", step=step),
             mm(look.unseen_mm),
-            tr("An error of a thickness of {step} up to this could have been overlooked (k = 2)", step=step),
+            tr("An error up to this could have been overlooked (k = 2)"),
             "",
         ),
         (tr("Pictures taken"), when(look), tr("The newest of them"), ""),

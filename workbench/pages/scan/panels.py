@@ -232,14 +232,15 @@ class RunningPanel(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.condition = Meter(
-            tr("Crossings: condition"),
+            tr("Tilt"),
             [(500.0, "good"), (20_000.0, "warn"), (1e6, "bad")],
             minimum=10.0,
             logarithmic=True,
+            names={"good": tr("good"), "warn": tr("flat"), "bad": tr("too flat")},
         )
         self.condition.setToolTip(
-            tr("How near to one straight line this frame's crossings with the fan are: small is good, ∞ means "
-                    "collinear or fewer than three. Other frames may still help. "
+            tr("How near to one straight line this frame's crossings with the fan are (the condition of its light "
+                    "plane); too flat as well with fewer than three. Other frames may still help. "
                     "Tilt the laser, or cross the fan at another height.")
         )  # fmt: skip
         self.speed = Meter(tr("Speed"), [(0.6 * FAST, "good"), (FAST, "warn"), (2 * FAST, "bad")])
@@ -267,6 +268,6 @@ class RunningPanel(QWidget):
             self.condition.set_value(None)
             self.speed.set_value(None)
             return
-        self.condition.set_value(preview.condition, words.condition_text(preview.condition))
+        self.condition.set_value(preview.condition)
         speed: Any = None if math.isnan(preview.speed_px) or not width_px else preview.speed_px / width_px
         self.speed.set_value(speed, words.speed_text(preview.speed_px))

@@ -7,11 +7,9 @@ import math
 from core.messages import Message, capital
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
-from workbench.language import named, number, sentence, text_of, tr
+from workbench.language import named, sentence, text_of, tr
 from workbench.pages.words import count, mm, percent
 from workbench.views.lists.value_rows import ValueRow
-
-_RAISED = str.maketrans("0123456789", "⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
 def quality_rows(look: ShownScan | None) -> list[ValueRow]:
@@ -100,16 +98,6 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
 def covered_sentence(share: float) -> str:
     """How much of the surface there is."""
     return tr("covered {share} of what was lit", share=percent(share))
-
-
-def condition_text(condition: float) -> str:
-    """The condition of a frame's crossings."""
-    if math.isinf(condition):
-        return tr("∞")
-    if condition < 10_000:
-        return number(condition, ".0f")
-    exponent = math.floor(math.log10(condition))
-    return f"{condition / 10**exponent:.0f}·10" + str(exponent).translate(_RAISED)
 
 
 def speed_text(speed_px: float) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from itertools import pairwise
 
 from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer
@@ -37,9 +37,10 @@ class Meter(QWidget):
         *,
         minimum: float = 0.0,
         logarithmic: bool = False,
+        names: Mapping[Level, str] | None = None,
         parent: QWidget | None = None,
     ) -> None:
-        """`zones` are (upper end, level), rising; the last upper end is the end of the scale.
+        """`zones` are (upper end, level), rising; the last upper end is the end of the scale. `names`: of the zones.
 
         Raises
         ------
@@ -51,13 +52,14 @@ class Meter(QWidget):
         if not zones or any(b <= a for a, b in pairwise(ends)) or (logarithmic and minimum <= 0):
             raise ValueError(f"no scale: {minimum}, {zones}")
         self._title, self._zones, self._minimum, self._logarithmic = title, tuple(zones), minimum, logarithmic
+        self._names = grade_words() if names is None else names
         self._value: float | None = None
         self._text = ""
         self.setAccessibleName(title)
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
 
     def set_value(self, value: float | None, text: str = "") -> None:
-        """Place the needle; `text` is the value with its unit. None or NaN: not known, no needle."""
+        """Place the needle; `text` is the value with its unit, "" if its zone says enough. None or NaN: no needle."""
         if value is not None and math.isnan(value):
             value = None
         if (value, text) != (self._value, self._text):
@@ -75,7 +77,7 @@ class Meter(QWidget):
     @property
     def said(self) -> str:
         """The value and its zone in words."""
-        return " · ".join(part for part in (self._text or "–", grade_words()[self.level]) if part)
+        return " · ".join(part for part in (self._text, self._names.get(self.level, "")) if part) or "–"
 
     def share(self, value: float) -> float:
         """Where a value is on the scale, 0 … 1; values beyond the ends are at the ends."""

@@ -120,7 +120,7 @@ def test_the_button_changes_the_frame_of_view_and_numbers_and_is_remembered(page
     assert_allclose(inside, POSE.inverse().apply(point), atol=0.006)
     press(page, qtbot)
     seen, frame = listed(page)
-    assert frame == "x, y, z: camera frame" and page.surface.scene.frame.kind is FrameKind.CAMERA
+    assert frame == "x, y, z: as the camera sees it" and page.surface.scene.frame.kind is FrameKind.CAMERA
     assert_allclose(seen, point, atol=0.006)
     settings = page.presenter.bench.settings
     settings.flush()
