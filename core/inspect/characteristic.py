@@ -8,6 +8,7 @@ from typing import Literal, TypeAlias
 
 from core.inspect.conformity import Verdict, decide_between
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import CERTIFICATE
 from core.messages import Message
 
 Quantity: TypeAlias = Literal["length", "angle"]
@@ -61,6 +62,8 @@ class Characteristic:
         What is to be known of it.
     complete
         Whether u holds all that is known to act on the value; if not, it is a lower bound and proves nothing.
+    at_20
+        Whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
     """
 
     name: str
@@ -74,6 +77,12 @@ class Characteristic:
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
     complete: bool = True
+    at_20: bool | None = False
+
+    @property
+    def by_master(self) -> bool:
+        """Whether it was compared with a master: the certificate of that is in its budget then."""
+        return any(row.source == CERTIFICATE for row in self.budget)
 
     @property
     def U(self) -> float:

@@ -23,8 +23,8 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import brought_kinds, kind_of
 from core.inspect.plan.plugins import NAME_TAKEN, failure, plugins, unusable
-from core.inspect.plan.temperature import COMPARED, at_reference, compared, temperature_of, with_scale
-from core.inspect.uncertainty.part import TEMPERATURE_ASSUMED, Part
+from core.inspect.plan.temperature import at_reference, compared, temperature_of, with_scale
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message, plain
@@ -208,11 +208,7 @@ def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
 def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> Characteristic:
     """A length by comparison with a master: the size of the plane target, if that is all the doubt, cancels in it."""
     found = compared(length, master)
-    if (
-        not errors.size_unconfirmed
-        or not master.same_calibration
-        or COMPARED not in {note.code for note in found.notes}
-    ):
+    if not errors.size_unconfirmed or not master.same_calibration or not found.by_master:
         return found
     proves = replace(errors, size_unconfirmed=False).complete and doubt_of_light(found.budget) is None
     return replace(found, complete=proves)
@@ -292,7 +288,9 @@ def _of_part(plan: InspectionPlan, part: Part | None) -> tuple[Message, ...]:
     """What is assumed of the part, and what is stated of it and used of thicknesses alone."""
     if part is None:
         return ()
-    assumed = tuple(one for one in part.assumed if plan.temperature is None or one.code != TEMPERATURE_ASSUMED)
+    if plan.temperature is not None:
+        part = replace(part, celsius=plan.temperature.part_celsius)
+    assumed = part.assumed
     if not part.surface_rows and not part.thicker_mm:
         return assumed
     return (

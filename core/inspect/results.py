@@ -74,7 +74,8 @@ class GaugeResult:
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
     the faces when each is fitted freely. `rule` says what the thickness is. `points_used` on the upper and the lower
     face. `verdict` is that of ISO 14253-1; none without a nominal value and a tolerance. What is not `complete` proves
-    nothing, whatever u: `notes` say why.
+    nothing, whatever u: `notes` say why. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated
+    of the part; None: not known.
     """
 
     thickness_mm: float
@@ -91,6 +92,7 @@ class GaugeResult:
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
     complete: bool = True
+    at_20: bool | None = False
 
     @property
     def points_used(self) -> tuple[int, int]:

@@ -15,7 +15,6 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
 from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.plan.conditions import AT_REFERENCE
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
@@ -346,8 +345,8 @@ class ReportContent:
 
     @property
     def at_reference(self) -> bool:
-        """Whether any result is stated at 20 °C; its own note then says what that changed."""
-        return any(note.code == AT_REFERENCE for one in self.characteristics for note in one.notes)
+        """Whether any result is stated at 20 °C, or may be; its own note then says what that changed."""
+        return any(one.at_20 is not False for one in self.characteristics)
 
     @property
     def report_id(self) -> str:
@@ -444,4 +443,5 @@ def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
         rule=gauge.rule,
         notes=gauge.notes,
         complete=gauge.complete,
+        at_20=gauge.at_20,
     )

@@ -121,6 +121,7 @@ def test_a_warm_part_is_judged_as_it_would_be_at_20_degrees():
     grown = found[0] * 20e-6 * 50
     assert value(inspection) == pytest.approx(2 * (0.5 - grown), abs=1e-3)
     assert any("20 °C" in str(note) for note in inspection.characteristics[-1].notes)
+    assert inspection.characteristics[-1].at_20
 
 
 @pytest.mark.parametrize(

@@ -45,7 +45,7 @@ def characteristics():
     rule = RULE
     rows = [
         Characteristic("block thickness", "thickness", 50.0123, u, k=2.05, limits=Limits(50, -0.2, 0.2), budget=budget,
-                       rule=rule, notes=(STATED,)),
+                       rule=rule, notes=(STATED,), at_20=True),
         Characteristic("top flatness", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05)),
         Characteristic("top to side", "angle", math.radians(89.95), math.radians(0.02), "angle",
                        limits=Limits(math.radians(90), math.radians(-0.06), math.radians(0.06)),

@@ -69,6 +69,7 @@ class _GaugeFile(ResultFile):
     # Not the class itself: an enum's signature is (*values) from Python 3.12 on, which pydantic refuses.
     verdict: Annotated[Verdict, BeforeValidator(lambda name: Verdict(name))] = Verdict.NONE
     complete: bool = True
+    at_20: bool | None = None
     rule: OptionalMessage = None
     normal: Row3 | None = None
     notes: list[KeptMessage] = Field(default_factory=list)
@@ -101,6 +102,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
             {
                 **gauge_summary(gauge),
                 "complete": gauge.complete,
+                "at_20": gauge.at_20,
                 "rule": kept(gauge.rule),
                 "notes": [kept(note) for note in gauge.notes],
                 "points": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
@@ -136,6 +138,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         tolerance_mm=file.tolerance_mm,
         verdict=file.verdict,
         complete=file.complete,
+        at_20=file.at_20,
         normal=None if file.normal is None else np.array(file.normal),
         rule=file.rule,
         notes=tuple(file.notes),
@@ -150,7 +153,7 @@ def read_thickness(path: Path) -> Characteristic:
     return Characteristic(
         "thickness", "thickness", file.thickness_mm, file.u_mm, k=file.k, limits=limits,
         budget=tuple(row.row() for row in file.budget), rule=file.rule, notes=tuple(file.notes),
-        complete=file.complete,
+        complete=file.complete, at_20=file.at_20,
     )  # fmt: skip
 
 

@@ -117,6 +117,7 @@ class _Characteristic(ResultFile):
     limits: _Limits | None = None
     control_frame: _ControlFrame | None = None
     complete: bool = True
+    at_20: bool | None = None
     rule: OptionalMessage = None
     notes: list[KeptMessage] = Field(default_factory=list)
     budget: list[_Contribution] = Field(default_factory=list)
@@ -234,6 +235,7 @@ def _row(row: Characteristic, feature: str, frame: ControlFrame | None) -> dict[
         "deviation": row.deviation,
         "verdict": row.verdict,
         "complete": row.complete,
+        "at_20": row.at_20,
         "rule": kept(row.rule),
         "notes": [kept(note) for note in row.notes],
         "budget": [row_tables(one, "u") for one in row.budget],
@@ -285,4 +287,5 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
         rule=row.rule,
         notes=tuple(row.notes),
         complete=row.complete,
+        at_20=row.at_20,
     )

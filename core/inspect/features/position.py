@@ -85,12 +85,13 @@ def measure_position(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         parts.append(
             (2 * towards @ (moved @ datum.position_gradient + turned @ datum.direction_gradient), datum.effects)
         )
-    value, rows, notes = 2 * distance, budget_of(parts), found.notes
+    value, rows, notes, at_20 = 2 * distance, budget_of(parts), found.notes, False
     if scene.temperature is not None:
         change, more, said = correction_to_reference(2 * float(towards @ at), scene.temperature)
         value, rows, notes = value + change, (*rows, *more), (*notes, *said)
+        at_20 = not scene.temperature.celsius_assumed
     row = scene.characteristic(spec, "position", abs(value), rows, rule=rule, notes=notes)
-    return FeatureResult(spec, characteristics=(row,))
+    return FeatureResult(spec, characteristics=(replace(row, at_20=at_20),))
 
 
 _RULE_AXIS = Message(

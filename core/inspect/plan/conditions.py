@@ -6,9 +6,6 @@ from dataclasses import dataclass
 
 from core.messages import Message
 
-AT_REFERENCE = "feature.stated_at_20"
-"""Code of the note on a length that was put to 20 °C."""
-
 REFERENCE_C = 20.0
 """The temperature that lengths on drawings are meant at (ISO 1)."""
 

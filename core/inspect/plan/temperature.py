@@ -44,9 +44,6 @@ from core.inspect.uncertainty.causes import (
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message
 
-COMPARED = "feature.compared_with_master"
-"""Code of the note on a length that was compared with a master."""
-
 ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
 
@@ -77,6 +74,7 @@ def at_reference(length: Characteristic, temperature: Temperature) -> Characteri
         u=math.hypot(length.u, combined(rows)),
         budget=(*length.budget, *rows),
         notes=(*length.notes, *notes),
+        at_20=not temperature.celsius_assumed,
     )
 
 

@@ -216,7 +216,3 @@ class Part:
                 )
             )
         return tuple(notes)
-
-
-TEMPERATURE_ASSUMED = "part.temperature_assumed"
-"""Code of the note on a temperature that is not stated."""

@@ -16,7 +16,6 @@ from core.files.results.rig_history import PastCheck, keep_check
 from core.files.results.run_file import RunRecord
 from core.files.results.scan_file import read_scan
 from core.inspect.characteristic import Characteristic
-from core.inspect.plan.temperature import COMPARED
 from core.messages import Message
 from core.pipeline.steps.validity import history_name, history_of
 from core.pipeline.steps.workspace import Workspace, check_calibration
@@ -111,7 +110,7 @@ def _chosen(lengths: tuple[Characteristic, ...], artefact: Artefact, name: str, 
             todo=Message("artefact.advice_name_one", "name one of these"),
         )
     one = lengths[known.index(name) if name else 0]
-    if any(note.code == COMPARED for note in one.notes):
+    if one.by_master:
         raise InputError(
             Message("artefact.by_master", "{name} was corrected by a master, so that it checks nothing", name=one.name),
             where=path,

@@ -78,7 +78,8 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
     temperature = temperature_of(part)
     if temperature is not None:
         gauge = adjusted(gauge, *correction_to_reference(gauge.thickness_mm, temperature))
-    return replace(gauge, notes=(*gauge.notes, *part.assumed))
+    at_20 = temperature is not None and not temperature.celsius_assumed
+    return replace(gauge, notes=(*gauge.notes, *part.assumed), at_20=at_20)
 
 
 def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:

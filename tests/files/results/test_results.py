@@ -15,7 +15,7 @@ from core.files.json_text import to_json
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.results.camera_file import camera_id, read_camera, write_camera
 from core.files.results.fan_file import read_fan, write_fan
-from core.files.results.gauge_file import read_gauge, write_gauge
+from core.files.results.gauge_file import read_gauge, read_thickness, write_gauge
 from core.files.results.ply import read_cloud, read_mesh, write_cloud, write_mesh
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.results.run_file import RunRecord, read_run, write_run
@@ -475,6 +475,16 @@ def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
         ["a note"],
     )
     assert (back.budget[0].point_mm, back.budget[0].sensitivity) == (None, None)
+
+
+def test_whether_a_thickness_is_at_20_degrees_is_not_known_of_an_older_file(tmp_path, cloud, gauge):
+    path = tmp_path / "gauge.json"
+    write_gauge(path, replace(gauge, at_20=True), "abc")
+    assert read_gauge(path, cloud).at_20 is read_thickness(path).at_20 is True
+    tables = json.loads(path.read_text())
+    del tables["at_20"]
+    path.write_text(json.dumps(tables))
+    assert read_gauge(path, cloud).at_20 is read_thickness(path).at_20 is None
 
 
 def test_every_row_of_the_budget_has_its_input_its_sensitivity_and_its_share(tmp_path, cloud, gauge):

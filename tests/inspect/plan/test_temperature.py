@@ -3,7 +3,7 @@
 import pytest
 
 from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.plan.conditions import AT_REFERENCE, Master, Temperature
+from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.temperature import (
     at_reference,
     compared,
@@ -45,7 +45,8 @@ def test_a_warm_steel_block_is_shorter_at_20_degrees():
     assert rows[PART_EXPANSION].u_mm == pytest.approx(50.02 * 4.0 * 1e-6, rel=1e-9)
     assert row.u == pytest.approx(combined(row.budget), rel=1e-12)
     assert row.deviation == pytest.approx(row.value - 50.0)
-    assert row.notes[0].code == AT_REFERENCE
+    assert row.notes[0].code == "feature.stated_at_20"
+    assert row.at_20
     assert "20 °C" in str(row.notes[0])
 
 

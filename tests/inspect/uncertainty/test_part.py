@@ -95,6 +95,7 @@ def test_a_stated_temperature_puts_a_thickness_to_20_degrees(gauge_of):
     assert rows(cold)["part_temperature"] == pytest.approx(50 * 23e-6 * 0.5, rel=1e-3)
     assert rows(cold)["part_expansion"] == pytest.approx(50 * 0.9e-6 * 5, rel=1e-3)
     assert [note.code for note in cold.notes] == [*(note.code for note in plain.notes), "feature.stated_at_20"]
+    assert (plain.at_20, cold.at_20) == (False, True)
     sprayed = temperature_of(Part(material="sprayed", celsius=25.0, u_celsius=0.5))
     assert sprayed.alpha_assumed and not sprayed.celsius_assumed
 
@@ -117,6 +118,7 @@ def test_a_target_that_was_warm_makes_what_is_measured_with_it_longer(gauge_of):
     alone = of_part(gauge_of(None), Part(material="metal", target=replace(target, alpha=None, u_alpha=None)))
     assert {"target_temperature", "target_expansion_assumed", "part_temperature_assumed"} <= set(rows(alone))
     assert "feature.scale_at_20" in {note.code for note in alone.notes}
+    assert (warm.at_20, alone.at_20) == (True, False), "the temperature of the part is assumed"
 
 
 def test_an_inspection_reckons_with_the_part_unless_its_plan_states_a_temperature(scan):

@@ -26,8 +26,8 @@ from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check,
 from core.files.results.scan_file import read_scan
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
-from core.inspect.plan.temperature import COMPARED
-from core.messages import Message
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.causes import CERTIFICATE
 from core.pipeline.run import run
 from core.pipeline.steps import artefact_step as artefact_module
 from core.pipeline.steps import planes_step as planes_step_module
@@ -571,25 +571,24 @@ def test_a_step_is_compared_by_its_height_in_the_inspection(measured, simulated,
     assert (kept["artefact"], kept["kind"]) == ("S 2", "step"), "of one height the last comparison counts"
 
 
-def inspected(tmp_path, names, note=None):
+def inspected(names, budget=()):
     """Results whose inspection has these heights of steps."""
-    notes = () if note is None else (note,)
-    rows = [Characteristic(name, "height", 20.0, 0.01, notes=notes) for name in names]
+    rows = [Characteristic(name, "height", 20.0, 0.01, budget=budget) for name in names]
     return InspectionFile(tuple(rows), {"stairs": "steps"}, (), (), {}, dict.fromkeys(names, "stairs"), {}, {}, {}, "")
 
 
 @pytest.mark.parametrize(
-    ("names", "note", "code"),
+    ("names", "budget", "code"),
     [
-        ((), None, "artefact.not_measured"),
-        (("stairs height 1", "stairs height 2"), None, "artefact.which"),
-        (("stairs height 1",), Message(COMPARED, "Compared"), "artefact.by_master"),
+        ((), (), "artefact.not_measured"),
+        (("stairs height 1", "stairs height 2"), (), "artefact.which"),
+        (("stairs height 1",), (Contribution(CERTIFICATE, 0.0001),), "artefact.by_master"),
     ],
 )
 def test_what_cannot_be_compared_with_an_artefact_is_told(
-    measured, simulated, tmp_path, monkeypatch, names, note, code
+    measured, simulated, tmp_path, monkeypatch, names, budget, code
 ):
-    monkeypatch.setattr(artefact_module, "read_inspection", lambda _: inspected(tmp_path, names, note))
+    monkeypatch.setattr(artefact_module, "read_inspection", lambda _: inspected(names, budget))
     work = Workspace.open(open_set(simulated), shutil.copytree(measured, tmp_path / "out"))
     with pytest.raises(InputError) as told:
         artefact_step(work, Artefact("S 1", 20.0, 0.001, kind="step"))
