@@ -53,24 +53,31 @@ def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
 def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
     """What is wrong with the residuals, and in which direction."""
     found = judge_picture(calibration)
-    notes = []
-    times = found.over_picture.times
-    if calibration.rms_px > BAD_PX or (calibration.rms_px > LITTLE_PX and times > BAD_TIMES):
-        notes.append(
-            Message(
-                "camera.bad_fit",
-                "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
-                "Look for views with blur or a moved target, check the target's corners and how flat it is, or take "
-                "the views again.",
-                rms=calibration.rms_px,
-                times=times,
-            )
-        )
+    bad = _bad_fit(calibration.rms_px, found.over_picture.times)
+    notes = [] if bad is None else [bad]
     if found.outwards.systematic > max(found.over_picture.systematic / 2, WORTH_A_NOTE_PX):
         notes.append(_on_rings(calibration, found.outwards))
     elif found.over_picture.systematic > WORTH_A_NOTE_PX:
         notes.append(_on_regions(calibration, found.over_picture))
     return tuple(notes)
+
+
+def bad_fit(calibration: CameraCalibration) -> Message | None:
+    """Say that a calibration is bad, by how its corners fit; None if it is not."""
+    return _bad_fit(calibration.rms_px, judge_picture(calibration).over_picture.times)
+
+
+def _bad_fit(rms_px: float, times: float) -> Message | None:
+    if not (rms_px > BAD_PX or (rms_px > LITTLE_PX and times > BAD_TIMES)):
+        return None
+    return Message(
+        "camera.bad_fit",
+        "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
+        "Look for views with blur or a moved target, check the target's corners and how flat it is, or take "
+        "the views again.",
+        rms=rms_px,
+        times=times,
+    )
 
 
 def _at_the_target(calibration: CameraCalibration, px: float) -> dict[str, float]:

@@ -1,7 +1,7 @@
 """The whole job of a project in one go: whatever is not up to date is done, up to the first decision for a person.
 
-It gives what pressing every button in turn gives, byte for byte. Calibrations are accepted by themselves, unless a
-note says that they are bad.
+It gives what pressing every button in turn gives, byte for byte. Calibrations are accepted by themselves, unless they
+are bad.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from core.calibrate.camera.picture_residuals import bad_fit
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile
 from core.files.project.keys import finished, left_to_do
@@ -30,9 +31,6 @@ from core.pipeline.project.report import make_report
 from core.progress import Progress, silent
 
 Watch = Callable[[ProjectFile], None]
-
-BAD = frozenset({"camera.bad_fit"})
-"""Codes of notes with which a calibration is not accepted by itself."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -117,9 +115,9 @@ class _Work:
     def camera(self) -> Stop | None:
         project = self._project
         camera = solve_views(self._folder, project, find_views(self._folder, project, self._progress), self._progress)
-        for note in camera.notes:
-            if note.code in BAD:
-                return Stop("camera", note)
+        bad = bad_fit(camera)
+        if bad is not None:
+            return Stop("camera", bad)
         return self._accept("camera", camera=accept_camera(self._folder, project, camera))
 
     def planes(self) -> Stop | None:

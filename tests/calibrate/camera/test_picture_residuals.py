@@ -5,6 +5,7 @@ import pytest
 
 from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.picture_residuals import bad_fit
 from core.calibrate.results import CameraCalibration
 from tests.calibrate.camera_views import TRUTH, changed, synthetic_views
 
@@ -67,8 +68,10 @@ def test_corners_that_fit_to_most_of_a_pixel_are_a_bad_calibration():
     views = synthetic_views(2, 12, 0.03)
     rng = np.random.default_rng(2)
     shaken = [changed(view, view.uv + rng.normal(0, 0.7, view.uv.shape)) for view in views]
-    (note,) = told(calibrate_camera(shaken, TRUTH.image_size))
+    calibration = calibrate_camera(shaken, TRUTH.image_size)
+    (note,) = told(calibration)
     assert note.code == "camera.bad_fit"
+    assert bad_fit(calibration) == note
     assert note.values["rms"] == pytest.approx(0.96, abs=0.1)
     assert note.values["times"] > 15
 

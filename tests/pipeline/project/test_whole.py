@@ -98,7 +98,8 @@ def test_a_calibration_that_was_rejected_is_left_to_somebody(step, which, done, 
 def test_a_calibration_that_is_called_bad_is_left_to_somebody(done, folder, file, monkeypatch):
     bad = Message("camera.bad_fit", "The calibration is bad.")
     monkeypatch.setattr(whole, "find_views", lambda *_: done.seen)
-    monkeypatch.setattr(whole, "solve_views", lambda *_: replace(done.camera, notes=(bad,)))
+    monkeypatch.setattr(whole, "solve_views", lambda *_: done.camera)
+    monkeypatch.setattr(whole, "bad_fit", {done.camera: bad}.get)
     job, seen = steps_done(folder, changed(file, accepted=Accepted()))
     assert (job.stop.page, job.stop.why) == ("camera", bad)
     assert job.file.project.accepted == Accepted()
