@@ -30,7 +30,7 @@ from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
-from core.scan.features.frames import WITHOUT_POINTS
+from core.scan.features.frames import left_out_notes
 from core.scan.preview.shown import FrameStages, SettledScan, ShownScan, reasons_counted
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.coverage_map import CoverageMap
@@ -67,6 +67,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
     features = None if results.cloud is None else read_scan(results.files["scan"]).features
+    of_frames = left_out_notes(results.frames)  # told with the frames themselves
     half, most = np.quantile(cloud.sigma, (0.5, 0.95)) if len(cloud) else (np.nan, np.nan)
     return ShownScan(
         points=cloud.points.astype(np.float32),
@@ -81,7 +82,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
         left_out=reasons_counted(results.frames),
         share=0.0 if features is None else _covered(features, cloud.uv),
         stripe=None if features is None else features.sweep_stripe,
-        notes=tuple(note for note in _scan_notes(results) if note.code not in WITHOUT_POINTS),
+        notes=tuple(note for note in _scan_notes(results) if note not in of_frames),
         problems=results.problems,
         ground=None if results.gauge is None else results.gauge.lower.plane,
     )

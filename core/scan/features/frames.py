@@ -32,8 +32,6 @@ NO_STRIPE = Message("scan.frame_without_stripe", "no stripe of the hand-held las
 LIGHT_CHANGED = "scan.room_light_changed"
 """Code of the note on room light that changed within the scan."""
 
-WITHOUT_POINTS = ("scan.frames_without_points", "scan.many_frames_without_points")
-"""Codes of `left_out_notes`."""
 _NAMED = 3
 """So many frames are named in a note."""
 

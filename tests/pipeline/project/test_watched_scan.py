@@ -9,11 +9,14 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
+from core.files.results.run_file import read_run, write_run
+from core.messages import Message
 from core.pipeline.live.events import ScanDetail
 from core.pipeline.project.details import accepted_calibration, show_scan
 from core.pipeline.project.results import load_results
 from core.pipeline.project.thumbnails import display_picture
 from core.pipeline.project.watched_scan import WatchReporter, measure_watched
+from core.scan.features.frames import MOVED, left_out_notes
 from tests.simulated import copy_of
 
 
@@ -81,6 +84,16 @@ def test_the_look_of_a_scan_says_what_the_measurement_said(done):
     assert not look.problems
     assert look.ground is not None and look.ground.d_mm == load_results(done.folder).gauge.lower.plane.d_mm
     assert len(pickle.dumps(look)) < 40 * len(look) + 20_000
+
+
+def test_what_is_said_of_frames_left_out_is_shown_with_the_frames_alone(done, tmp_path):
+    folder = copy_of(done.folder, tmp_path / "project")
+    run = results_folder(folder) / "run.json"
+    record = read_run(run)
+    frames = (replace(record.frames[0], used=False, reason=MOVED), *record.frames[1:])
+    note = Message("scan.rig_not_checked", "Nobody knows.")
+    write_run(run, replace(record, frames=frames, notes={"scan": (*left_out_notes(frames), note)}))
+    assert show_scan(folder).notes == (note,)
 
 
 def test_no_result_is_shown_as_none(tmp_path):
