@@ -50,10 +50,10 @@ def coverage(uv: Array, image_size: tuple[int, int]) -> float:
     return float(picture_cells(uv, image_size, _COLUMNS, rows).mean())
 
 
-def empty_regions(uv: Array, image_size: tuple[int, int]) -> tuple[Message, ...]:
-    """Name those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", …"""
+def empty_regions(uv: Array, image_size: tuple[int, int], names: Sequence[Message] = REGIONS) -> tuple[Message, ...]:
+    """Name those ninths of the picture that hold no point of `uv` (N, 2): "upper left", "middle", … of `names`."""
     cells = picture_cells(uv, image_size, 3, 3)
-    return tuple(region for region, seen in zip(REGIONS, cells.ravel(), strict=True) if not seen)
+    return tuple(name for name, seen in zip(names, cells.ravel(), strict=True) if not seen)
 
 
 def tilt(pose: Pose) -> float:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.calibrate.camera.coverage import empty_regions, tilt_range
+from core.calibrate.camera.coverage import REGIONS, empty_regions, tilt_range
 from core.image.targets import TargetNotFound, estimate_pose
 from core.image.targets.target_view import TargetView
 from core.messages import Message, plural_message
@@ -28,15 +28,19 @@ MOST_SENTENCES = 4
 _USUAL_FOCAL = 1.25
 """Focal length of a camera as most are, in the picture's longer sides."""
 
-_PLACES = {
-    "picture.upper_left": Message("picture.upper_left_corner", "upper left corner"),
-    "picture.upper_right": Message("picture.upper_right_corner", "upper right corner"),
-    "picture.left": Message("picture.left_side", "left side"),
-    "picture.right": Message("picture.right_side", "right side"),
-    "picture.lower_left": Message("picture.lower_left_corner", "lower left corner"),
-    "picture.lower_right": Message("picture.lower_right_corner", "lower right corner"),
-}
-"""What some regions of a picture are called after 'reaches', by their codes in `core.calibrate.camera.coverage`."""
+_TOP, _MIDDLE, _BOTTOM = REGIONS[1::3]
+_PLACES = (
+    Message("picture.upper_left_corner", "upper left corner"),
+    _TOP,
+    Message("picture.upper_right_corner", "upper right corner"),
+    Message("picture.left_side", "left side"),
+    _MIDDLE,
+    Message("picture.right_side", "right side"),
+    Message("picture.lower_left_corner", "lower left corner"),
+    _BOTTOM,
+    Message("picture.lower_right_corner", "lower right corner"),
+)
+"""What the regions of a picture are called after 'reaches', in the order of `core.calibrate.camera.coverage`."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,9 +133,8 @@ def missing_from(
                 **wanted,
             )
         )
-    empty = empty_regions(np.concatenate([view.uv for view in views]), image_size) if series.everywhere else ()
-    if empty:
-        sentences.append(_unreached([_PLACES.get(region.code, region) for region in empty]))
+    if series.everywhere and (empty := empty_regions(np.concatenate([view.uv for view in views]), image_size, _PLACES)):
+        sentences.append(_unreached(empty))
     known = [geometry for geometry in geometries if geometry is not None]
     if len(known) > 1:
         sentences += _on_tilts(known, series)
