@@ -28,8 +28,6 @@ from core.messages import Message
 from core.model import Camera, Fan, Pose
 from core.model.arrays import Array
 
-NO_STRIPE_NEAR = "check.no_stripe_near"
-"""Code of the reason that no stripe is where the calibration has the fan."""
 FORM_MM = 0.05
 """Standard deviation of a stripe's place for a plate's form, where the calibration's own poses do not tell."""
 ROUNDS = 4
@@ -62,6 +60,11 @@ class CheckedPose:
     sd_mm: Array
     squares: float = 0.0
     freedom: int = 0
+
+    @property
+    def misses_fan(self) -> bool:
+        """Whether stripes are on the target, but none is where the calibration has the fan."""
+        return not self.located.used and bool(self.located.lines)
 
 
 def check_poses(

@@ -25,7 +25,7 @@ from core.calibrate.change import (
 )
 from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
 from core.calibrate.drift import NO_DRIFT, loosened
-from core.calibrate.fan.interim_check import NO_STRIPE_NEAR, CheckedPose, check_poses, step_errors
+from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_errors
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
@@ -106,7 +106,7 @@ def check_step(
     with work.step("check") as log:
         deviations, evidence, checked, change = judged(recording_set, calibration, options, progress, poses=poses)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
-        if len(reasons) == len(checked) and all(reason.code != NO_STRIPE_NEAR for reason in reasons):
+        if len(reasons) == len(checked) and not any(pose.misses_fan for pose in checked):
             raise InputError(
                 Message("check.nothing_seen", "no picture shows target and stripes: {reason}", reason=reasons[0]),
                 where=recording_set.where(CHECK),
@@ -351,7 +351,7 @@ def judged(
     )
     change = replace(change, checked=agree)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
-    if any(reason.code == NO_STRIPE_NEAR for _, reason in reasons):
+    if any(pose.misses_fan for pose in checked):
         change = replace(change, p=0.0, times=math.inf)
     left_out = (
         Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)

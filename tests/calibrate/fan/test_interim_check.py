@@ -60,6 +60,7 @@ def test_a_laser_that_points_elsewhere_is_told_for_what_it_is(calibrated):
     found, _ = checked(calibrated, now.pis)
     reasons = {pose.located.reason.code for pose in found if pose.located.reason is not None}
     assert reasons <= {"check.no_stripe_near"}
+    assert [pose.misses_fan for pose in found] == [pose.located.reason is not None for pose in found]
 
 
 def test_what_a_turn_does_to_a_step_is_what_it_does_to_its_light(calibrated):
