@@ -70,10 +70,11 @@ HOLD_STILL = Message("live.hold_still", "Hold still.")
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether to take the view, and the sentence that says why or why not."""
+    """Whether to take the view, the sentence that says why or why not, and whether nothing will come of this one."""
 
     take: bool
     sentence: Message
+    of_no_use: bool = False
 
 
 class CaptureJudge:
@@ -124,7 +125,7 @@ class CaptureJudge:
         if view is None:
             self._recent.clear()
             unseen = why_not or Message("live.target_unseen", "The target is not seen.")
-            return Verdict(False, TAKEN if self._just_taken(time_s) else unseen)
+            return Verdict(False, TAKEN) if self._just_taken(time_s) else Verdict(False, unseen, of_no_use=True)
         self._recent.append((time_s, view))
         if self._just_taken(time_s):
             return Verdict(False, TAKEN)
@@ -135,9 +136,9 @@ class CaptureJudge:
             blurred = Message(
                 "live.too_blurred", "Too blurred (edges {blur_px:.1f} px wide): hold still or focus.", blur_px=blur_px
             )
-            return Verdict(False, blurred)
+            return Verdict(False, blurred, of_no_use=True)
         already_there = self._already_there(view_geometry(view, self._camera), self._cells(view.uv))
-        return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there)
+        return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there, of_no_use=True)
 
     def know(self, views: Iterable[TargetView]) -> None:
         """Add the views of an earlier recording, which new ones are added to; they cannot be deleted here."""

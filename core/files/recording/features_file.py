@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -47,6 +48,7 @@ _POSES = {
     **_OF_VIEWS,
     "fan_id": texts(),
     "notes": texts("pictures", optional=True),
+    "moved_px": real("pictures", optional=True),
     **centreline_members("stripe", "pictures"),
 }
 _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
@@ -103,6 +105,7 @@ def write_poses(path: Path, fan_id: str, poses: Sequence[PoseFeatures]) -> None:
         "names": pack_texts([pose.name for pose in poses]),
         "reasons": pack_messages([pose.reason for pose in poses]),
         "notes": pack_texts(["\n".join(map(as_text, pose.notes)) for pose in poses]),
+        "moved_px": np.array([_NOT_KNOWN if math.isnan(pose.moved_px) else pose.moved_px for pose in poses]),
         **pack_views([pose.view for pose in poses]),
         **pack_centrelines("stripe", [pose.centrelines for pose in poses]),
     }
@@ -129,12 +132,14 @@ def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
 def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
     names = unpack_texts(arrays["names"])
     notes = unpack_texts(arrays["notes"]) if "notes" in arrays else [""] * len(names)  # files of earlier versions
+    moved_px = arrays.get("moved_px", np.full(len(names), _NOT_KNOWN))  # the same
     columns = zip(
         names,
         unpack_views(names, arrays),
         unpack_centrelines("stripe", arrays),
         unpack_messages(arrays["reasons"]),
         (tuple(note for line in said.splitlines() if (note := from_text(line))) for said in notes),
+        np.where(moved_px == _NOT_KNOWN, math.nan, moved_px).tolist(),
         strict=True,
     )
     return tuple(PoseFeatures(*pose) for pose in columns)
@@ -142,6 +147,8 @@ def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
 
 _NO_VIEW = -1
 """Stands in place of the number of corners where the target was not found."""
+_NOT_KNOWN = -1.0
+"""Stands in place of how far a target moved where that is not known."""
 
 
 def pack_views(views: Sequence[TargetView | None]) -> dict[str, NDArray[Any]]:

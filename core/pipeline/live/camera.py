@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from core.acquire.source import Frame, Lasers
-from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge
+from core.calibrate.camera.capture import TAKEN, CaptureJudge
 from core.errors import InputError
 from core.image.sharpness import edge_blur_px
 from core.image.targets import Target, detect
@@ -77,8 +77,9 @@ class LiveCamera:
         if look.view is not None and (self._capture or (verdict.take and self._auto)):
             self._take(look.frame, look.view, self._judge)
         elif self._capture:
-            self._context.notice(nothing_taken(verdict.sentence if look.why_not is None else look.why_not))
-        elif not verdict.take and verdict.sentence not in (HOLD_STILL, TAKEN):
+            why = verdict.sentence if look.why_not is None else look.why_not
+            self._context.notice(nothing_taken(why), refused=True)
+        elif verdict.of_no_use:
             self._context.dealt_with(look.frame)
         elif verdict.take:
             self._sentence = Message("live.press_capture_view", "Press Take picture to take this view.")

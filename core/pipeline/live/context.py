@@ -126,11 +126,11 @@ class LiveContext:
             self._asking = False
             self.emit(LiveAnswered())
 
-    def notice(self, sentence: Message) -> None:
-        """Tell a sentence, but not the same one twice in a row."""
+    def notice(self, sentence: Message, *, refused: bool = False) -> None:
+        """Tell a sentence, or that a picture was `refused` and why, but not the same one twice in a row."""
         if sentence != self._told:
             self._told = sentence
-            self.emit(LiveNotice(sentence))
+            self.emit(LiveNotice(sentence, refused))
 
     def write(self, name: str, picture: Picture) -> None:
         """Write a picture of this name (without ending); InputError if the disk is full."""

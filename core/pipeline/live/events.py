@@ -179,9 +179,10 @@ class LiveAnswered:
 
 @dataclass(frozen=True, slots=True)
 class LiveNotice:
-    """A sentence to show; nothing stops for it."""
+    """A sentence to show; nothing stops for it. Or that a picture was `refused`, and why."""
 
     sentence: Message
+    refused: bool = False
 
 
 @dataclass(frozen=True, slots=True)

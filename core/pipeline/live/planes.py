@@ -13,7 +13,6 @@ import numpy as np
 from core.acquire.source import Ended, Frame, Lasers
 from core.calibrate.camera.capture import HOLD_STILL, TAKEN, CaptureJudge, moved_px
 from core.calibrate.camera.missing import PLANE_POSES
-from core.calibrate.fan.poses.plane_pose import TARGET_MOVED
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.image.targets.target_view import TargetView
 from core.messages import Message, label
@@ -169,8 +168,8 @@ class LivePlanes:
         if view is not None and pose.centrelines and (self._capture or (verdict.take and self._auto and not doubt)):
             self._begin_pair(look, view)
         elif self._capture:
-            self._context.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence))
-        elif doubt or (not verdict.take and verdict.sentence not in (HOLD_STILL, TAKEN)):
+            self._context.notice(nothing_taken(_NO_LIGHT if view is not None else self._sentence), refused=True)
+        elif doubt or verdict.of_no_use:
             self._context.dealt_with(look.frame)
         elif verdict.take:
             self._sentence = Message("live.press_capture_pose", "Press Take picture to take this pose.")
@@ -234,9 +233,9 @@ class LivePlanes:
         """Keep the pose, or say why it is of no use."""
         name, off = self._name(), pending.off
         if features.reason:
-            why = self._why_not(features.reason, pending)
+            why = self._why_not(features, features.reason, pending)
             self._refused = (pending.view, why)
-            self._context.notice(why)
+            self._context.notice(why, refused=True)
         else:
             self._context.write(name, pending.on.picture)
             if off is not None:
@@ -258,12 +257,12 @@ class LivePlanes:
                 )
             )
 
-    def _why_not(self, reason: Message, pending: _Pending) -> Message:
+    def _why_not(self, features: PoseFeatures, reason: Message, pending: _Pending) -> Message:
         """The sentence for a pose that was refused: whether the target was moved, or its pictures came late."""
         off = pending.off
-        if off is None or reason.code != TARGET_MOVED:
+        if off is None or not features.target_moved:
             return Message("live.pose_not_taken", "The pose was not taken: {reason}.", reason=reason)
-        apart = {**reason.values, "apart_s": off.time_s - pending.on.time_s}
+        apart = {"shift_px": features.moved_px, "apart_s": off.time_s - pending.on.time_s}
         if not self._switches:
             return Message(
                 "live.pose_moved_by_hand",

@@ -426,7 +426,7 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     covariance = np.cov(rng.normal(size=(8, 20)))
     poses = (
         PoseFeatures("p1", view, (centreline(rng, 6),)),
-        PoseFeatures("p2", None, (), plain("no target")),
+        PoseFeatures("p2", None, (), plain("no target"), moved_px=0.75),
         PoseFeatures("p3", replace(view, name="p3", covariance=covariance), (centreline(rng, 2), centreline(rng, 3))),
     )
     write_poses(tmp_path / "planes.npz", "fan1", poses)
@@ -437,6 +437,7 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
         ("p3", None, 2),
     ]
     assert back[1].view is None
+    assert [pose.target_moved for pose in back] == [False, True, False]
     assert np.array_equal(back[2].view.uv, view.uv)
     assert back[0].view.covariance is None
     assert np.array_equal(back[2].view.covariance, covariance)

@@ -159,7 +159,8 @@ def test_capture_without_a_target_says_why(monkeypatch, tmp_path, plates):
     shown = OneAfterAnother([plates.nothing])
     ended = views_taken(monkeypatch, tmp_path, plates, window, shown, frames=UNTIL_STOPPED)
     assert ended.recorded == 0
-    assert "No checkerboard is seen in the picture." in str(window.all(LiveNotice)[-1].sentence)
+    refused = window.all(LiveNotice)[-1]
+    assert "No checkerboard is seen in the picture." in str(refused.sentence) and refused.refused
 
 
 def test_a_discarded_view_is_put_aside_and_may_be_taken_again(monkeypatch, tmp_path, plates):
@@ -194,7 +195,8 @@ def test_a_pose_whose_target_moved_between_the_pictures_is_not_kept(monkeypatch,
     choices = {"frames": UNTIL_STOPPED, "camera": plates.camera}
     ended = views_taken(monkeypatch, tmp_path, plates, window, OneAfterAnother([moved]), "planes", **choices)
     assert ended.recorded == 0
-    assert any("moved by" in str(notice.sentence) for notice in window.all(LiveNotice))
+    (refused,) = [notice for notice in window.all(LiveNotice) if notice.refused]
+    assert "moved by" in str(refused.sentence)
 
 
 class Late:

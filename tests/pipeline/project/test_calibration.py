@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.fan.poses.pose_features import OTHER_STRIPES
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.project.data import Accepted
@@ -59,7 +58,7 @@ def test_stripes_on_the_plate_are_looked_for_as_the_project_says_and_a_picture_s
     folder = copy_of(done.folder, tmp_path / "project")
     given = done.with_options(plane_stripe=StripeSettings(8.0, 1000.0))
     (pose, *_) = found = find_poses(folder, given)
-    assert {one.reason.code for one in found} == {OTHER_STRIPES}
+    assert {one.reason.code for one in found} == {"fan.other_stripes"}
     assert [one.name for one in found_poses(folder, given)] == [one.name for one in found]
     assert found_poses(folder, done.project) == ()
     stages = show_pose(folder, given, pose)

@@ -72,14 +72,6 @@ SOUND = "live/sound"
 TWICE_MS = 250
 """Between the two sounds that say a picture was refused; one says it was taken."""
 
-_REFUSED = (
-    "live.pose_not_taken",
-    "live.pose_moved",
-    "live.pose_moved_by_hand",
-    "live.pose_late",
-    "live.nothing_taken",
-)
-
 
 class LivePresenter(QObject):
     """Starts, steers and ends the live recordings of one step.
@@ -469,7 +461,7 @@ class LivePresenter(QObject):
             case LiveAsk() | LiveAnswered():
                 self.asked.emit(*self.question)
             case LiveNotice():
-                if event.sentence.code in _REFUSED:
+                if event.refused:
                     self._sound()
                     QTimer.singleShot(TWICE_MS, self, self._sound)
                 self.notice.emit(text_of(event.sentence))

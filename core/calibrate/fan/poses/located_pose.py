@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from core.calibrate.fan.poses.line_assignment import PoseLines
-from core.calibrate.fan.poses.pose_features import NO_STRIPE, OTHER_STRIPES, PoseFeatures
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.stripe_lines import StripeLine, straight_lines
 from core.calibrate.fan.poses.target_plane import target_plane, target_plane_covariance
 from core.image.targets import TargetNotFound, estimate_pose
@@ -82,6 +82,6 @@ def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
 
 def shows_no_stripe(features: PoseFeatures, camera: Camera) -> bool:
     """Whether the target is seen on a pose, but no straight stripe on it."""
-    if features.reason is not None:
-        return features.reason.code in (NO_STRIPE, OTHER_STRIPES)
-    return features.view is not None and not straight_lines(features.centrelines, camera)
+    if features.view is None or features.target_moved:
+        return False
+    return not straight_lines(features.centrelines, camera)

@@ -10,6 +10,7 @@ on it, is left out as well (`core.calibrate.fan.poses.plate`).
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Final
@@ -22,7 +23,7 @@ from scipy.ndimage import map_coordinates
 from core.calibrate.fan.poses.even_plate import DARK, EvenPlate
 from core.calibrate.fan.poses.light_across_marks import across_marks, course_of, follows
 from core.calibrate.fan.poses.plate import Plate, without_clutter
-from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_of, usual_stripe
+from core.calibrate.fan.poses.pose_features import MOVED_PX, PoseFeatures, usual_of, usual_stripe
 from core.calibrate.fan.poses.stripe_lines import straight_lines
 from core.image.mosaic import ALL_SITES, Sites
 from core.image.stripes.bracket import Exposure, fused
@@ -48,10 +49,6 @@ from core.model.arrays import Array, runs_of
 Picture = NDArray[Any]
 """(H, W) grey levels, uint8 or uint16."""
 
-TARGET_MOVED = "fan.target_moved"
-"""Code of the reason that the target moved between the two pictures of a pair."""
-MOVED_PX = 0.5
-"""A target that moved so far between the two pictures of a pair spoils its pose."""
 SURELY_STILL_PX = 0.25
 """A grid of circles followed from picture to picture no farther than this, with an error far smaller, need not be found
 again to know that."""
@@ -133,7 +130,8 @@ def measure_plane_pose(
             "the target moved by {shift_px:.2f} px between the pictures with the fan off and on",
             shift_px=moved,
         )
-        return PoseFeatures(name, view, (), reason)
+        return PoseFeatures(name, view, (), reason, moved_px=moved)
+    moved_px = math.nan if moved is None else moved
     carrier = Plate(target, view, camera, margin_mm)
     outside = carrier.outside(on.shape)
     light = _Light.of(on, off, view, outside, beside)
@@ -143,8 +141,10 @@ def measure_plane_pose(
         if settings is not None:
             seen = usual_stripe([PoseFeatures(name, view, _stripes(light, view, None, beside))])
         if settings is None or seen is None:
-            return PoseFeatures(name, view, (), _no_stripe(on, off, view, settings or USUAL_STRIPE))
-        return PoseFeatures(name, view, (), _other_stripes(settings, seen))
+            why = _no_stripe(on, off, view, settings or USUAL_STRIPE)
+        else:
+            why = _other_stripes(settings, seen)
+        return PoseFeatures(name, view, (), why, moved_px=moved_px)
     level = _plate_level(plate, view)
     centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
     centrelines = without_clutter(centrelines, camera)
@@ -161,7 +161,7 @@ def measure_plane_pose(
             pose=name,
         )
         notes = (note,)
-    return PoseFeatures(name, view, centrelines, notes=notes)
+    return PoseFeatures(name, view, centrelines, notes=notes, moved_px=moved_px)
 
 
 def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -12,8 +13,8 @@ from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeS
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 
-NO_STRIPE, OTHER_STRIPES = "fan.no_stripe", "fan.other_stripes"
-"""Codes of the reasons that no stripe was found, and none as they were said to be."""
+MOVED_PX = 0.5
+"""A target that moved so far between the two pictures of a pair spoils its pose."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -32,6 +33,8 @@ class PoseFeatures:
         Why the pose cannot be used; None if it can.
     notes
         For the technician.
+    moved_px
+        How far the target moved between the pictures with the fan on and off; NaN: not known.
     """
 
     name: str
@@ -39,6 +42,12 @@ class PoseFeatures:
     centrelines: tuple[Centreline, ...]
     reason: Message | None = None
     notes: tuple[Message, ...] = ()
+    moved_px: float = math.nan
+
+    @property
+    def target_moved(self) -> bool:
+        """Whether the target is known to have moved too far between its pictures."""
+        return self.moved_px >= MOVED_PX
 
 
 def usual_stripe(poses: Iterable[PoseFeatures]) -> StripeSettings | None:

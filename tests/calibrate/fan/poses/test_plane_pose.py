@@ -9,8 +9,9 @@ from scipy.special import expit
 from core.acquire.grey import to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses import plane_pose
+from core.calibrate.fan.poses.located_pose import shows_no_stripe
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
-from core.calibrate.fan.poses.pose_features import NO_STRIPE, OTHER_STRIPES, PoseFeatures, usual_stripe
+from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, CircleGrid, TargetNotFound, detect
 from core.model import Pose
@@ -144,6 +145,8 @@ def test_a_target_that_moved_between_the_pictures_is_left_out():
     spoilt = render(POSE, seed=2, moved=moved)
     features = measure_plane_pose("p", spoilt.on, spoilt.off, TARGET, CAMERA)
     assert "moved by" in str(features.reason)
+    assert features.target_moved
+    assert not shows_no_stripe(features, CAMERA)
 
 
 GRID = CircleGrid(7, 7, 12.0)
@@ -208,14 +211,16 @@ def test_no_target_and_no_stripe_are_reasons_not_errors(pair):
     assert dark_fan.reason.values["grey"] < 3.0
     too_faint = measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA, StripeSettings(8.0, 1000.0))
     assert too_faint.reason is not None
-    assert too_faint.reason.code == OTHER_STRIPES
+    assert too_faint.reason.code == "fan.other_stripes"
+    assert shows_no_stripe(too_faint, CAMERA)
     usual = usual_stripe([measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA)])
     assert usual is not None
     assert too_faint.reason.values["seen_px"] == pytest.approx(usual.width_px, rel=0.1)
     assert 20 < too_faint.reason.values["seen_grey"] < 1.2 * usual.contrast
     dark_and_told = measure_plane_pose("p", pair.off, pair.off, TARGET, CAMERA, StripeSettings(8.0, 1000.0))
     assert dark_and_told.reason is not None
-    assert dark_and_told.reason.code == NO_STRIPE
+    assert dark_and_told.reason.code == "fan.no_stripe"
+    assert shows_no_stripe(dark_and_told, CAMERA)
 
 
 def test_the_stripes_of_poses_tell_their_usual_width(pair):

@@ -140,7 +140,10 @@ def test_taken_and_refused_are_heard_unless_the_sound_is_off(panel, live, lane, 
     taken = LiveTaken("view00", np.zeros((2, 2), np.uint8))
     lane.current.reported.emit(taken)
     assert len(heard) == 1
-    lane.current.reported.emit(LiveNotice(Message("live.nothing_taken", "Nothing was taken. {why}", why="So.")))
+    why = Message("live.nothing_taken", "Nothing was taken. {why}", why="So.")
+    lane.current.reported.emit(LiveNotice(why))
+    assert len(heard) == 1
+    lane.current.reported.emit(LiveNotice(why, refused=True))
     qtbot.waitUntil(lambda: len(heard) == 3)
     panel.sound.click()
     lane.current.reported.emit(taken)
