@@ -10,14 +10,13 @@ from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Target
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array, runs_of
-from core.plan.design import Design
+from core.plan.design import Design, PlanError
 from core.plan.light_lines import FlatFace, LitLine, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent
@@ -72,7 +71,7 @@ def view_poses(design: Design, seed: int) -> list[Pose]:
     try:
         return camera_poses(design.camera(), outline, design.views, rng, nearest_mm=nearest)
     except ValueError as error:
-        raise InputError(
+        raise PlanError(
             Message(
                 "plan.target_too_large",
                 "the target does not fit into the picture at any distance up to three times the table's, so the camera "

@@ -82,6 +82,10 @@ RANGES: Mapping[str, Range] = {
 """What each quantity may be: wider than any rig that was built, so that only slips are refused."""
 
 
+class PlanError(InputError):
+    """A planned rig cannot be, or cannot measure: what is said of it is said in the words of a plan."""
+
+
 @dataclass(frozen=True, slots=True)
 class Design:
     """A planned rig; the defaults are the paper's.
@@ -268,8 +272,8 @@ class Design:
         return np.array([0.0, self.baseline_mm, self.distance_mm - TABLE_DEPTH_MM + float(_PAPER_AXIS[2])])
 
 
-def _impossible(name: str, value: object, why: Message) -> InputError:
-    return InputError(
+def _impossible(name: str, value: object, why: Message) -> PlanError:
+    return PlanError(
         Message("plan.impossible", "{value} is impossible: {why}", value=value, why=why),
         where=f"[plan] {name}",
         todo=Message("plan.advice_change", "change it in rig.toml"),

@@ -28,7 +28,7 @@ from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.messages import Message
 from core.model.arrays import Array
 from core.plan.calibrating import plan_camera, plan_check, plan_fan
-from core.plan.design import Design
+from core.plan.design import Design, PlanError
 from core.plan.scanning import plan_scan
 from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
@@ -160,7 +160,7 @@ class Planner:
         if self.part is not None:
             gauge = adjusted(gauge, 0.0, _known_rows(self.part, height_mm))
         if abs(gauge.thickness_mm / height_mm - 1) > 0.1:
-            raise InputError(
+            raise PlanError(
                 Message(
                     "plan.face_not_found",
                     "the block's upper face ({height_mm:g} mm) would not be found among the points seen",
@@ -255,10 +255,10 @@ def _as_errors_of_a_plan() -> Iterator[None]:
     """What the solvers say of pictures, said of a rig that has none yet; complaints about the plan pass as they are."""
     try:
         yield
+    except PlanError:
+        raise
     except InputError as error:
-        if error.code.startswith("plan."):
-            raise
-        raise InputError(
+        raise PlanError(
             Message("plan.not_measurable", "a recording with this rig could not be measured ({why})", why=error.what),
             where="[plan]",
             todo=Message("plan.advice_go_back", "go back to the paper's values one by one to see which of yours it is"),

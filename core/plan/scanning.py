@@ -6,12 +6,11 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
 from core.messages import Message
 from core.model import Camera
-from core.plan.design import Design
+from core.plan.design import Design, PlanError
 from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent, steps
@@ -28,7 +27,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
 
     Raises
     ------
-    InputError
+    PlanError
         If the camera would see no stripe of the fan or of the hand-held laser.
     """
     stage = Stage(design, height_mm)
@@ -38,13 +37,13 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
     sweep_lines = [stage.lines([sheet], hand) for sheet in steps(sheets, progress, "stripes", len(sheets))]
     every = [line for lines in sweep_lines for line in lines]
     if not fan_lines:
-        raise InputError(
+        raise PlanError(
             Message("plan.fan_not_seen", "the camera would see no stripe of the fan on table and block"),
             where="[plan]",
             todo=Message("plan.advice_check_fan", "check baseline_mm, distance_mm and focal_mm"),
         )
     if not every:
-        raise InputError(
+        raise PlanError(
             Message("plan.hand_not_seen", "the camera would see no stripe of the hand-held laser on table and block"),
             where="[plan]",
             todo=Message("plan.advice_check_hand", "check hand_baseline_mm, distance_mm and focal_mm"),

@@ -16,14 +16,13 @@ from typing import NamedTuple
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
-from core.errors import InputError
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import ROUNDING_VARIANCE, NoiseModel
 from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.messages import Message
 from core.model.arrays import Array
-from core.plan.design import Design
+from core.plan.design import Design, PlanError
 from core.plan.light_lines import LitLine
 from core.simulate.rig import Beam, Optics, Rig
 from core.simulate.scene.image import Sensor, generator
@@ -162,7 +161,7 @@ class SeenStripes:
                 Light(width, background_grey, self.single), (float(low), float(high)), self.optics, self.scale
             )
         except ValueError as error:
-            raise InputError(
+            raise PlanError(
                 Message(
                     "plan.too_faint",
                     "the stripes would be too faint to be found ({height:.1f} grey levels high)",
