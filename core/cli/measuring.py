@@ -28,7 +28,7 @@ from core.files.results.rig_history import RigHistory, history_file
 from core.files.step_graph import READJUST
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
-from core.pipeline.batch import FAULT, run_batch
+from core.pipeline.batch import run_batch
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.executors import executor_of
 from core.pipeline.run import RunResult, run
@@ -241,7 +241,7 @@ def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:
     not proven to conform, else 0.
     """
     failed = [result for result in results if result.error]
-    if any(result.error and result.error.code == FAULT for result in failed):
+    if any(result.fault for result in failed):
         return ExitCode.FAULT
     if failed:
         return ExitCode.NO_THICKNESS if all(result.no_thickness for result in failed) else ExitCode.BAD_INPUT

@@ -31,8 +31,6 @@ _LOOK_EVERY_S = 0.2
 """How often in s it is looked whether a set is done or the batch is to stop."""
 _LET_END_S = 30.0
 """How long in s the sets under way may take to stop, once they are told to."""
-FAULT = "set.fault"
-"""Code of what a set failed by when the program was at fault, not the set."""
 _LONGEST_REASON = 200
 """Characters of another library's words."""
 
@@ -146,7 +144,8 @@ def measure_set(folder: Path, out: Path, options: Options, stop: Path, progress:
     except Exception as error:  # noqa: BLE001  (a fault in one set must not cost the others)
         refused = refused_path(error)
         told = _fault(error) if refused is None else refused.message
-        return SetResult(folder, out, seconds=time.perf_counter() - began, error=told)
+        seconds = time.perf_counter() - began
+        return SetResult(folder, out, seconds=seconds, error=told, fault=refused is None)
     return _measured(folder, out, measured, time.perf_counter() - began)
 
 

@@ -34,6 +34,8 @@ class SetResult:
         Why it could not be measured; None if it could.
     no_thickness
         Whether that is no more than that no thickness could be found.
+    fault
+        Whether the program was at fault, not the set.
     """
 
     folder: Path
@@ -47,6 +49,7 @@ class SetResult:
     seconds: float = 0.0
     error: Message | None = None
     no_thickness: bool = False
+    fault: bool = False
 
 
 @dataclass(frozen=True, slots=True)
