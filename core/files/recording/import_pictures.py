@@ -29,11 +29,20 @@ IMPORTED = "import.json"
 
 @dataclass(frozen=True, slots=True)
 class Imported:
-    """What was written: the set, how many files in which way, and what deserves a word."""
+    """What was written: the set, how many files in which way, and what deserves a word.
+
+    `no_rig` is a word on a rig.toml that the set has not, which a window needs not; None if it has one.
+    """
 
     folder: Path
     ways: Mapping[Way, int]
     notes: tuple[Message, ...]
+    no_rig: Message | None = None
+
+    @property
+    def all_notes(self) -> tuple[Message, ...]:
+        """The notes, and that there is no rig.toml."""
+        return self.notes if self.no_rig is None else (*self.notes, self.no_rig)
 
 
 def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, progress: Progress = silent) -> Imported:
@@ -87,9 +96,10 @@ def import_pictures(plan: ImportPlan, target: Path, rig: Path | None = None, pro
     if rig is not None:
         write_bytes(target / RIG, read_bytes(rig))
     counts: Counter[Way] = Counter(ways.values())
-    notes = (*plan.notes, *_notes(target, counts))
-    write_json(target / IMPORTED, {"imports": [*log, _record(plan, ways, notes)]})
-    return Imported(target, dict(counts), notes)
+    notes, no_rig = (*plan.notes, *_notes(counts)), None if (target / RIG).exists() else _NO_RIG
+    imported = Imported(target, dict(counts), notes, no_rig)
+    write_json(target / IMPORTED, {"imports": [*log, _record(plan, ways, imported.all_notes)]})
+    return imported
 
 
 def require_free(plan: ImportPlan, target: Path, rig: Path | None) -> None:
@@ -130,7 +140,13 @@ def earlier_imports(target: Path) -> list[Any]:
     return imports
 
 
-def _notes(target: Path, ways: Mapping[Way, int]) -> tuple[Message, ...]:
+_NO_RIG = Message(
+    "import.no_rig",
+    "The set has no rig.toml yet; it says what the targets and the laser are, and is written by hand.",
+)
+
+
+def _notes(ways: Mapping[Way, int]) -> tuple[Message, ...]:
     notes = []
     if "symbolic link" in ways:
         notes.append(
@@ -148,13 +164,6 @@ def _notes(target: Path, ways: Mapping[Way, int]) -> tuple[Message, ...]:
                 "{n} file was copied: this disk takes no links to it.",
                 "{n} files were copied: this disk takes no links to them.",
                 n=ways["copy"],
-            )
-        )
-    if not (target / RIG).exists():
-        notes.append(
-            Message(
-                "import.no_rig",
-                "The set has no rig.toml yet; it says what the targets and the laser are, and is written by hand.",
             )
         )
     return tuple(notes)

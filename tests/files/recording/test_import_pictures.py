@@ -167,7 +167,8 @@ def test_files_are_linked_and_the_set_says_where_they_came_from(tmp_path):
     imported = import_pictures(plan_import(ImportRequest(camera=Where(views), scan=Where(frames))), tmp_path / "set")
     assert imported.ways == {"hard link": 3}
     assert (tmp_path / "set/scan/reference.png").samefile(frames / "reference.png")
-    assert codes(imported.notes) == ["import.no_rig"]
+    assert imported.notes == ()
+    assert codes(imported.all_notes) == ["import.no_rig"]
     (log,) = read_json(tmp_path / "set/import.json")["imports"]
     assert {one["name"]: one["from"] for one in log["pictures"]} == {
         "camera/v1.png": str(views / "v1.png"),

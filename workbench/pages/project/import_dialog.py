@@ -37,8 +37,6 @@ _QUIET_MS = 300
 """What is typed is looked at when nothing more was typed for so long."""
 _PREVIEW_PX = 900
 """Pictures are shown so wide at most."""
-_NO_RIG = "import.no_rig"
-"""A note of the import that is not shown here: the pages of the window have fields for targets and laser."""
 
 
 class ImportDialog(QDialog):
@@ -226,9 +224,8 @@ class ImportDialog(QDialog):
         self.setEnabled(False)
 
         def done(imported: Imported) -> None:
-            for note in imported.notes:
-                if note.code != _NO_RIG:
-                    self._bench.notices.warning(text_of(note))
+            for note in imported.notes:  # without one on rig.toml: the pages have fields for targets and laser
+                self._bench.notices.warning(text_of(note))
             self.accept()
             self.imported.emit(imported, plan)
 
