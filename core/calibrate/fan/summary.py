@@ -11,12 +11,13 @@ import numpy as np
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.cross_validation import Predictions
+from core.calibrate.fan.left_out import note_on_left_out
 from core.calibrate.fan.picture_residuals import judge_points, notes_on_points
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.straightness import bends_of, bow_or_bend, judge_lines, notes_on_lines, off_planes_mm
 from core.calibrate.fan.verdict import Verdict, fan_of
-from core.calibrate.results import LEFT_OUT, FanCalibration, PlanePose
+from core.calibrate.results import FanCalibration, PlanePose
 from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
@@ -160,30 +161,8 @@ def _rms(distances: Sequence[Array]) -> float:
 
 def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose]) -> tuple[Message, ...]:
     """On the poses that are left out, and on saturated stripes."""
-    notes = []
-    out = [
-        Message("fan.pose_and_reason", "{pose} ({reason})", pose=pose.name, reason=pose.reason)
-        if math.isnan(pose.rms_mm) or pose.reason == LEFT_OUT
-        else Message(
-            "fan.pose_reason_and_distance",
-            "{pose} ({reason}; {off:.2f} mm off)",
-            pose=pose.name,
-            reason=pose.reason,
-            off=pose.rms_mm,
-        )
-        for pose in poses
-        if pose.reason is not None
-    ]
-    if out:
-        notes.append(
-            Message(
-                "fan.poses_left_out",
-                "{n} of {all} poses left out: {names:;}",
-                n=len(out),
-                all=len(located),
-                names=tuple(out),
-            )
-        )
+    left_out = note_on_left_out(poses)
+    notes = [] if left_out is None else [left_out]
     stripes = [stripe for pose in located for stripe in pose.stripes.values()]
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from core.calibrate.fan.left_out import note_on_left_out
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
@@ -59,7 +60,8 @@ def notes(calibration: FanCalibration | None) -> str:
     """What else is to be said of a calibration, a sentence a line; the poses left out are listed by themselves."""
     if calibration is None:
         return ""
-    shown = [note for note in calibration.notes if note.code != "fan.poses_left_out"]
+    of_poses = note_on_left_out(calibration.poses)
+    shown = [note for note in calibration.notes if note != of_poses]
     return "\n".join(text_of(note) if note.is_sentence else sentence(text_of(note)) for note in shown)
 
 

@@ -14,6 +14,7 @@ from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import read_project
 from core.files.project.keys import finished
+from core.files.results.fan_file import read_fan, write_fan
 from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from tests.calibrate.fan_scenes import CAMERA
@@ -188,11 +189,15 @@ def test_several_poses_are_left_out_by_one_edit(found: PlanesPresenter, qtbot: A
     assert stage(found) is Stage.SOLVED
 
 
-def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot: Any) -> None:
+def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot: Any, tmp_path: Path) -> None:
     found.set_used(["pose01", "pose03"], False)
     settled(qtbot, found)
     assert words.left_out_lines(found.views()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
-    assert "left out" not in words.notes(found.work.calibration), "said once"
+    calibration = found.work.calibration
+    write_fan(tmp_path / "planes.json", calibration, CAMERA)
+    for one in (calibration, read_fan(tmp_path / "planes.json", CAMERA)):
+        assert any(str(note).startswith("3 of 7 poses left out: ") for note in one.notes)
+        assert "left out" not in words.notes(one), "said once"
     rows = {row[0]: row[1] for row in words.quality_rows(found.work.calibration)}
     assert rows["Poses"] == "4 of 7"
 

@@ -1,0 +1,31 @@
+"""What a fan's calibration tells of the poses it left out. Light to import: a window asks it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+
+from core.calibrate.results import LEFT_OUT, PlanePose
+from core.messages import Message
+
+
+def note_on_left_out(poses: Sequence[PlanePose]) -> Message | None:
+    """Which of all poses are left out and why, and how far off they are where that is known; None if all count."""
+    out = [
+        Message("fan.pose_and_reason", "{pose} ({reason})", pose=pose.name, reason=pose.reason)
+        if math.isnan(pose.rms_mm) or pose.reason == LEFT_OUT
+        else Message(
+            "fan.pose_reason_and_distance",
+            "{pose} ({reason}; {off:.2f} mm off)",
+            pose=pose.name,
+            reason=pose.reason,
+            off=pose.rms_mm,
+        )
+        for pose in poses
+        if pose.reason is not None
+    ]
+    if not out:
+        return None
+    return Message(
+        "fan.poses_left_out", "{n} of {all} poses left out: {names:;}", n=len(out), all=len(poses), names=tuple(out)
+    )
