@@ -40,7 +40,7 @@ _FIELDS = {
 _ELSEWHERE = Message(
     "window.elsewhere", "make the folder writable, or copy the project to another disk and open it there"
 )
-_ADVICE = {
+_INSTEAD = {
     "advice.another_out": _ELSEWHERE,
     "advice.results_into_set": Message("window.another_folder", "choose another folder"),
     "advice.name_results_folder": Message("window.results_folder", "choose the folder of its results"),
@@ -49,14 +49,20 @@ _ADVICE = {
     ),
     "advice.another_characteristic": Message("window.another_result", "choose another result"),
     "artefact.advice_name_it": Message("artefact.advice_name_one", "name one of these"),
+    "gauge.where_upper_region": Message("gauge.upper_region", "region of the upper face"),
+    "gauge.where_lower_region": Message("gauge.lower_region", "region of the lower face"),
+    "gauge.advice_exchange_faces": Message("gauge.advice_exchange_regions", "exchange the two regions"),
+    "gauge.advice_outline_faces": Message(
+        "gauge.advice_draw_regions", "scan both faces, or draw a region on each of them"
+    ),
 }
-"""What the window advises in place of an option of the command line, by the code of that advice."""
+"""What the window says in place of an option of the command line or a key of its files, by the code of that."""
 
 
 def _for_the_window(language: Language) -> Language:
     fields = {key: language.label(english) for key, english in _FIELDS.items()}
-    advice = {code: language(message) for code, message in _ADVICE.items()}
-    return replace(language, messages={**language.messages, **advice}, fields=fields, commands=False)
+    instead = {code: language(message) for code, message in _INSTEAD.items()}
+    return replace(language, messages={**language.messages, **instead}, fields=fields, commands=False)
 
 
 _chosen = _for_the_window(Language())

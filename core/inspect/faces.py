@@ -28,9 +28,15 @@ from core.scan.surface.cloud import Cloud
 DRAW_OVER_FACE = Message("feature.advice_draw_over_face", "draw it over a face that the scan covers")
 
 
+_REGION_FIELDS = {
+    "upper": Message("gauge.where_upper_region", "[gauge] upper_polygon_px"),
+    "lower": Message("gauge.where_lower_region", "[gauge] lower_polygon_px"),
+}
+
+
 def region_field(face: str) -> Message:
     """Where the region of a face stands in rig.toml; a window names it as a region of the picture."""
-    return Message("gauge.where_region", "[gauge] {face}_polygon_px", face=face)
+    return _REGION_FIELDS[face]
 
 
 SMALLEST_MM2 = 60.0

@@ -9,6 +9,7 @@ import pytest
 import workbench.language
 from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT
+from core.inspect.faces import region_field
 from core.messages import Command, Field, Message
 from core.translations import language
 from tests.workbench.pages.inspect_cases import gauge
@@ -42,6 +43,14 @@ def test_advice_of_an_option_is_advice_of_the_windows_own() -> None:
     full = InputError(Message("test.full", "cannot be written"), where="x", todo=ANOTHER_OUT)
     assert text_of(full).endswith("copy the project to another disk and open it there.")
     assert str(full).endswith("choose another folder with --out.")
+
+
+def test_the_regions_of_faces_are_called_as_in_the_window() -> None:
+    exchange = Message("gauge.advice_exchange_faces", "exchange upper_polygon_px and lower_polygon_px")
+    exchanged = InputError(Message("test.behind", "it lies behind"), where=region_field("upper"), todo=exchange)
+    assert text_of(exchanged) == "region of the upper face: it lies behind; exchange the two regions."
+    twice = InputError(Message("test.twice", "it is none"), where=region_field("lower"))
+    assert text_of(twice.message) == "region of the lower face: it is none."
 
 
 def test_a_page_in_german_writes_all_its_numbers_alike(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -28,7 +28,7 @@ from itertools import count
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import ANOTHER_OUT, cannot_write, make_folder, remove, vanished, write_bytes, write_text
+from core.files.atomic import cannot_write, make_folder, remove, vanished, write_bytes, write_text
 from core.files.project.audit import Signed, What, append
 from core.files.project.changes import differences
 from core.files.project.data import Project, ProjectFile, ProjectInfo, Sources
@@ -51,10 +51,6 @@ KEPT = 5
 
 _BACKUP = re.compile(r"^project-(\d+)-\d{8}-\d{6}\.json$")
 _OPENER_SAYS = "This file opens the project in its folder with Trisect; the project itself is in project.json.\n"
-_ELSEWHERE = Message(
-    "advice.make_writable_or_copy",
-    "make the folder writable, or copy the project to another disk and open it there",
-)
 
 
 def is_project(path: Path) -> bool:
@@ -86,10 +82,7 @@ def read_project(path: Path) -> ProjectFile:
 
 def create_project(folder: Path, file: ProjectFile) -> None:
     """Write a project into `folder`, which is made if it is not there; else as :func:`write_project`."""
-    try:
-        make_folder(folder)
-    except InputError as error:
-        raise _unsaved(folder, error) from error
+    make_folder(folder)
     _write(folder, file, keep_s=0.0)
 
 
@@ -143,8 +136,8 @@ def _write(folder: Path, file: ProjectFile, keep_s: float, why: str = "", by: Si
         digest = hashlib.sha256(text.encode()).hexdigest()
         append(folder, told, differences(before, file), why=why, state=digest, by=by)
         write_text(path, text)
-    except (InputError, OSError) as error:
-        raise _unsaved(path, error) from error
+    except OSError as error:
+        raise cannot_write(path, error) from error
     put_opener(folder)
 
 
@@ -181,21 +174,12 @@ def write_autosave(folder: Path, file: ProjectFile) -> None:
     require_project_folder(folder)
     path = folder / AUTOSAVE
     text = project_text(replace(file, saved=datetime.now().astimezone()), path)
-    try:
-        write_text(
-            path, text, sync=False
-        )  # outlives the program, if not the power supply; the disk need not be awaited
-    except InputError as error:
-        raise _unsaved(path, error) from error
+    write_text(path, text, sync=False)  # outlives the program, if not the power supply; the disk need not be awaited
 
 
 def remove_autosave(folder: Path) -> None:
     """Remove the autosaved state, if there is one; InputError if it cannot be removed."""
-    path = folder / AUTOSAVE
-    try:
-        remove(path)
-    except InputError as error:
-        raise _unsaved(path, error) from error
+    remove(folder / AUTOSAVE)
 
 
 def recoverable(folder: Path) -> ProjectFile | None:
@@ -304,13 +288,6 @@ def _readable(path: Path) -> ProjectFile | None:
 
 def _age(version: Version) -> float:
     return version.file.saved.timestamp() if version.file.saved is not None else 0.0
-
-
-def _unsaved(path: Path, error: InputError | OSError) -> InputError:
-    """Why nothing can be written, and what to do about it in a window, which has no --out."""
-    told = error if isinstance(error, InputError) else cannot_write(path, error)
-    todo = _ELSEWHERE if told.todo.code == ANOTHER_OUT.code else told.todo
-    return InputError(told.what, where=told.where, todo=todo)
 
 
 def _keep(folder: Path, path: Path, keep_s: float) -> None:

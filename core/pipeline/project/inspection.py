@@ -9,7 +9,6 @@ from typing import TypeAlias
 
 import numpy as np
 
-from core.errors import InputError
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
@@ -21,7 +20,6 @@ from core.inspect.profile import Profile
 from core.inspect.shown.deviation_map import QUARTERS, DeviationMap, bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.pipeline.project.verify import noting_results
-from core.pipeline.steps.gauge_step import in_a_project
 from core.pipeline.steps.inspect_step import InspectedScan, inspect, open_scan
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -55,10 +53,7 @@ def measure_features(
     InputError
         If there is no scan among the results, the plan is wrong, or a nominal surface cannot be read.
     """
-    try:
-        inspection, scan = _inspected(folder, project, progress, memory)
-    except InputError as error:
-        raise in_a_project(error) from error
+    inspection, scan = _inspected(folder, project, progress, memory)
     path, shown = results_folder(folder) / NAME, _shown(inspection, scan)
     with noting_results(folder):
         write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))

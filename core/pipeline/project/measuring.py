@@ -23,7 +23,7 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.camera_step import solved_for
-from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step, in_a_project
+from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import FILES, Workspace, made_beside, put_results
 from core.progress import Progress, silent
@@ -90,11 +90,8 @@ def measure_gauge(folder: Path, project: Project, progress: Progress = silent) -
     InputError
         If there is no scan, or it has no two parallel faces there.
     """
-    try:
-        with noting_results(folder):
-            return gauge_step(project_workspace(folder, project), progress)
-    except InputError as error:
-        raise in_a_project(error) from error
+    with noting_results(folder):
+        return gauge_step(project_workspace(folder, project), progress)
 
 
 def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Path | None:

@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from core.errors import InputError
 from core.files.project.folder import results_in
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
-from core.pipeline.steps.gauge_step import in_a_project
 from core.pipeline.steps.report_step import results_content
 from core.progress import Progress, silent
 
@@ -22,9 +20,6 @@ def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[
         If there is no scan among the results, or they are damaged.
     """
     progress("results", 0, 1)
-    try:
-        found = results_content(results_in(folder)).characteristics
-    except InputError as error:
-        raise in_a_project(error) from error
+    found = results_content(results_in(folder)).characteristics
     order = (*WORST_FIRST, Verdict.NONE)
     return tuple(sorted(found, key=lambda one: (order.index(one.verdict), one.room)))

@@ -175,23 +175,3 @@ def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:
     if spec.upper_polygon_px is None or spec.lower_polygon_px is None:
         return None
     return spec.upper_polygon_px, spec.lower_polygon_px
-
-
-_REGIONS = {
-    "upper": Message("gauge.upper_region", "region of the upper face"),
-    "lower": Message("gauge.lower_region", "region of the lower face"),
-}
-_ADVICE = {
-    "gauge.advice_exchange_faces": Message("gauge.advice_exchange_regions", "exchange the two regions"),
-    "gauge.advice_outline_faces": Message(
-        "gauge.advice_draw_regions", "scan both faces, or draw a region on each of them"
-    ),
-}
-
-
-def in_a_project(error: InputError) -> InputError:
-    """The same complaint in the words of a project, which has no rig.toml to edit; others are returned as they are."""
-    where, todo = error.where, error.todo
-    if isinstance(where, Message) and where.code == "gauge.where_region":
-        where = _REGIONS[where.values["face"]]
-    return InputError(error.what, where=where, todo=_ADVICE.get(todo.code, todo))

@@ -11,6 +11,7 @@ from core.errors import Cancelled, InputError
 from core.files.project.folder import results_folder
 from core.files.recording.rig import GaugeSpec
 from core.files.results.ply import read_cloud, read_mesh
+from core.inspect.faces import region_field
 from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER
 from core.pipeline.project.inspect_view import inspection_view, outline_selected
 from core.pipeline.project.measuring import measure_gauge
@@ -182,30 +183,29 @@ def test_a_selection_of_another_scan_is_refused(done):
         outline_selected(done.folder, np.array([10**6], dtype=np.int32), "upper")
 
 
-def test_exchanged_regions_are_told_in_the_words_of_a_window(done, view, tmp_path):
+def test_exchanged_regions_are_told_apart(done, view, tmp_path):
     folder = shutil.copytree(done.folder, tmp_path / "project")
     upper, lower = view.outlines
     rig = replace(done.project.rig, gauge=GaugeSpec(upper_polygon_px=lower, lower_polygon_px=upper))
     with pytest.raises(InputError) as told:
         measure_gauge(folder, replace(done.project, rig=rig))
-    assert "_px" not in str(told.value)
-    assert str(told.value).startswith("region of the upper face: ")
-    assert str(told.value).endswith("exchange the two regions.")
+    assert told.value.where == region_field("upper")
+    assert told.value.todo.code == "gauge.advice_exchange_faces"
 
 
-def test_two_regions_over_one_face_are_told_in_the_words_of_a_window(done, view, tmp_path):
+def test_two_regions_over_one_face_are_refused(done, view, tmp_path):
     folder = shutil.copytree(done.folder, tmp_path / "project")
     _, lower = view.outlines
     rig = replace(done.project.rig, gauge=GaugeSpec(upper_polygon_px=lower, lower_polygon_px=lower + 1.0))
-    with pytest.raises(InputError, match=r"region of the upper face: both regions hold one and the same face; draw"):
+    with pytest.raises(InputError, match=r"upper_polygon_px: both regions hold one and the same face; draw"):
         measure_gauge(folder, replace(done.project, rig=rig))
 
 
-def test_a_region_beside_the_part_is_told_in_the_words_of_a_window(done, tmp_path):
+def test_a_region_beside_the_part_is_refused(done, tmp_path):
     folder = shutil.copytree(done.folder, tmp_path / "project")
     corner = np.array([[0.0, 0.0], [8.0, 0.0], [0.0, 8.0]])
     rig = replace(done.project.rig, gauge=GaugeSpec(upper_polygon_px=corner, lower_polygon_px=corner))
-    with pytest.raises(InputError, match=r"region of the upper face: .*draw it over a face"):
+    with pytest.raises(InputError, match=r"upper_polygon_px: .*draw it over a face"):
         measure_gauge(folder, replace(done.project, rig=rig))
 
 
