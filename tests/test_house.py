@@ -241,6 +241,77 @@ def test_a_text_that_is_cut_is_seen(line, seen):
     assert bool(list(cuts(tree, telling_in([tree])))) == seen
 
 
+BY_CODE = {
+    "core/messages.py": "finds the text of a message in the reader's language",
+    "core/inspect/uncertainty/causes.py": "finds the cause that a file names, which older files name by its words",
+    # These still decide by a code; each goes as soon as the fact stands in a field.
+    "core/urgent.py": "which notes come first",
+    "core/calibrate/camera/views.py": "how many hot pixels an earlier calibration left out",
+    "core/calibrate/deviations.py": "whether the flatness of the plane target is assumed",
+    "core/inspect/evaluate.py": "whether the size of the plane target is all the doubt there is",
+    "core/pipeline/steps/target_sizes.py": "which note a size by an artefact makes needless",
+    "core/pipeline/steps/validity.py": "whether a fan is a fan, and pictures of it are off alike",
+    "core/scan/features/picture_faults.py": "which notes on a scan's pictures are of their faults",
+}
+"""Modules that look something up by the code of a message, and what."""
+LOOK_UPS = frozenset(("get", "pop", "setdefault", "index", "count"))
+"""Methods that find something by what they are given."""
+
+
+def has_code(*parts: ast.AST) -> bool:
+    """Whether the code of a message is read anywhere in some expressions."""
+    return any(isinstance(node, ast.Attribute) and node.attr == "code" for part in parts for node in ast.walk(part))
+
+
+def decides_by_code(node: ast.AST) -> bool:
+    """Whether what is done there depends on which code a message has."""
+    match node:
+        case ast.Compare():
+            return has_code(node.left, *node.comparators)
+        case ast.Subscript():
+            return has_code(node.slice)
+        case ast.Match():
+            return has_code(node.subject)
+        case ast.Call(func=ast.Attribute(attr=method, value=of)):
+            return (method in CUTS and has_code(of)) or (method in LOOK_UPS and has_code(*node.args))
+    return False
+
+
+def test_no_logic_decides_by_the_code_of_a_message():
+    found: dict[str, list[str]] = {}
+    for path in modules("core", "workbench", "trisect"):
+        for node in filter(decides_by_code, nodes(path)):
+            place = f"{getattr(node, 'lineno', 0)} {ast.unparse(node)[:80]}"
+            found.setdefault(path.relative_to(ROOT).as_posix(), []).append(place)
+    more = {path: places for path, places in found.items() if path not in BY_CODE}
+    assert more == {}, "a code is there to translate, keep, count or print a message: give the fact a field"
+    assert BY_CODE.keys() - found.keys() == set(), "these look at no code any more: take them off the list"
+
+
+@pytest.mark.parametrize(
+    ("line", "seen"),
+    [
+        ("note.code == BAD", True),
+        ("any(one.code != BAD.code for one in notes)", True),
+        ("note.code in CODES", True),
+        ("BAD in {note.code for note in notes}", True),
+        ("WORDS[where.code]", True),
+        ("WORDS.get(todo.code or str(todo), todo)", True),
+        ("error.what.code.startswith('plan.')", True),
+        ("str(error.code).endswith('.plan')", True),
+        ("match note.code:\n    case 'a.b':\n        pass", True),
+        ("{'code': note.code, 'text': str(note)}", False),
+        ("Counter(note.code for note in notes)", False),
+        ("print(note.code)", False),
+        ("as_json(note) if note.code else str(note)", False),
+        ("reason is LEFT_OUT", False),
+        ("code == 70", False),
+    ],
+)
+def test_a_decision_by_a_code_is_seen(line, seen):
+    assert any(map(decides_by_code, ast.walk(ast.parse(line)))) == seen
+
+
 def unguarded(tree: ast.AST) -> Iterator[tuple[int, str]]:
     """Line and source of each place where a path is renamed, or a tree removed, past `core.held_files`."""
     for node in ast.walk(tree):
