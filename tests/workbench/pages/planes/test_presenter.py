@@ -194,6 +194,7 @@ def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot:
     settled(qtbot, found)
     assert words.left_out_lines(found.views()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
     calibration = found.work.calibration
+    assert calibration is not None
     write_fan(tmp_path / "planes.json", calibration, CAMERA)
     for one in (calibration, read_fan(tmp_path / "planes.json", CAMERA)):
         assert any(str(note).startswith("3 of 7 poses left out: ") for note in one.notes)
