@@ -244,13 +244,8 @@ def test_a_text_that_is_cut_is_seen(line, seen):
 BY_CODE = {
     "core/messages.py": "finds the text of a message in the reader's language",
     "core/inspect/uncertainty/causes.py": "finds the cause that a file names, which older files name by its words",
-    # These still decide by a code; each goes as soon as the fact stands in a field.
-    "core/urgent.py": "which notes come first",
-    "core/calibrate/camera/views.py": "how many hot pixels an earlier calibration left out",
-    "core/calibrate/deviations.py": "whether the flatness of the plane target is assumed",
-    "core/inspect/evaluate.py": "whether the size of the plane target is all the doubt there is",
-    "core/pipeline/steps/target_sizes.py": "which note a size by an artefact makes needless",
-    "core/pipeline/steps/validity.py": "whether a fan is a fan, and pictures of it are off alike",
+    "core/findings/table.py": "finds how grave a note is",
+    # This still decides by a code; it goes as soon as the fact stands in a field.
     "core/scan/features/picture_faults.py": "which notes on a scan's pictures are of their faults",
 }
 """Modules that look something up by the code of a message, and what."""
