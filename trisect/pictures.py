@@ -12,12 +12,12 @@ from numpy.typing import ArrayLike, NDArray
 from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files import pictures
+from core.files.recording.options import stated_stripe
 from core.image.crossings.crossing import Crossing, cross_centrelines
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import UNCOMPRESSED, Compression, estimate_noise, estimate_noise_of_pair
 from core.image.stripes.settings import choose_settings
-from core.image.stripes.stripe import StripeSettings
 from core.image.targets import Target, detect
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -143,7 +143,7 @@ def extract_stripes(
     Raises
     ------
     InputError
-        If an array is no picture, the two differ in size or type, or only one of width and contrast is given.
+        If an array is no picture, the two differ in size or type, or width and contrast are not both given and above 0.
 
     References
     ----------
@@ -171,16 +171,7 @@ def extract_stripes(
         one = replace(estimate_noise_of_pair(light, without), compression=compression)
         noise = one.of_difference(float(np.median(without)))
         light -= without
-    if (width_px is None) != (contrast is None):
-        raise InputError(
-            Message("options.stripe_incomplete", "width and contrast of the stripes belong together, both above 0"),
-            where="width_px, contrast",
-            todo=Message("advice.give_both_or_neither", "give both, or neither to have them chosen from the pictures"),
-        )
-    if width_px is not None and contrast is not None:
-        settings: StripeSettings | None = StripeSettings(width_px, contrast)
-    else:
-        settings = choose_settings(light, white)
+    settings = stated_stripe(width_px, contrast, "width_px, contrast") or choose_settings(light, white)
     if settings is None:
         return ()
     return extract_centrelines(light, settings, noise=noise, saturated=lit >= white)

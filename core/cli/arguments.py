@@ -8,9 +8,8 @@ from pathlib import Path
 
 from core.calibrate.camera.adjustment import CameraOptions
 from core.cli.options import ChannelName
-from core.errors import InputError
 from core.files.atomic import make_folder
-from core.files.recording.options import Options
+from core.files.recording.options import Options, stated_stripe
 from core.files.recording.recording_set import (
     excluded_names,
     open_set,
@@ -20,7 +19,6 @@ from core.files.recording.recording_set import (
     require_scan,
 )
 from core.image.stripes.stripe import StripeSettings
-from core.messages import Message
 from core.scan.method import Method
 
 
@@ -58,17 +56,8 @@ def camera_options(skew: bool | None, k3: bool | None) -> CameraOptions:
 
 
 def stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
-    """Width and contrast of stripes, None where they are to be chosen; InputError where only one is given."""
-    if (stripe_width > 0) != (contrast > 0) or min(stripe_width, contrast) < 0:
-        raise InputError(
-            Message(
-                "options.stripe_incomplete",
-                "width and contrast of the stripes belong together, both above 0",
-            ),
-            where="--stripe-width, --contrast",
-            todo=Message("advice.give_both_or_neither", "give both, or neither to have them chosen from the pictures"),
-        )
-    return StripeSettings(stripe_width, contrast) if stripe_width > 0 else None
+    """Width and contrast of stripes, None where they are to be chosen (0); InputError where only one is given."""
+    return stated_stripe(stripe_width or None, contrast or None, "--stripe-width, --contrast")
 
 
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:

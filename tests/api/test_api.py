@@ -162,6 +162,7 @@ GREY = np.full((40, 60), 20, np.uint8)
         (lambda: trisect.extract_stripes(GREY, GREY[:20]), "background: the pictures differ"),
         (lambda: trisect.extract_stripes(GREY, GREY.astype(np.uint16)), "uint16"),
         (lambda: trisect.extract_stripes(GREY, width_px=8.0), "width and contrast"),
+        (lambda: trisect.extract_stripes(GREY, width_px=-8.0, contrast=60.0), "width and contrast"),
         (lambda: trisect.find_target(GREY, trisect.Checkerboard(8, 6, 5.0)), "picture"),
         (lambda: trisect.find_target(GREY, cast(Any, "checkerboard")), "target: this is no calibration target"),
         (lambda: trisect.calibrate_camera([], (60, 40)), ""),

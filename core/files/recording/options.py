@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -119,3 +120,24 @@ class StatedTilt:
 
     stage: str = ""
     sd: float | None = None
+
+
+def stated_stripe(width_px: float | None, contrast: float | None, where: str) -> StripeSettings | None:
+    """The stripe that was stated, None where nothing was; InputError that names `where` for anything but both or none.
+
+    Parameters
+    ----------
+    width_px, contrast
+        As StripeSettings has them; None: to be chosen from the pictures.
+    where
+        What they are called where they were stated.
+    """
+    if width_px is None and contrast is None:
+        return None
+    if width_px is not None and contrast is not None and 0 < width_px < math.inf and 0 < contrast < math.inf:
+        return StripeSettings(width_px, contrast)
+    raise InputError(
+        Message("options.stripe_incomplete", "width and contrast of the stripes belong together, both above 0"),
+        where=where,
+        todo=Message("advice.give_both_or_neither", "give both, or neither to have them chosen from the pictures"),
+    )
