@@ -1,5 +1,6 @@
 """Another package brings folders of the same names: one sentence, whichever was installed first."""
 
+import base64
 import hashlib
 import os
 import shutil
@@ -38,7 +39,8 @@ def put(site, package, files):
     for name, text in files.items():
         (site / name).parent.mkdir(parents=True, exist_ok=True)
         (site / name).write_text(text)
-        record.append(f"{name},sha256={hashlib.sha256(text.encode()).hexdigest()},{len(text)}")
+        digest = base64.urlsafe_b64encode(hashlib.sha256(text.encode()).digest()).decode().rstrip("=")
+        record.append(f"{name},sha256={digest},{len(text)}")
     info = site / f"{package}.dist-info"
     info.mkdir()
     (info / "RECORD").write_text("\n".join(record))
@@ -69,6 +71,13 @@ def test_a_package_installed_afterwards_over_ours_is_named(site, name):
         assert f"the package {name} 8.5 has put a file of its own in place of {site / name}" in said
         assert said.endswith("install Trisect into an environment of its own (pipx install, or uv tool install).\n")
         assert said.count("\n") == 1
+
+
+@pytest.mark.parametrize("name", start.FOLDERS)
+def test_a_file_of_the_very_size_of_ours_is_told_by_what_it_says(site, name):
+    put(site, f"{name}-8.5", {f"{name}/__init__.py": '"""Your"""\n'.ljust(len(INIT))})
+    code, said = begun(site, "cli")
+    assert (code, f"the package {name} 8.5 has put a file of its own" in said) == (2, True)
 
 
 def test_ours_installed_over_another_package_runs(site):

@@ -10,13 +10,16 @@ from __future__ import annotations
 import csv
 import os
 import sys
+from base64 import urlsafe_b64encode
 from collections.abc import Iterator
+from hashlib import sha256
 from importlib.util import find_spec
 from pathlib import Path
 
 FOLDERS = ("core", "workbench", "resources")
 HOME = Path(__file__).parents[1]
 """Where this package lies, and the folders beside it."""
+_SHA256 = "sha256="
 _ALONE = "install Trisect into an environment of its own (pipx install, or uv tool install)"
 
 
@@ -40,7 +43,7 @@ def main_window() -> int:
 
 
 def complaint(home: Path = HOME) -> str | None:
-    """Why the program beside this package is not whole; None if it is, as far as places and sizes of its files say."""
+    """Why the program beside this package is not whole; None if it is, as far as `changed_files` looks."""
     for name in FOLDERS:
         found = find_spec(name)
         place = Path(found.origin) if found is not None and found.origin is not None else None
@@ -56,11 +59,18 @@ def complaint(home: Path = HOME) -> str | None:
 
 
 def changed_files(home: Path) -> Iterator[str]:
-    """The files installed in `home` that are gone or have another size than when they were; none in a checkout."""
-    ours = tuple(f"{name}/" for name in FOLDERS)
+    """The files installed in `home` that are not as they were; none in a checkout.
+
+    All are looked at for being there and for their size; what the folders begin with, which any package of that name
+    brings, for what it says, too.
+    """
+    ours, begin = (tuple(f"{name}/{file}" for name in FOLDERS) for file in ("", "__init__.py"))
     for record in home.glob("trisect-[0-9]*.dist-info/RECORD"):
-        for file, _, size in _rows(record):
-            if size and file.startswith(ours) and _size(f"{home}/{file}") != int(size):
+        for file, digest, size in _rows(record):
+            if not size or not file.startswith(ours):
+                continue
+            path, hashed = f"{home}/{file}", file in begin and digest.startswith(_SHA256)
+            if _size(path) != int(size) or (hashed and digest != _digest(path)):
                 yield file
 
 
@@ -84,6 +94,11 @@ def _size(path: str) -> int:
         return os.stat(path).st_size  # noqa: PTH116  a path object takes longer than the look, and there are 1000
     except FileNotFoundError:
         return -1
+
+
+def _digest(path: str) -> str:
+    """Of what a file says, as installers write it."""
+    return f"{_SHA256}{urlsafe_b64encode(sha256(Path(path).read_bytes()).digest()).decode().rstrip('=')}"
 
 
 def _refuse(what: str) -> int:
