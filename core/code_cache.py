@@ -40,21 +40,24 @@ def usual_cache() -> Path:
 def temporary_cache() -> Path:
     """The temporary folder in place of it, made where no process above has made one."""
     handed = Path(os.environ.get(HANDED_DOWN, ""))
-    return handed if handed.name and handed.is_dir() else _made()
+    return handed if handed.name and handed.is_dir() else _made()[0]
 
 
 @cache
-def _made() -> Path:
+def _made() -> tuple[Path, int]:
+    """The folder, and the process that made it."""
     folder = Path(tempfile.mkdtemp(prefix="trisect-compiled-"))
     os.environ[HANDED_DOWN] = str(folder)
-    atexit.register(_remove, folder, os.getpid())
-    return folder
+    atexit.register(remove_temporary_cache)
+    return folder, os.getpid()
 
 
-def _remove(folder: Path, maker: int) -> None:
-    """At the end of the process that made it, not of a fork of it."""
-    if os.getpid() == maker:
-        shutil.rmtree(folder, ignore_errors=True)
+def remove_temporary_cache() -> None:
+    """Remove the temporary folder that this process made, if it made one: at its end, or where a signal ends it."""
+    if _made.cache_info().currsize:
+        folder, maker = _made()
+        if os.getpid() == maker:  # not a fork of it
+            shutil.rmtree(folder, ignore_errors=True)
 
 
 def note_on_cache() -> Message | None:

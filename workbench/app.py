@@ -9,18 +9,19 @@ import argparse
 import gc
 import os
 import signal
+import socket
 import sys
 from collections.abc import Callable, Sequence
 from importlib.resources import files
 from pathlib import Path
 from typing import TYPE_CHECKING, TextIO
 
-from PySide6.QtCore import QEvent, QLocale, QTimer
+from PySide6.QtCore import QCoreApplication, QEvent, QLocale, QSocketNotifier, QTimer
 from PySide6.QtGui import QFileOpenEvent, QIcon
 from PySide6.QtWidgets import QApplication
 
 from core import __version__
-from core.code_cache import code_cache, note_on_cache
+from core.code_cache import code_cache, note_on_cache, remove_temporary_cache
 from core.errors import InputError
 from core.held_files import PATIENCE_S
 from core.sources import brings_code
@@ -127,8 +128,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     choose(language(preferred(wanted)), app)
     bench.notices.catch_everything()
     code_cache()  # of all its processes: they find here which one it is
-    if (note := note_on_cache()) is not None and not brings_code():
-        bench.notices.warning(text_of(note))
+    if (note := note_on_cache()) is not None:
+        remove_cache_before_signals_end(app)
+        if not brings_code():
+            bench.notices.warning(text_of(note))
 
     def put() -> MainWindow:
         made = app.window = build_window(app, bench, given.theme)
@@ -147,6 +150,28 @@ def main(argv: Sequence[str] | None = None) -> int:
         bench.close()
         bench.wait_until_closed()
         bench.notices.release()
+
+
+def remove_cache_before_signals_end(app: QCoreApplication) -> None:
+    """Have what ends the program by a signal end it as ever, but for the temporary folder of saved code: it is removed.
+
+    Python hears of a signal once it runs: a socket wakes it where Qt waits.
+    """
+
+    def end(signum: int, _: object) -> None:
+        remove_temporary_cache()
+        signal.signal(signum, signal.SIG_DFL)
+        signal.raise_signal(signum)
+
+    heard, told = socket.socketpair()
+    told.setblocking(False)
+    awake = QSocketNotifier(heard.fileno(), QSocketNotifier.Type.Read, app)
+    awake.activated.connect(lambda: heard.recv(1))
+    signal.set_wakeup_fd(told.detach())
+    for name in ("SIGINT", "SIGTERM", "SIGHUP"):
+        one = getattr(signal, name, None)
+        if one is not None and signal.getsignal(one) is not signal.SIG_IGN:
+            signal.signal(one, end)
 
 
 def _associate(do: Callable[[], Outcome]) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -88,3 +89,32 @@ except Stopped:
     said = ran.stdout.splitlines()
     assert said[0] == "drawn True", ran.stderr
     assert said[-2:] == ["replaced by MainWindow", "gone True"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="a program is ended without a word there")
+@pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
+def test_ended_by_a_signal_it_leaves_no_temporary_folder_of_saved_code(tmp_path: Path, name: str) -> None:
+    program = """
+from PySide6.QtCore import QCoreApplication, QTimer
+from core.code_cache import code_cache
+from workbench.app import remove_cache_before_signals_end
+
+app = QCoreApplication()
+code_cache()
+remove_cache_before_signals_end(app)
+QTimer.singleShot(0, lambda: print("waits", flush=True))
+app.exec()
+"""
+    (tmp_path / "no folder").write_text("")
+    (tmp_path / "temporary").mkdir()
+    surroundings = {"NUMBA_CACHE_DIR": str(tmp_path / "no folder"), "TMPDIR": str(tmp_path / "temporary")}
+    without = {key: value for key, value in os.environ.items() if key != "TRISECT_TEMPORARY_CACHE"}
+    with subprocess.Popen(
+        [sys.executable, "-c", program], cwd=ROOT, env=without | surroundings, stdout=subprocess.PIPE, text=True
+    ) as window:
+        assert window.stdout is not None
+        assert window.stdout.readline() == "waits\n"
+        assert [path.name[:17] for path in (tmp_path / "temporary").iterdir()] == ["trisect-compiled-"]
+        window.send_signal(getattr(signal, name))
+        assert window.wait(20) == -getattr(signal, name)
+    assert list((tmp_path / "temporary").iterdir()) == []
