@@ -77,9 +77,13 @@ else:
 
         if (what := complaint()) is not None:
             raise ImportError(what)
-        from trisect import promised
+        from inspect import isfunction
 
-        return getattr(promised, name)
+        from trisect import promised
+        from trisect.records import checked
+
+        found = getattr(promised, name)
+        return checked(found) if isfunction(found) else found
 
 
 def __dir__() -> list[str]:

@@ -238,10 +238,4 @@ def find_target(picture: ArrayLike, target: Target, *, name: str = "", camera: C
     >>> view.points.shape, view.uv.shape
     ((204, 3), (204, 2))
     """
-    if not isinstance(target, Target):
-        raise InputError(
-            Message("api.no_target", "this is no calibration target: {what}", what=repr(target)[:80]),
-            where="target",
-            todo=Message("api.advice_target", "give a Checkerboard, Charuco, CircleGrid or BlackSquare"),
-        )
     return detect(target, checked_picture(picture, name or "picture"), name, camera)

@@ -2,6 +2,7 @@
 
 import inspect
 import json
+import pickle
 import subprocess
 import sys
 from dataclasses import replace
@@ -164,7 +165,7 @@ GREY = np.full((40, 60), 20, np.uint8)
         (lambda: trisect.extract_stripes(GREY, width_px=8.0), "width and contrast"),
         (lambda: trisect.extract_stripes(GREY, width_px=-8.0, contrast=60.0), "width and contrast"),
         (lambda: trisect.find_target(GREY, trisect.Checkerboard(8, 6, 5.0)), "picture"),
-        (lambda: trisect.find_target(GREY, cast(Any, "checkerboard")), "target: this is no calibration target"),
+        (lambda: trisect.find_target(GREY, cast(Any, "checkerboard")), "target: str is given where Checkerboard or "),
         (lambda: trisect.calibrate_camera([], (60, 40)), ""),
         (lambda: trisect.calibrate_camera([], cast(Any, (60.5, 40))), "image_size: (60.5, 40) is no size"),
         (lambda: trisect.calibrate_camera([], (0, 0)), "no size of pictures"),
@@ -197,6 +198,39 @@ def test_scans_that_cannot_be_solved_are_refused(calibrated):
             trisect.solve_scan(frames, replace(camera, covariance=covariance), fan)
     with pytest.raises(trisect.InputError):
         trisect.solve_scan([np.zeros_like(frame) for frame in frames], camera, fan)
+
+
+def test_a_record_of_another_kind_is_refused_in_a_sentence(calibrated, solved):
+    _, camera, fan = calibrated
+    stripes, board = solved.features.fan, trisect.Checkerboard(8, 6, 5.0)
+    for call, said in (
+        (lambda: trisect.solve_scan([GREY] * 3, camera, fan.fan), "fan: Fan is given where FanCalibration is needed"),
+        (lambda: trisect.solve_scan([GREY] * 3, camera.camera, fan), "camera: Camera is given where CameraCalibration"),
+        (lambda: trisect.calibrate_fan([], board, camera.camera), "camera: Camera is given where CameraCalibration"),
+        (lambda: trisect.find_target(GREY, board, camera=camera), "camera: CameraCalibration is given where Camera is"),
+        (lambda: trisect.triangulate(stripes[0], fan, camera.camera), "where LightPlane is needed"),
+        (lambda: trisect.build_mesh(solved.cloud), "surface: Cloud is given where Surface is needed"),
+        (lambda: trisect.measure_features(solved, [], mesh=solved.cloud), "mesh: Cloud is given where Mesh is needed"),
+        (lambda: trisect.measure_features(solved, [board]), "features[0]: Checkerboard is given where Feature is"),
+        (lambda: trisect.measure_thickness(solved.result), "scan: ScanResult is given where SolvedScan or Cloud is"),
+        (lambda: trisect.measure_thickness(None), "scan: NoneType is given where SolvedScan or Cloud is needed"),
+        (lambda: trisect.calibrate_camera(camera.views, (60, 40)), "views[0]: ViewQuality is given where TargetView"),
+        (
+            lambda: trisect.calibrate_camera(camera.views[0].view, (60, 40)),
+            "views: TargetView is given where Sequence is needed",
+        ),
+        (lambda: trisect.find_crossings(stripes, stripes[0]), "other: Centreline is given where Sequence is needed"),
+        (lambda: trisect.run("set", "out", options=trisect.ReconstructOptions()), "where Options is needed"),
+        (lambda: trisect.write_cloud("cloud.ply", solved), "cloud: SolvedScan is given where Cloud is needed"),
+    ):
+        with pytest.raises(trisect.InputError) as refused:
+            call()
+        assert said in str(refused.value)
+        assert "; help(trisect." in str(refused.value)
+
+
+def test_functions_can_be_sent_to_other_processes():
+    assert all(pickle.loads(pickle.dumps(function)) is function for function in OWN)
 
 
 def test_compressed_pictures_have_less_sure_stripes(tmp_path):
