@@ -20,7 +20,11 @@ from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.pipeline.steps.planes_step import check_agreement
 from core.progress import Progress, silent
-from trisect.pictures import checked_picture, same_size
+from trisect.pictures import checked_picture, same_size, size_of_camera
+
+_EDGE_PX = 1.0
+"""A point may be found so far in px beyond the middles of a picture's outermost pixels."""
+_GIVE_SIZE = Message("api.advice_image_size", "give (width, height) of the pictures in whole px")
 
 
 def calibrate_camera(
@@ -55,7 +59,8 @@ def calibrate_camera(
     Raises
     ------
     InputError
-        If fewer than three views can be used, or they do not determine the camera (all in parallel).
+        If fewer than three views can be used, they do not determine the camera (all in parallel), show different
+        targets, or have points outside pictures of this size.
 
     References
     ----------
@@ -72,11 +77,43 @@ def calibrate_camera(
         raise InputError(
             Message("api.no_image_size", "{size} is no size of pictures", size=str(image_size)),
             where="image_size",
-            todo=Message("api.advice_image_size", "give (width, height) in whole px"),
+            todo=_GIVE_SIZE,
         )
+    _check_views(views, *image_size)
     known = BoardTolerance() if tolerance is None else tolerance
     options = CameraOptions(skew=skew, k3=k3)
     return calibration.calibrate_camera(views, image_size, options, progress, tolerance=known)
+
+
+def _check_views(views: Sequence[TargetView], width: int, height: int) -> None:
+    """InputError if one was not seen in pictures of this size, or shows another target than the first one."""
+    known: tuple[str, Target] | None = None
+    for number, view in enumerate(views):
+        name = view.name or f"view {number + 1}"
+        outside = ((view.uv < -_EDGE_PX) | (view.uv > [width - 1 + _EDGE_PX, height - 1 + _EDGE_PX])).any(axis=1)
+        for u, v in view.uv[outside][:1]:
+            raise InputError(
+                Message(
+                    "api.point_outside",
+                    "{view} has a point at ({u:.0f}, {v:.0f}) px, outside pictures of {width} × {height} px",
+                    view=name, u=u, v=v, width=width, height=height,
+                ),
+                where="image_size",
+                todo=_GIVE_SIZE,
+            )  # fmt: skip
+        if view.target is None:
+            continue
+        known = known or (name, view.target)
+        if view.target != known[1]:
+            raise InputError(
+                Message(
+                    "api.other_target",
+                    "this view shows {target} and {first} shows {other}, but the shape of one target is solved for",
+                    target=str(view.target), first=known[0], other=str(known[1]),
+                ),
+                where=name,
+                todo=Message("api.advice_one_target", "give views of one target"),
+            )  # fmt: skip
 
 
 def calibrate_fan(
@@ -145,12 +182,11 @@ def calibrate_fan(
         )
     known = FanOptions(lines, angle, "auto", BoardTolerance() if tolerance is None else tolerance)
     poses, beside = [], Beside(None, compression)
-    width, height = camera.camera.image_size
     for number, (on, off) in enumerate(pairs):
         progress("plane poses", number, len(pairs))
         name = f"pose {number + 1}"
         lit = checked_picture(on, name)
-        same_size(lit, np.empty((height, width), lit.dtype), f"{name}, camera")
+        size_of_camera(lit, camera.camera, f"{name}, camera")
         dark = None if off is None else checked_picture(off, name)
         if dark is not None:
             same_size(lit, dark, name)

@@ -112,6 +112,12 @@ def same_size(picture: Picture, other: Picture, where: str) -> None:
     )
 
 
+def size_of_camera(picture: Picture, camera: Camera, where: str) -> None:
+    """InputError that names `where` unless a picture has the size of the camera's."""
+    width, height = camera.image_size
+    same_size(picture, np.empty((height, width), picture.dtype), where)
+
+
 def extract_stripes(
     picture: ArrayLike,
     background: ArrayLike | None = None,
@@ -230,7 +236,8 @@ def find_target(picture: ArrayLike, target: Target, *, name: str = "", camera: C
     Raises
     ------
     InputError
-        If the array is no picture, or does not show the target: a sentence says what it shows instead.
+        If the array is no picture, has not the camera's size, or does not show the target: a sentence says what it
+        shows instead.
 
     Examples
     --------
@@ -238,4 +245,7 @@ def find_target(picture: ArrayLike, target: Target, *, name: str = "", camera: C
     >>> view.points.shape, view.uv.shape
     ((204, 3), (204, 2))
     """
-    return detect(target, checked_picture(picture, name or "picture"), name, camera)
+    seen = checked_picture(picture, name or "picture")
+    if camera is not None:
+        size_of_camera(seen, camera, "camera")
+    return detect(target, seen, name, camera)

@@ -233,6 +233,28 @@ def test_functions_can_be_sent_to_other_processes():
     assert all(pickle.loads(pickle.dumps(function)) is function for function in OWN)
 
 
+def test_views_of_other_pictures_or_of_another_target_are_refused(calibrated):
+    found, camera, _ = calibrated
+    views, (width, height) = [one.view for one in camera.views], camera.camera.image_size
+    for wrong in ((height, width), (width // 2, height // 2)):
+        with pytest.raises(
+            trisect.InputError, match=r"image_size: .* has a point at .* outside pictures of .*; give \(width, height\)"
+        ):
+            trisect.calibrate_camera(views, wrong)
+    other = trisect.Checkerboard(8, 6, 5.0)
+    with pytest.raises(trisect.InputError) as refused:
+        trisect.calibrate_camera([*views[:3], replace(views[3], target=other), *views[4:]], (width, height))
+    assert str(refused.value).startswith(
+        f"{views[3].name}: this view shows {other} and {views[0].name} shows {views[0].target}, but "
+    )
+    nameless = [replace(view, name="", target=None) for view in views[:2]] + [replace(views[2], name="", target=other)]
+    with pytest.raises(trisect.InputError, match=r"view 4: this view shows .* and view 3 shows"):
+        trisect.calibrate_camera([*nameless, replace(views[3], name="")], (width, height))
+    picture = trisect.read_picture(found.camera[0])
+    with pytest.raises(trisect.InputError, match="camera: the pictures differ"):
+        trisect.find_target(picture.T, found.rig.camera_target, camera=camera.camera)
+
+
 def test_compressed_pictures_have_less_sure_stripes(tmp_path):
     v = np.mgrid[:80, :160][0]
     noise = np.random.default_rng(2).normal(0, 0.3, v.shape)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from core.image.targets.black_square import detect_black_square
 from core.image.targets.charuco import detect_charuco
 from core.image.targets.checkerboard import detect_checkerboard
@@ -49,10 +51,11 @@ def detect(
     check_exposure(picture, name)
     match target:
         case Checkerboard():
-            return detect_checkerboard(target, picture, name, camera if plane_only else None, thorough=thorough)
+            view = detect_checkerboard(target, picture, name, camera if plane_only else None, thorough=thorough)
         case Charuco():
-            return detect_charuco(target, picture, name)
+            view = detect_charuco(target, picture, name)
         case CircleGrid():
-            return detect_circle_grid(target, picture, name, camera)
+            view = detect_circle_grid(target, picture, name, camera)
         case BlackSquare():
-            return detect_black_square(target, picture, name, camera)
+            view = detect_black_square(target, picture, name, camera)
+    return replace(view, target=target)

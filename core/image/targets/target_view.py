@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.errors import InputError
+from core.image.targets.kinds import Target
 from core.messages import Message
 from core.model.arrays import Array, frozen_array, set_field
 
@@ -31,6 +32,8 @@ class TargetView:
     placed
         False if the points are a part of a regular pattern that may as well be another part of it: they tell the
         target's plane, but neither its origin nor its shape.
+    target
+        Which one; None: not known.
     """
 
     points: Array
@@ -39,6 +42,7 @@ class TargetView:
     name: str = ""
     covariance: Array | None = None
     placed: bool = True
+    target: Target | None = None
 
     def __post_init__(self) -> None:
         count = len(self.points)
