@@ -33,6 +33,21 @@ def test_a_stage_that_was_long_is_told_with_how_long_it_took(capfd, monkeypatch)
     assert "\r" not in said
 
 
+@pytest.mark.parametrize("executor", ["threads", "processes"])
+def test_off_a_terminal_a_batch_tells_each_set_when_its_stages_end(tiny_set, tmp_path, executor):
+    sets = [copy_of(tiny_set, tmp_path / name) for name in ("one", "two")]
+    for picture in (picture for folder in sets for picture in (folder / "planes").glob("*.png")):
+        picture.write_bytes(b"damaged, so that it ends after the camera")
+    words = ("batch", *sets, "--out", tmp_path / "out", "--executor", executor, "--workers", "1", "--language", "de")
+    program = (sys.executable, "-m", "core.cli", *map(str, words))
+    ran = subprocess.run(program, capture_output=True, check=False, encoding="utf-8")
+    assert ran.returncode == 2, ran.stderr
+    for name in ("one", "two"):
+        assert re.search(rf"^{name}, Kameraansichten: \d+,\d s$", ran.stderr, re.MULTILINE), ran.stderr
+    if executor == "threads":
+        assert trisect("--quiet", *words[:-2]).err == ""
+
+
 @pytest.mark.parametrize("words", [("{}", "gauge"), ("gauge", "{}")])
 @pytest.mark.parametrize(("option", "shown"), [("--quiet", []), ("-q", []), ("--verbose", ["s"]), ("-v", ["s"])])
 def test_how_much_is_said_is_an_option_of_every_command_and_of_the_program(

@@ -6,7 +6,7 @@ import sys
 import threading
 import time
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import AbstractContextManager, contextmanager
 
 from rich.console import Console
 from rich.progress import Progress as RichProgress
@@ -32,7 +32,7 @@ def bar(job: str = "") -> Iterator[Progress]:
 
     `job` is its name in `USUAL_S`, if it is one of these.
     """
-    telling = _quiet() if is_quiet() else _drawn(job) if sys.stderr.isatty() else _lines(_LONG_S)
+    telling = _lines(_LONG_S) if tells_lines() else _quiet() if is_quiet() else _drawn(job)
     with interruptible() as interrupts, telling as show:
 
         def progress(step: str, done: int, total: int) -> None:
@@ -42,20 +42,31 @@ def bar(job: str = "") -> Iterator[Progress]:
         yield progress
 
 
+def tells_lines() -> bool:
+    """Whether stages are told as lines: off a terminal, unless nothing is to be said."""
+    return not is_quiet() and not sys.stderr.isatty()
+
+
+def lines_of(name: str) -> AbstractContextManager[Progress]:
+    """A `Progress` of one of several jobs at a time: a line with its name for each stage that ends."""
+    return _lines(0.0, begun=False, of=name)
+
+
 @contextmanager
 def _quiet() -> Iterator[Progress]:
     yield lambda step, done, total: None
 
 
 @contextmanager
-def _lines(long_s: float, *, begun: bool = True) -> Iterator[Progress]:
-    """A line when a stage begins, if that is wanted, and how long it took if it was long."""
+def _lines(long_s: float, *, begun: bool = True, of: str = "") -> Iterator[Progress]:
+    """A line when a stage begins, if that is wanted, and how long it took if it was long; `of` stands before it."""
     stage, since = "", time.monotonic()
 
     def end() -> None:
         took = time.monotonic() - since
         if stage and (is_verbose() or took >= long_s):
-            say(tr("{stage}: {seconds:.1f} s", stage=told(stage), seconds=took))
+            said = f"{of}, {told(stage)}" if of else told(stage)
+            say(tr("{stage}: {seconds:.1f} s", stage=said, seconds=took))
 
     def show(step: str, done: int, total: int) -> None:
         nonlocal stage, since

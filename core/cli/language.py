@@ -64,6 +64,13 @@ def choose(words: Sequence[str]) -> None:
         _spoken = _named([PSEUDO if asked == PSEUDO else one_of(asked, languages(), OPTION)])
 
 
+def speak_as(name: str, loudness: talk.Loudness) -> None:
+    """Speak the language of this name so loudly: in another process of a command, as it does."""
+    if name != _spoken.name:
+        choose([f"{OPTION}={name}"])
+    talk.choose(loudness)
+
+
 def _named(wanted: Sequence[str]) -> Language:
     first = next(filter(None, wanted), "en")
     if first in ("C", "POSIX") or first.startswith(("en_", "C.")) or first == "en":

@@ -6,6 +6,7 @@ import math
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass, field, fields
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,8 @@ from rich.table import Table
 
 from core.acquire.grey import Channel
 from core.cli import output, talk
-from core.cli.language import told, tr
+from core.cli.bar import lines_of, tells_lines
+from core.cli.language import speak_as, spoken, told, tr
 from core.cli.options import ExitCode
 from core.code_cache import note_on_cache
 from core.compiled import FOLDER, is_complete
@@ -28,9 +30,9 @@ from core.files.results.rig_history import RigHistory, history_file
 from core.files.step_graph import READJUST
 from core.inspect.results import GaugeResult
 from core.messages import Message, visible
-from core.pipeline.batch import run_batch
+from core.pipeline.batch import measure_set, run_batch
 from core.pipeline.compile_ahead import compile_ahead
-from core.pipeline.executors import executor_of
+from core.pipeline.executors import DASK, executor_of
 from core.pipeline.run import RunResult, run
 from core.pipeline.set_result import SET_COLUMNS, SetResult, set_cells
 from core.pipeline.steps.artefact_step import artefact_step
@@ -43,7 +45,7 @@ from core.pipeline.steps.readjust_step import readjust_step, undo_readjustment
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Workspace, read_calibration
-from core.progress import Progress
+from core.progress import Progress, silent
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
 from core.states import SET_STATES
@@ -230,8 +232,30 @@ def run_sets(
     for folder in sets:
         require_folder(folder)
     tell_of_cache()
+    aloud = tells_lines() and not executor.startswith(DASK)  # a cluster's workers have nobody who listens
+    measure = partial(measure_aloud, spoken().name, talk.loudness()) if aloud else measure_set
     with executor_of(executor, workers) as pool:
-        return run_batch(sets, out, pool, chosen, progress)
+        return run_batch(sets, out, pool, chosen, progress, measure=measure)
+
+
+def measure_aloud(
+    name: str,
+    loudness: talk.Loudness,
+    folder: Path,
+    out: Path,
+    options: Options,
+    stop: Path,
+    progress: Progress = silent,
+) -> SetResult:
+    """Measure one set as `measure_set`, in whatever process, and tell each of its stages; `name` is the language's."""
+    speak_as(name, loudness)
+    with lines_of(folder.name) as tell:
+
+        def both(step: str, done: int, total: int) -> None:
+            tell(step, done, total)
+            progress(step, done, total)
+
+        return measure_set(folder, out, options, stop, both)
 
 
 def batch_exit_code(results: Sequence[SetResult]) -> ExitCode:

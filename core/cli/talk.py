@@ -20,10 +20,15 @@ class Loudness(IntEnum):
 _loudness = Loudness.USUAL
 
 
-def choose(loudness: Loudness) -> None:
+def choose(wanted: Loudness) -> None:
     """Say so much from now on."""
     global _loudness
-    _loudness = loudness
+    _loudness = wanted
+
+
+def loudness() -> Loudness:
+    """How much is said."""
+    return _loudness
 
 
 def is_quiet() -> bool:

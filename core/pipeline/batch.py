@@ -38,6 +38,8 @@ _LONGEST_REASON = 200
 SetUpdate = tuple[int, SetProgress | SetResult | None]
 """The place of a set, and how far it is or what became of it; None when it begins."""
 Watch = Callable[[SetUpdate], None]
+Measure = Callable[..., SetResult]
+"""Called as `measure_set`, and found by its name where the executor's workers are other processes."""
 
 
 def unwatched(told: SetUpdate) -> None:
@@ -51,6 +53,7 @@ def run_batch(
     options: Options | None = None,
     progress: Progress = silent,
     watch: Watch = unwatched,
+    measure: Measure | None = None,
 ) -> tuple[SetResult, ...]:
     """Measure recording sets side by side; one that cannot be measured does not keep the others from it.
 
@@ -70,6 +73,8 @@ def run_batch(
     watch
         Told of each set when it begins, as far as the executor knows, and when it is done; in threads of this process
         how far it is, too.
+    measure
+        What measures one set; None: `measure_set`.
 
     Returns
     -------
@@ -85,9 +90,10 @@ def run_batch(
     stop = resolved(out) / STOP
     remove(stop)
     chosen = options or Options()
+    call: Measure = measure or measure_set
     near = {number: _UnderWay() for number in range(len(places))} if isinstance(executor, ThreadPoolExecutor) else {}
     futures = [
-        executor.submit(measure_set, folder, place, chosen, stop, *([near[number]] if near else []))
+        executor.submit(call, folder, place, chosen, stop, *([near[number]] if near else []))
         for number, (folder, place) in enumerate(places)
     ]
     try:
