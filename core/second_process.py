@@ -18,9 +18,11 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from contextlib import contextmanager, suppress
 from importlib import import_module
+from pathlib import Path
 from queue import SimpleQueue
 from typing import Any, BinaryIO, Protocol, TypeVar
 
+from core import files_read
 from core.code_cache import code_cache
 from core.errors import InputError
 from core.memory import give_back
@@ -99,7 +101,9 @@ class SecondProcess:
         except (OSError, EOFError, ValueError) as gone:
             raise self._ended() from gone
         self._told = None
-        result, seconds = value
+        result, seconds, read = value
+        for path in read:
+            files_read.tell(path)
         if isinstance(progress, StageTimes):
             progress.add(seconds)
         if kind == "raised":
@@ -199,13 +203,15 @@ def _serve(modules: Sequence[str]) -> None:
 def _answer(body: bytes, progress: Progress) -> bytes:
     """Do a call; what is to be sent for it."""
     told = StageTimes(progress)
+    read: list[Path] = []
+    files_read.listen(read.append)
     try:
         call, item = pickle.loads(body)
         del body  # both may be large
-        answer = "done", (call(item, progress=told), told.seconds())
+        answer = "done", (call(item, progress=told), told.seconds(), read)
         return pickle.dumps(answer, pickle.HIGHEST_PROTOCOL)
     except Exception as error:  # noqa: BLE001  (raised again by who asked for the call)
-        return pickle.dumps(("raised", (_movable(error), told.seconds())))
+        return pickle.dumps(("raised", (_movable(error), told.seconds(), read)))
 
 
 class _Telling:

@@ -1,5 +1,6 @@
 """What commands say on standard error off a terminal, `--quiet` and `--verbose`, exit codes, and completion."""
 
+import json
 import os
 import re
 import subprocess
@@ -59,6 +60,16 @@ def test_how_much_is_said_is_an_option_of_every_command_and_of_the_program(
     assert "thickness" in said.out
     assert bool(re.search(r"^faces: .* s$", said.err, re.MULTILINE)) == bool(shown)
     assert shown or said.err == ""
+
+
+def test_every_file_that_is_read_is_a_line_if_that_is_wanted(tiny_set, tmp_path):
+    said = trisect("--verbose", "camera", tiny_set, "--out", tmp_path)
+    assert said.code == 0, said.err
+    lines = [line for line in said.err.splitlines() if line.startswith("file read: ")]
+    assert len(lines) == len(set(lines))
+    inputs = json.loads((tmp_path / "run.json").read_text())["inputs"]
+    assert {f"file read: {tiny_set / name}" for name in inputs} <= set(lines)
+    assert "file read" not in trisect("report", tiny_set, "--out", tmp_path).err
 
 
 def test_the_last_of_both_counts(simulated, measured, tmp_path):

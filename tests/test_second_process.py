@@ -9,8 +9,10 @@ from pathlib import Path
 
 import pytest
 
+from core import files_read
 from core.code_cache import code_cache
 from core.errors import Cancelled, InputError
+from core.files.reading import read_bytes
 from core.progress import silent
 from core.second_process import SecondProcess, second_process, shared_map
 from core.stage_times import StageTimes
@@ -65,6 +67,10 @@ def cache_folder(item, /, *, progress=silent):
     return str(code_cache())
 
 
+def read(item, /, *, progress=silent):
+    return len(read_bytes(item))
+
+
 def leave(item, /, *, progress=silent):
     os._exit(3)
 
@@ -98,6 +104,16 @@ def test_what_a_call_raises_is_raised_here(beside):
     with pytest.raises(ZeroDivisionError):
         beside.submit(divide, 1).result()
     assert beside.submit(process_of, "goes on").result()[0] == "goes on"
+
+
+def test_what_a_call_reads_is_told_here(beside):
+    told = []
+    files_read.listen(told.append)
+    try:
+        assert beside.submit(read, Path(__file__)).result() == Path(__file__).stat().st_size
+    finally:
+        files_read.listen(None)
+    assert told == [Path(__file__)]
 
 
 def test_what_a_call_prints_is_no_answer(beside):

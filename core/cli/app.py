@@ -67,7 +67,7 @@ def main(arguments: Sequence[str] | None = None) -> None:
     # OpenCV mumbles about damaged pictures on standard error; what matters is said in our own sentence.
     os.environ["OPENCV_LOG_LEVEL"] = "SILENT"
     words = list(sys.argv[1:] if arguments is None else arguments)
-    talk.choose(talk.Loudness.USUAL)
+    language.choose_loudness(talk.Loudness.USUAL)
     with interruptible() as interrupts:
         try:
             language.choose(words)

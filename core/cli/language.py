@@ -19,13 +19,16 @@ from typer.main import get_command
 
 from core.cli import talk
 from core.errors import InputError
+from core.files_read import listen
 from core.messages import ENGLISH, Language, Message, label
 
 OPTION = "--language"
 HELP_OPTIONS = ["-h", "--help"]
 _HELP = label("Language of what is printed: {languages}; else TRISECT_LANGUAGE, or the locale's.")
 _QUIET = label("Say nothing on standard error but errors.")
-_VERBOSE = label("Say on standard error, too, how long each stage took and where compiled code is kept.")
+_VERBOSE = label(
+    "Say on standard error, too, which files are read, how long each stage took and where compiled code is kept."
+)
 _TYPERS_OWN = {
     "ARGUMENTS_PANEL_TITLE": label("Arguments"),
     "OPTIONS_PANEL_TITLE": label("Options"),
@@ -68,7 +71,14 @@ def speak_as(name: str, loudness: talk.Loudness) -> None:
     """Speak the language of this name so loudly: in another process of a command, as it does."""
     if name != _spoken.name:
         choose([f"{OPTION}={name}"])
+    if loudness != talk.loudness():
+        choose_loudness(loudness)
+
+
+def choose_loudness(loudness: talk.Loudness) -> None:
+    """Say so much from now on; of each file that is read if that is much."""
     talk.choose(loudness)
+    listen((lambda path: talk.say(tr("file read: {file}", file=path))) if talk.is_verbose() else None)
 
 
 def _named(wanted: Sequence[str]) -> Language:
@@ -182,7 +192,7 @@ class _Context(typer.Context):
 def _louder_or_not(loudness: talk.Loudness) -> Callable[[bool], None]:
     def choose(wanted: bool) -> None:
         if wanted:
-            talk.choose(loudness)
+            choose_loudness(loudness)
 
     return choose
 

@@ -14,6 +14,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.files.limits import DATA_BYTES, TEXT_BYTES, TOML_BYTES, check_file, check_json, check_toml
+from core.files_read import tell
 from core.messages import Message
 
 _REFUSED = (errno.ENAMETOOLONG, errno.ELOOP, errno.EACCES, errno.EPERM)
@@ -25,6 +26,7 @@ MISSING = Message("file.missing", "the file is missing")
 def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
     """The bytes of a file; InputError if it cannot be read, is no file, or has more than `most` bytes."""
     check_file(path, most)
+    tell(path)
     try:
         return path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
@@ -59,6 +61,7 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         If it is missing, cannot be read, is no file, too large, or no UTF-8.
     """
     check_file(path, most)
+    tell(path)
     try:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
