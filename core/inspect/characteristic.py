@@ -6,34 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from core.inspect.conformity import Verdict, decide_between
-from core.inspect.results import Contribution
+from core.inspect.conformity import Limits, Verdict, decide
+from core.inspect.results import Contribution, GaugeResult
 from core.inspect.uncertainty.causes import CERTIFICATE
 from core.messages import Message
 
 Quantity: TypeAlias = Literal["length", "angle"]
-
-
-@dataclass(frozen=True, slots=True)
-class Limits:
-    """The requirement on a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
-
-    Values in mm or rad; −inf or inf where a side has no limit. A deviation of form has the nominal value 0, no lower
-    limit and its tolerance as the upper one: it cannot be too small.
-
-    Raises
-    ------
-    ValueError
-        If the limits are not in order.
-    """
-
-    nominal: float
-    lower: float
-    upper: float
-
-    def __post_init__(self) -> None:
-        if not self.lower <= self.upper:
-            raise ValueError(f"the lower limit {self.lower} is not below the upper limit {self.upper}")
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -96,15 +74,8 @@ class Characteristic:
 
     @property
     def verdict(self) -> Verdict:
-        """Decision by ISO 14253-1; none without limits.
-
-        A value or an uncertainty that is not known, or not all of it, proves nothing.
-        """
-        if self.limits is None:
-            return Verdict.NONE
-        if not self.complete or math.isnan(self.value) or math.isnan(self.u):
-            return Verdict.NOT_PROVEN
-        return decide_between(self.value - self.limits.nominal, self.limits.lower, self.limits.upper, self.U)
+        """Decision by ISO 14253-1; none without limits."""
+        return decide(self.value, self.limits, self.U, complete=self.complete)
 
     @property
     def room(self) -> float:
@@ -120,3 +91,20 @@ class Characteristic:
         half = 0.5 * (max(ends) - min(ends)) if len(ends) == 2 else abs(ends[0])
         left = min(self.limits.upper - self.deviation, self.deviation - self.limits.lower) - self.U
         return -math.inf if math.isnan(left) else left / (half or self.U or 1.0)
+
+
+def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
+    """A thickness as a characteristic among others."""
+    return Characteristic(
+        name="thickness",
+        kind="thickness",
+        value=gauge.thickness_mm,
+        u=gauge.u_mm,
+        k=gauge.k,
+        limits=gauge.limits,
+        budget=gauge.budget,
+        rule=gauge.rule,
+        notes=gauge.notes,
+        complete=gauge.complete,
+        at_20=gauge.at_20,
+    )

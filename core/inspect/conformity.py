@@ -27,25 +27,56 @@ class Verdict(StrEnum):
 WORST_FIRST = (Verdict.NOT_CONFORMING, Verdict.NOT_PROVEN, Verdict.CONFORMING)
 
 
-def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> Verdict:
-    """Conformity with the tolerance ± `tolerance_mm` by ISO 14253-1, for the maker of a part.
+@dataclass(frozen=True, slots=True)
+class Limits:
+    """The requirement on a characteristic: its nominal value and the deviations permitted from it, `lower` ≤ `upper`.
 
-    The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
-    nonconformity; between the two nothing is proven.
-
-    Parameters
-    ----------
-    deviation_mm
-        Measured − nominal.
-    tolerance_mm
-        Largest permitted deviation, to either side.
-    U_mm
-        Expanded uncertainty of the deviation.
+    Values in mm or rad; −inf or inf where a side has no limit. A deviation of form has the nominal value 0, no lower
+    limit and its tolerance as the upper one: it cannot be too small.
 
     Raises
     ------
     ValueError
-        If the tolerance is not positive, U is negative, or a value is not a number.
+        If the limits are not in order.
+    """
+
+    nominal: float
+    lower: float
+    upper: float
+
+    def __post_init__(self) -> None:
+        if not self.lower <= self.upper:
+            raise ValueError(f"the lower limit {self.lower} is not below the upper limit {self.upper}")
+
+    @classmethod
+    def around(cls, nominal: float | None, tolerance: float | None) -> Limits | None:
+        """Nominal ± tolerance; None unless both are given."""
+        return None if nominal is None or tolerance is None else cls(nominal, -tolerance, tolerance)
+
+
+def decide(value: float, limits: Limits | None, U: float, *, complete: bool = True, r: float = 1.0) -> Verdict:
+    """Conformity with limits by ISO 14253-1, for the maker of a part: the only place where a verdict is made.
+
+    The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
+    nonconformity; between the two nothing is proven. Nor is anything by a value or an uncertainty that is not known.
+
+    Parameters
+    ----------
+    value
+        As measured, in any one unit.
+    limits
+        What is asked of it; None: no verdict.
+    U
+        Expanded uncertainty of the value.
+    complete
+        Whether U holds all that is known to act on the value, and nothing speaks against it: else nothing is proven.
+    r
+        Guard band over U, see :class:`Zones`.
+
+    Raises
+    ------
+    ValueError
+        If U or r is negative.
 
     References
     ----------
@@ -53,35 +84,27 @@ def decide(deviation_mm: float, tolerance_mm: float, U_mm: float) -> Verdict:
 
     Examples
     --------
-    >>> [str(decide(deviation, 0.20, 0.10)) for deviation in (0.05, 0.15, -0.35)]
+    >>> limits = Limits(50.0, -0.2, 0.2)
+    >>> [str(decide(value, limits, 0.1)) for value in (50.05, 50.15, 49.65)]
     ['conforming', 'not proven', 'not conforming']
+    >>> str(decide(50.05, limits, 0.1, complete=False)), str(decide(50.05, None, 0.1))
+    ('not proven', '')
     """
-    if not tolerance_mm > 0:
-        raise ValueError(f"no decision from a tolerance of {tolerance_mm}")
-    return decide_between(deviation_mm, -tolerance_mm, tolerance_mm, U_mm)
-
-
-def decide_between(deviation: float, lower: float, upper: float, U: float, *, r: float = 1.0) -> Verdict:
-    """Conformity with deviations permitted from `lower` to `upper` (±inf: no limit), by the same rule, in any one unit.
-
-    Raises
-    ------
-    ValueError
-        As :class:`Zones`, or if the deviation is not a number.
-
-    Examples
-    --------
-    >>> str(decide_between(0.03, -0.01, 0.05, 0.01)), str(decide_between(0.045, float("-inf"), 0.05, 0.01))
-    ('conforming', 'not proven')
-    """
-    if math.isnan(deviation):
-        raise ValueError(f"no decision from deviation {deviation}, limits {lower} to {upper} and U {U}")
-    return Zones(lower, upper, U, r).verdict(deviation)
+    if limits is None:
+        return Verdict.NONE
+    deviation = value - limits.nominal
+    if not complete or math.isnan(deviation) or math.isnan(U):
+        return Verdict.NOT_PROVEN
+    zones = Zones(limits.lower, limits.upper, U, r)
+    if zones.conformance is not None and zones.conformance[0] <= deviation <= zones.conformance[1]:
+        return Verdict.CONFORMING
+    low, high = zones.nonconformance
+    return Verdict.NOT_CONFORMING if deviation < low or deviation > high else Verdict.NOT_PROVEN
 
 
 @dataclass(frozen=True, slots=True)
 class Zones:
-    """The zones of a decision: where a measured value proves conformity, nonconformity, or nothing.
+    """The zones of a decision: where a measured deviation proves conformity, nonconformity, or nothing.
 
     Parameters
     ----------
@@ -142,10 +165,3 @@ class Zones:
             return ((low, high),)
         below, above = self.conformance
         return tuple(zone for zone in ((low, below), (above, high)) if math.isfinite(zone[0]))
-
-    def verdict(self, value: float) -> Verdict:
-        """The decision on a measured value."""
-        if self.conformance is not None and self.conformance[0] <= value <= self.conformance[1]:
-            return Verdict.CONFORMING
-        low, high = self.nonconformance
-        return Verdict.NOT_CONFORMING if value < low or value > high else Verdict.NOT_PROVEN

@@ -14,7 +14,6 @@ from core.errors import InputError
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.features.measured import FeatureResult, Measure, Scene
-from core.inspect.features.thickness import with_limits
 from core.inspect.fit.elements import Element
 from core.inspect.fit.plane_search import FoundPlane
 from core.inspect.plan.alignment import three_two_one
@@ -219,8 +218,7 @@ def _with_limits_of(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
     start = len(spec.name) + 1
     rows = tuple(replace(row, limits=spec.limits_of(row.name[start:])) for row in result.characteristics)
     same = all(a.limits == b.limits for a, b in zip(rows, result.characteristics, strict=True))
-    gauge = None if result.gauge is None else with_limits(result.gauge, spec)
-    return replace(result, spec=spec, characteristics=result.characteristics if same else rows, gauge=gauge)
+    return replace(result, spec=spec, characteristics=result.characteristics if same else rows)
 
 
 def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, Message | None]:

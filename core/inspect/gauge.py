@@ -14,7 +14,6 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
-from core.inspect.conformity import Verdict, decide
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces, region_field
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.plane_fit import (
@@ -168,9 +167,6 @@ def measure_gauge(
     errors = errors or PointErrors()
     fit = fit_gauge(cloud, errors=errors, regions=regions, progress=progress)
     u, factor = combined(fit.budget), student_factor(k, fit.budget)
-    verdict = Verdict.NONE
-    if nominal_mm is not None and tolerance_mm is not None:
-        verdict = decide(fit.thickness_mm - nominal_mm, tolerance_mm, factor * u)
     missing = errors.missing()
     notes: tuple[Message, ...] = ()
     if missing:
@@ -185,7 +181,6 @@ def measure_gauge(
         budget=fit.budget,
         nominal_mm=nominal_mm,
         tolerance_mm=tolerance_mm,
-        verdict=verdict,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=notes + _notes_on_form(cloud, fit, errors),
@@ -211,8 +206,7 @@ def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Me
 
 def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:
     """The same thickness, which proves nothing because of the `doubt`."""
-    verdict = Verdict.NOT_PROVEN if gauge.verdict else Verdict.NONE
-    return replace(gauge, verdict=verdict, notes=(doubt, *gauge.notes), complete=False)
+    return replace(gauge, notes=(doubt, *gauge.notes), complete=False)
 
 
 def adjusted(
@@ -223,23 +217,19 @@ def adjusted(
     *,
     k: float = 2.0,
 ) -> GaugeResult:
-    """The thickness with a correction added, further rows in its budget, and its verdict by both.
+    """The thickness with a correction added, and further rows in its budget.
 
     `k` is the coverage factor where u is known.
     """
     if not change_mm and not rows:
         return replace(gauge, notes=(*gauge.notes, *notes))
     budget, thickness = (*gauge.budget, *rows), gauge.thickness_mm + change_mm
-    u, factor, verdict = combined(budget), student_factor(k, budget), gauge.verdict
-    if gauge.complete and gauge.nominal_mm is not None and gauge.tolerance_mm is not None:
-        verdict = decide(thickness - gauge.nominal_mm, gauge.tolerance_mm, factor * u)
     return replace(
         gauge,
         thickness_mm=thickness,
-        u_mm=u,
-        k=factor,
+        u_mm=combined(budget),
+        k=student_factor(k, budget),
         budget=budget,
-        verdict=verdict,
         notes=(*gauge.notes, *notes),
     )
 

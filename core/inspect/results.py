@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.inspect.conformity import Verdict
+from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message
 from core.model import LightPlane as Plane
 from core.model.arrays import Array
@@ -73,9 +73,14 @@ class GaugeResult:
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
     the faces when each is fitted freely. `rule` says what the thickness is. `points_used` on the upper and the lower
-    face. `verdict` is that of ISO 14253-1; none without a nominal value and a tolerance. What is not `complete` proves
-    nothing, whatever u: `notes` say why. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated
-    of the part; None: not known.
+    face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. What is not `complete` proves nothing, whatever u:
+    `notes` say why. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated of the part; None:
+    not known.
+
+    Raises
+    ------
+    ValueError
+        If the tolerance is not above 0.
     """
 
     thickness_mm: float
@@ -87,12 +92,15 @@ class GaugeResult:
     budget: tuple[Contribution, ...]
     nominal_mm: float | None = None
     tolerance_mm: float | None = None
-    verdict: Verdict = Verdict.NONE
     normal: Array | None = None
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
     complete: bool = True
     at_20: bool | None = False
+
+    def __post_init__(self) -> None:
+        if self.tolerance_mm is not None and not self.tolerance_mm > 0:
+            raise ValueError(f"no decision from a tolerance of {self.tolerance_mm}")
 
     @property
     def points_used(self) -> tuple[int, int]:
@@ -103,6 +111,16 @@ class GaugeResult:
     def U_mm(self) -> float:
         """Expanded uncertainty U = k u."""
         return self.k * self.u_mm
+
+    @property
+    def limits(self) -> Limits | None:
+        """Nominal value ± tolerance; None unless both are given."""
+        return Limits.around(self.nominal_mm, self.tolerance_mm)
+
+    @property
+    def verdict(self) -> Verdict:
+        """Decision by ISO 14253-1; none without limits."""
+        return decide(self.thickness_mm, self.limits, self.U_mm, complete=self.complete)
 
     @property
     def deviation_mm(self) -> float | None:

@@ -15,7 +15,6 @@ from itertools import pairwise
 
 import numpy as np
 
-from core.inspect.conformity import Verdict, decide
 from core.inspect.faces import FacePair
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE
 from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
@@ -248,9 +247,6 @@ def measure_steps(
     rows += _observed(values, own, weights, alike)
     budget = tuple(rows)
     u, factor = combined(budget), student_factor(k, budget)
-    verdict = Verdict.NONE
-    if nominal_mm is not None and tolerance_mm is not None:
-        verdict = decide(thickness - nominal_mm, tolerance_mm, factor * u)
     shown = steps[int(np.argmin(np.abs(values - thickness)))]
     upper, lower = _faces(shown)
     cross = np.linalg.norm(np.cross(upper.plane.normal, lower.plane.normal))
@@ -264,7 +260,6 @@ def measure_steps(
         budget=budget,
         nominal_mm=nominal_mm,
         tolerance_mm=tolerance_mm,
-        verdict=verdict,
         normal=shown.faces.planes.normal,
         rule=RULE_ONE_LINE if one_line else RULE,
         notes=(*_notes(len(steps), alike), *_notes_on_form(steps if alike < _STOOD_STILL else [shown])),

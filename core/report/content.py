@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
@@ -425,23 +425,3 @@ class ReportContent:
             if not frame.used:
                 reasons.setdefault(frame.reason or NO_REASON, []).append(frame.name)
         return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
-
-
-def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
-    """A thickness as a characteristic among others."""
-    limits = None
-    if gauge.nominal_mm is not None and gauge.tolerance_mm is not None:
-        limits = Limits(gauge.nominal_mm, -gauge.tolerance_mm, gauge.tolerance_mm)
-    return Characteristic(
-        name="thickness",
-        kind="thickness",
-        value=gauge.thickness_mm,
-        u=gauge.u_mm,
-        k=gauge.k,
-        limits=limits,
-        budget=gauge.budget,
-        rule=gauge.rule,
-        notes=gauge.notes,
-        complete=gauge.complete,
-        at_20=gauge.at_20,
-    )

@@ -11,7 +11,7 @@ from decimal import ROUND_HALF_EVEN, Decimal
 
 from core import messages
 from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
-from core.inspect.characteristic import Characteristic
+from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import NO_BREAK_SPACE, Language, Message, capital, label, plain, plural_message
@@ -219,12 +219,9 @@ PROVES_NOTHING = label(
 
 def verdict_sentence(gauge: GaugeResult, words: Words = ENGLISH) -> str:
     """Why the verdict on a thickness is what it is (ISO 14253-1), with the numbers that decide."""
-    if not gauge.verdict or gauge.nominal_mm is None or gauge.tolerance_mm is None or gauge.deviation_mm is None:
+    if gauge.limits is None:
         return words("No nominal value with a tolerance was given, so the thickness is stated without a verdict.")
-    if not gauge.complete:
-        return words(PROVES_NOTHING)
-    tolerance = words.general(gauge.tolerance_mm)
-    return _reason(gauge.verdict, gauge.deviation_mm, gauge.U_mm, f"±{tolerance} mm", "mm", words)
+    return decision_sentence(thickness_characteristic(gauge), words)
 
 
 def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:

@@ -27,7 +27,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from core.errors import WrongValue
-from core.inspect.conformity import Verdict, Zones
+from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message, label
 from core.model.arrays import Array
 
@@ -207,9 +207,7 @@ class CheckedQuantity:
 
     def verdict_of(self, reading: Reading) -> Verdict:
         """Decision on one reading, none without a limit."""
-        if self.limit is None:
-            return Verdict.NONE
-        return Zones(-self.limit, self.limit, self.k * reading.u).verdict(reading.error)
+        return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u)
 
     @property
     def verdict(self) -> Verdict:

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import WrongValue
-from core.inspect.conformity import Verdict, Zones
+from core.inspect.conformity import Limits, Verdict, Zones, decide
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -156,9 +156,9 @@ class RepeatStudy:
         """
         if self.zones is None or self.nominal is None:
             return Verdict.NONE
-        if self.doubted or not self.complete:
-            return Verdict.NOT_PROVEN
-        return self.zones.verdict(self.statistics.mean_mm - self.nominal)
+        zones, complete = self.zones, self.complete and not self.doubted
+        limits = Limits(self.nominal, zones.lower, zones.upper)
+        return decide(self.statistics.mean_mm, limits, zones.U, complete=complete, r=zones.r)
 
     @property
     def notes(self) -> tuple[Message, ...]:

@@ -5,7 +5,6 @@ import pytest
 
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
 from core.image.targets.target_view import TargetView
-from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain
@@ -72,6 +71,6 @@ def gauge(cloud):
 
     return GaugeResult(
         49.987, 0.012, 2.0, face(np.arange(20), 650.0), face(np.arange(25, 50), 700.0), 1e-4,
-        (Contribution(cause_named("camera"), 0.01),), 50.0, 0.2, Verdict.CONFORMING,
+        (Contribution(cause_named("camera"), 0.01),), 50.0, 0.2,
         np.array([0, 0, 1.0]), plain("the rule"), (plain("a note"),),
     )  # fmt: skip

@@ -2,7 +2,8 @@ import math
 
 import pytest
 
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 
 
 @pytest.mark.parametrize(("value", "u"), [(math.nan, 0.01), (50.0, math.nan), (math.nan, math.nan)])

@@ -6,18 +6,50 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
-from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.conformity import Zones, decide_between
-from core.inspect.results import Contribution
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits, Zones, decide
+from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.causes import CAMERA
 from core.inspect.uncertainty.coverage import coverage_factor, effective_dof
+from core.model import LightPlane
+
+
+@pytest.mark.parametrize(
+    ("deviation", "U", "verdict"),
+    [
+        (0.0, 0.1, "conforming"),
+        (-0.1, 0.1, "conforming"),
+        (0.11, 0.1, "not proven"),
+        (-0.29, 0.1, "not proven"),
+        (0.31, 0.1, "not conforming"),
+        (-0.21, 0.0, "not conforming"),
+        (0.0, 0.3, "not proven"),
+    ],
+)
+def test_decision_rule(deviation, U, verdict):
+    assert decide(deviation, Limits(0, -0.2, 0.2), U) == verdict
+
+
+@pytest.mark.parametrize(
+    ("value", "U", "complete"), [(math.nan, 0.1, True), (50.0, math.nan, True), (50.0, 0.1, False)]
+)
+def test_what_is_not_known_or_doubted_proves_nothing_whatever_the_numbers(value, U, complete):
+    assert decide(value, Limits(50, -0.2, 0.2), U, complete=complete) == "not proven"
+    assert decide(value, None, U, complete=complete) == ""
+
+
+@pytest.mark.parametrize("tolerance", [0.0, -1.0])
+def test_a_thickness_has_no_tolerance_that_is_not_above_zero(tolerance):
+    face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), np.arange(0), np.empty(0), 0.01, 0.01)
+    with pytest.raises(ValueError, match="no decision"):
+        GaugeResult(50.0, 0.01, 2.0, face, face, 0.0, (), 50.0, tolerance)
 
 
 @pytest.mark.parametrize(("r", "risk"), [(1.0, 0.023), (0.83, 0.05), (0.0, 0.5)])
 def test_at_the_edge_of_the_conformance_zone_the_risk_is_that_of_ilac_g8(r, risk):
     zones = Zones(-math.inf, 0.2, 0.1, r)  # U = 0.1 of k = 2
     edge = zones.conformance[1]
-    assert zones.verdict(edge) == "conforming"
+    assert decide(edge, Limits(0, -math.inf, 0.2), 0.1, r=r) == "conforming"
     assert ndtr((edge - 0.2) / 0.05) == pytest.approx(risk, abs=0.002)  # u = U/2; JCGM 106:2012, clause 7
 
 
@@ -28,7 +60,7 @@ def test_the_zones_join_without_gap_and_decide_as_the_verdict_does():
     assert zones.nonconformance == pytest.approx((-0.24, 0.34))
     assert np.ravel(zones.uncertainty) == pytest.approx([-0.24, -0.16, 0.26, 0.34])
     for value, verdict in [(0.26, "conforming"), (0.27, "not proven"), (0.35, "not conforming"), (-0.17, "not proven")]:
-        assert zones.verdict(value) == decide_between(value, -0.2, 0.3, 0.05, r=0.8) == verdict
+        assert decide(value, Limits(0, -0.2, 0.3), 0.05, r=0.8) == verdict
 
 
 def test_one_limit_has_one_zone_of_uncertainty():
@@ -40,7 +72,11 @@ def test_an_uncertainty_wider_than_the_tolerance_proves_no_conformity_at_all():
     zones = Zones(-0.1, 0.1, 0.15)
     assert zones.conformance is None
     assert zones.uncertainty == (pytest.approx((-0.25, 0.25)),)
-    assert [zones.verdict(value) for value in (0.0, 0.2, 0.3)] == ["not proven", "not proven", "not conforming"]
+    assert [decide(value, Limits(0, -0.1, 0.1), 0.15) for value in (0.0, 0.2, 0.3)] == [
+        "not proven",
+        "not proven",
+        "not conforming",
+    ]
 
 
 @pytest.mark.parametrize(

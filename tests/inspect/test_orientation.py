@@ -7,8 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.inspect.characteristic import Limits
-from core.inspect.conformity import Verdict
+from core.inspect.conformity import Limits, Verdict
 from core.inspect.evaluate import evaluate
 from core.inspect.fit.surface_fit import range_of
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, Filters, InSphere, Polygon

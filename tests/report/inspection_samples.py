@@ -7,7 +7,8 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from PIL import Image
 
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.gauge import RULE
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import cause_named

@@ -13,8 +13,8 @@ import pytest
 from matplotlib.text import Text
 from pypdf import PdfReader
 
-from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.conformity import Verdict
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits, Verdict
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.plan.feature_kind import ToleranceSymbol
 from core.inspect.results import Contribution

@@ -142,11 +142,11 @@ def test_same_content_gives_the_same_bytes_whatever_the_users_plot_settings(data
 @pytest.mark.parametrize(
     ("changes", "expected"),
     [
-        ({"thickness_mm": 50.19, "verdict": "not proven"}, ("? Not proven", "Neither conformity nor non-conformity")),
-        ({"thickness_mm": 50.3, "verdict": "not conforming"}, ("✗ Not conforming", "Non-conformity is proven")),
-        ({"verdict": "conforming"}, ("✓ Conforming", "Conformity is proven")),
-        ({"nominal_mm": None, "tolerance_mm": None, "verdict": ""}, ("without a verdict",)),
-        ({"u_mm": float("nan"), "verdict": "not proven"}, ("50.012 mm (uncertainty unknown)",)),
+        ({"thickness_mm": 50.19}, ("? Not proven", "Neither conformity nor non-conformity")),
+        ({"thickness_mm": 50.3}, ("✗ Not conforming", "Non-conformity is proven")),
+        ({}, ("✓ Conforming", "Conformity is proven")),
+        ({"nominal_mm": None, "tolerance_mm": None}, ("without a verdict",)),
+        ({"u_mm": float("nan")}, ("50.012 mm (uncertainty unknown)",)),
     ],
 )
 def test_verdict_is_given_in_words_with_its_reason(quick, changes, expected):

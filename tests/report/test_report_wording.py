@@ -3,7 +3,8 @@ import math
 import numpy as np
 import pytest
 
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.results import Face, GaugeResult
 from core.messages import plain
 from core.model import LightPlane
@@ -70,17 +71,17 @@ def test_coverage_is_only_claimed_for_known_factors():
 
 
 @pytest.mark.parametrize(
-    ("thickness", "verdict", "expected"),
+    ("thickness", "expected"),
     [
-        (50.05, "conforming", "0.050 mm from the nominal value, enlarged by U = 0.020 mm, stays within"),
-        (49.7, "not conforming", "0.300 mm from the nominal value, even lessened by U = 0.020 mm, is outside"),
-        (50.19, "not proven", "inside the interval of 0.190 mm ± 0.020 mm"),
+        (50.05, "0.050 mm from the nominal value, enlarged by U = 0.020 mm, stays within"),
+        (49.7, "0.300 mm from the nominal value, even lessened by U = 0.020 mm, is outside"),
+        (50.19, "inside the interval of 0.190 mm ± 0.020 mm"),
     ],
 )
-def test_verdict_states_the_numbers_that_decide(thickness, verdict, expected):
-    measured = gauge(thickness, 0.01, nominal_mm=50.0, tolerance_mm=0.2, verdict=verdict)
+def test_verdict_states_the_numbers_that_decide(thickness, expected):
+    measured = gauge(thickness, 0.01, nominal_mm=50.0, tolerance_mm=0.2)
     assert expected in verdict_sentence(measured)
-    assert "±0.2 mm" in verdict_sentence(measured)
+    assert "±0.2\u00a0mm" in verdict_sentence(measured)
 
 
 def test_no_nominal_value_no_verdict():

@@ -34,7 +34,7 @@ def results(folder, thickness, u=0.01, budget=None, complete=True):
     folder.mkdir()
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), NO_POINTS, np.empty(0), 0.01, 0.01)
     rows = (Contribution(CAMERA, u),) if budget is None else budget
-    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, "conforming", complete=complete)
+    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, complete=complete)
     write_gauge(folder / "gauge.json", gauge, "abc")
     return folder
 

@@ -22,7 +22,7 @@ from PySide6.QtGui import QImage, QPainter
 from PySide6.QtWidgets import QApplication, QScrollArea, QWidget
 
 from core.files.results.mesh_export import write_stl
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import Auto, Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.scan.surface.fused_surface import Mesh

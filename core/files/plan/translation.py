@@ -19,7 +19,7 @@ from core.files.plan.tables import (
     SectionTable,
     TemperatureTable,
 )
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_kind import ResultKind
 from core.inspect.plan.feature_spec import (

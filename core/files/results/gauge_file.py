@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import math
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from pydantic import BeforeValidator, Field
+from pydantic import Field
 
 from core import __version__
 from core.errors import InputError
@@ -18,8 +18,8 @@ from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row3, kept, row_tables
-from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.conformity import Verdict
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.messages import Command, Message
 from core.model import LightPlane
@@ -65,10 +65,8 @@ class _GaugeFile(ResultFile):
     parallelism_deg: Finite = Field(description="an angle in degrees")
     faces: _Faces = Field(description="a table of upper and lower")
     nominal_mm: Finite | None = None
-    tolerance_mm: Finite | None = None
-    # Not the class itself: an enum's signature is (*values) from Python 3.12 on, which pydantic refuses.
-    verdict: Annotated[Verdict, BeforeValidator(lambda name: Verdict(name))] = Verdict.NONE
-    complete: bool = True
+    tolerance_mm: Finite | None = Field(default=None, gt=0, description="a length in mm above 0")
+    complete: bool = False
     at_20: bool | None = None
     rule: OptionalMessage = None
     normal: Row3 | None = None
@@ -119,6 +117,9 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
 def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
     """Read gauge.json with the faces' points among those of `cloud`.
 
+    The file's `verdict` is for other programs and is not read: it follows anew from the numbers and `complete`, so that
+    no file, of an earlier version or changed by hand, says more than they prove; one without `complete` proves nothing.
+
     Raises
     ------
     InputError
@@ -136,7 +137,6 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
-        verdict=file.verdict,
         complete=file.complete,
         at_20=file.at_20,
         normal=None if file.normal is None else np.array(file.normal),
@@ -148,8 +148,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
 def read_thickness(path: Path) -> Characteristic:
     """Read gauge.json alone, without the points its faces rest on; InputError as `read_gauge`."""
     file = _read(path)
-    known = file.nominal_mm is not None and file.tolerance_mm is not None
-    limits = Limits(file.nominal_mm or 0.0, -(file.tolerance_mm or 0.0), file.tolerance_mm or 0.0) if known else None
+    limits = Limits.around(file.nominal_mm, file.tolerance_mm)
     return Characteristic(
         "thickness", "thickness", file.thickness_mm, file.u_mm, k=file.k, limits=limits,
         budget=tuple(row.row() for row in file.budget), rule=file.rule, notes=tuple(file.notes),

@@ -20,7 +20,8 @@ from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, kept, row_tables
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.plan.control_frame import ControlFrame, control_frames, datum_letters
@@ -116,7 +117,7 @@ class _Characteristic(ResultFile):
     quantity: Literal["length", "angle"] = "length"
     limits: _Limits | None = None
     control_frame: _ControlFrame | None = None
-    complete: bool = True
+    complete: bool = False
     at_20: bool | None = None
     rule: OptionalMessage = None
     notes: list[KeptMessage] = Field(default_factory=list)

@@ -22,7 +22,7 @@ from core.errors import InputError
 from core.files.reading import resolved
 from core.files.study.results import Measured, measured_in
 from core.files.study.table import Table, read_table
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
 from core.messages import Message
 from core.model.arrays import Array

@@ -9,7 +9,8 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import read_inspection
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
 from core.messages import Command, Message
 

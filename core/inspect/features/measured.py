@@ -17,7 +17,7 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import PartFrame
 from core.inspect.plan.kinds import kind_of
 from core.inspect.profile import Profile
-from core.inspect.results import Contribution, GaugeResult
+from core.inspect.results import Contribution
 from core.inspect.shown.deviation_map import DeviationMap
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.coverage import student_factor
@@ -55,8 +55,8 @@ class FeatureResult:
         Of what others can be derived from; else None.
     shape
         The fitted surface in the camera frame, if there is one.
-    gauge, profile, deviations
-        Of a thickness, a section, a deviation map.
+    profile, deviations
+        Of a section, a deviation map.
     notes
         What is told of it where it has no row of its own: with what is derived from it.
     problem
@@ -71,7 +71,6 @@ class FeatureResult:
     part: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     element: Element | None = None
     shape: Shape | None = None
-    gauge: GaugeResult | None = None
     profile: Profile | None = None
     deviations: DeviationMap | None = None
     notes: tuple[Message, ...] = ()

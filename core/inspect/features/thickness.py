@@ -12,7 +12,6 @@ from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in
 from core.inspect.gauge import measure_gauge
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
-from core.inspect.results import GaugeResult
 from core.messages import Message
 
 
@@ -33,7 +32,6 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=indices[order],
         residuals=np.concatenate([face.residuals for face in faces])[order],
         part=part[order],
-        gauge=with_limits(gauge, spec),
     )
 
 
@@ -51,11 +49,3 @@ def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
     kept = np.flatnonzero(cloud.sigma <= filters.sigma_max_mm)
     pair = find_faces(cloud.select(kept), margin_mm=filters.margin_mm, progress=scene.progress)
     return FacePair(kept[pair.upper], kept[pair.lower])
-
-
-def with_limits(gauge: GaugeResult, spec: FeatureSpec) -> GaugeResult:
-    """With nominal value and tolerance where the limits are symmetric: all that it can hold."""
-    limits = spec.limits_of("thickness")
-    if limits is None or limits.lower != -limits.upper:
-        return replace(gauge, nominal_mm=None, tolerance_mm=None)
-    return replace(gauge, nominal_mm=limits.nominal, tolerance_mm=limits.upper)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import Literal, TypeAlias
 
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 
 Pixel: TypeAlias = tuple[float, float]
 Place: TypeAlias = tuple[float, float, float]

@@ -3,7 +3,8 @@ from dataclasses import replace
 
 import pytest
 
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain

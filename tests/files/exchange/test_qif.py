@@ -5,7 +5,8 @@ import pytest
 from lxml import etree
 
 from core.files.exchange.qif import NAMESPACE, write_qif
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.plan.control_frame import ControlFrame
 
 Q = {"q": NAMESPACE}

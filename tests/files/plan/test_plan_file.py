@@ -6,7 +6,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.plan.plan_file import read_plan, write_plan
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import (
     Auto,

@@ -40,7 +40,7 @@ from core.files.recording.rig import (
 )
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, Charuco, CircleGrid
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame

@@ -26,7 +26,7 @@ from core.files.project.people import (
     write_rules,
 )
 from core.files.recording.rig import GaugeSpec
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.pipeline.project.verify import verify
 

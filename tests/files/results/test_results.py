@@ -488,6 +488,24 @@ def test_whether_a_thickness_is_at_20_degrees_is_not_known_of_an_older_file(tmp_
     assert read_gauge(path, cloud).at_20 is read_thickness(path).at_20 is None
 
 
+@pytest.mark.parametrize(
+    ("changes", "expected"),
+    [
+        ({"verdict": "not conforming"}, "conforming"),
+        ({"thickness_mm": 50.3}, "not conforming"),
+        ({"complete": False}, "not proven"),
+        ({"complete": None}, "not proven"),  # not known
+        ({"tolerance_mm": None}, ""),
+    ],
+)
+def test_a_verdict_in_gauge_json_never_says_more_than_its_numbers_and_facts(tmp_path, cloud, gauge, changes, expected):
+    path = tmp_path / "gauge.json"
+    write_gauge(path, gauge, "abc")
+    tables = json.loads(path.read_text()) | changes
+    path.write_text(json.dumps({key: value for key, value in tables.items() if value is not None or key == "rule"}))
+    assert (read_gauge(path, cloud).verdict, read_thickness(path).verdict) == (expected, expected)
+
+
 def test_every_row_of_the_budget_has_its_input_its_sensitivity_and_its_share(tmp_path, cloud, gauge):
     path = tmp_path / "gauge.json"
     rows = (

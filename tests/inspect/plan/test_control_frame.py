@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.control_frame import ControlFrame, control_frames, datum_letters
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Position
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame

@@ -9,7 +9,7 @@ import pytest
 from core.errors import InputError
 from core.files.plan.plan_file import read_plan, write_plan
 from core.files.results.inspection_file import read_inspection, write_inspection
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.evaluate import evaluate
 from core.inspect.plan.conditions import Temperature
 from core.inspect.plan.feature_spec import FeatureSpec

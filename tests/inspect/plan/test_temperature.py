@@ -2,7 +2,8 @@
 
 import pytest
 
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.temperature import (
     at_reference,

@@ -3,7 +3,6 @@
 import numpy as np
 import pytest
 
-from core.inspect.conformity import decide
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.causes import CAMERA, FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
@@ -135,25 +134,3 @@ def test_own_noise_larger_than_stated_is_counted_as_large_as_it_is():
     sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, face, errors)
     fit = generalised_fit(np.ones((len(sources.own), 1)), sources.mean(noise), sources)
     assert np.median(fit.own) == pytest.approx(0.05, rel=0.1)
-
-
-@pytest.mark.parametrize(
-    ("deviation", "U", "verdict"),
-    [
-        (0.0, 0.1, "conforming"),
-        (-0.1, 0.1, "conforming"),
-        (0.11, 0.1, "not proven"),
-        (-0.29, 0.1, "not proven"),
-        (0.31, 0.1, "not conforming"),
-        (-0.21, 0.0, "not conforming"),
-        (0.0, 0.3, "not proven"),
-    ],
-)
-def test_decision_rule(deviation, U, verdict):
-    assert decide(deviation, 0.2, U) == verdict
-
-
-@pytest.mark.parametrize(("deviation", "tolerance", "U"), [(0.0, 0.0, 0.1), (0.0, -1.0, 0.1), (float("nan"), 0.2, 0.1)])
-def test_no_decision_without_numbers(deviation, tolerance, U):
-    with pytest.raises(ValueError, match="no decision"):
-        decide(deviation, tolerance, U)

@@ -24,7 +24,7 @@ from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
-from core.inspect.characteristic import Characteristic
+from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import CERTIFICATE
@@ -41,7 +41,6 @@ from core.pipeline.steps.scan_pictures import look_at_scan
 from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step, section_change
 from core.pipeline.steps.validity import facts_of_the_day
 from core.pipeline.steps.workspace import Workspace
-from core.report.content import thickness_characteristic
 from core.report.wording import decision_sentence, verdict_sentence
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario

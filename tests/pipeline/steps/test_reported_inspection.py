@@ -11,7 +11,8 @@ from core.errors import InputError
 from core.files.arrays_file import write_arrays
 from core.files.results.inspection_file import write_inspection
 from core.files.study.study_file import write_study
-from core.inspect.characteristic import Characteristic, Limits
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.plan.control_frame import ControlFrame
@@ -32,7 +33,8 @@ def content():
 def inspected(folder, content, **changes):
     """An inspection.json of a plane and of a comparison with a nominal surface, and the points beside it."""
     row = {"name": "top flatness", "feature": "top", "kind": "flatness", "value": 0.031, "u": 0.004, "k": 2.0,
-           "limits": {"nominal": 0.0, "lower": None, "upper": 0.05}, "rule": "range", "notes": ["Few points."],
+           "complete": True, "limits": {"nominal": 0.0, "lower": None, "upper": 0.05}, "rule": "range",
+           "notes": ["Few points."],
            "budget": [{"source": "camera calibration", "u": 0.004, "dof": None}]}  # fmt: skip
     tables = {
         "schema_version": 1,

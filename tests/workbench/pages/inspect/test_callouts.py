@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from numpy.testing import assert_allclose
 
-from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.conformity import Verdict
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits, Verdict
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.shown.shown_features import ShownFeature, ShownInspection

@@ -4,7 +4,7 @@ import math
 
 import pytest
 
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, InBox, InSphere, PointsOf, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS

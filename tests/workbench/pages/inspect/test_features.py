@@ -12,8 +12,8 @@ from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QAbstractButton, QLabel, QStyleOptionViewItem
 
 from core.errors import InputError
-from core.inspect.characteristic import Characteristic, Limits
-from core.inspect.conformity import Verdict
+from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Limits, Verdict
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS, results_of

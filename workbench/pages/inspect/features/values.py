@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-from core.inspect.characteristic import Limits
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_kind import FeatureKind, ResultKind
 from core.inspect.plan.feature_spec import (
     Auto,
