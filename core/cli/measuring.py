@@ -26,9 +26,10 @@ from core.files.recording.recording_set import RIG, open_set, require_folder
 from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
 from core.files.results.check_file import InterimCheck
+from core.files.results.folder_results import read_results
 from core.files.results.rig_history import RigHistory, history_file
 from core.files.step_graph import READJUST
-from core.inspect.results import GaugeResult
+from core.inspect.conformity import Verdict
 from core.messages import Message, visible
 from core.pipeline.batch import measure_set, run_batch
 from core.pipeline.compile_ahead import compile_ahead
@@ -104,11 +105,12 @@ def run_all(folder: Path, out: Path, chosen: Options, progress: Progress, beside
 
 def show_run(result: RunResult, *, as_json: bool) -> None:
     """Say what a whole run measured."""
-    rows: output.Rows = output.gauge_rows(result.gauge) if result.gauge else [(tr("thickness"), tr("not measured"))]
+    gauge, verdict = result.gauge, result.results.verdict
+    rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
     rows += [(tr("camera"), output.camera_summary(result.camera)), (tr("fan"), output.fan_summary(result.fan))]
     rows += output.frame_rows(result.frames, result.points)
     values = {
-        **output.gauge_json(result.gauge),
+        **output.gauge_json(gauge, verdict),
         **output.frames_json(result.frames, result.points),
         "triangles": result.triangles,
         "camera": output.camera_json(result.camera),
@@ -185,17 +187,18 @@ def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Sh
         return _shown(work, "scan", rows, values, "cloud", "mesh")
 
 
-def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[GaugeResult, Shown]:
-    """Gauge step."""
+def run_gauge(folder: Path, out: Path, progress: Progress) -> tuple[Verdict, Shown]:
+    """Gauge step; the verdict is that on the part."""
     with alone_with(folder, out) as work:
-        gauge = gauge_step(work, progress)
-        return gauge, _shown(work, "gauge", output.gauge_rows(gauge), output.gauge_json(gauge), "gauge")
+        gauge, verdict = gauge_step(work, progress), read_results(work.out).verdict
+        rows, values = output.gauge_rows(gauge, verdict), output.gauge_json(gauge, verdict)
+        return verdict, _shown(work, "gauge", rows, values, "gauge")
 
 
 def run_profile(
     folder: Path, out: Path, chosen: Options, stage: str, tilt_sd_deg: float, progress: Progress
-) -> tuple[GaugeResult, Shown]:
-    """Profile step."""
+) -> tuple[Verdict, Shown]:
+    """Profile step; the verdict is that on the part."""
     if not 0 <= tilt_sd_deg < 10:
         raise InputError(
             Message("profile.tilt_sd_range", "{given:g}° is not between 0 and 10", given=tilt_sd_deg),
@@ -204,10 +207,10 @@ def run_profile(
     tilt = StatedTilt(stage, math.radians(tilt_sd_deg) or None) if stage or tilt_sd_deg else None
     with alone_with(folder, out, chosen.part, chosen.channel) as work:
         measured = profile_step(work, chosen, tilt, progress)
-        gauge, pictures = measured.gauge, measured.pictures
-        rows = [*output.gauge_rows(gauge), *output.picture_rows(pictures)]
-        values = {**output.gauge_json(gauge), **output.pictures_json(pictures)}
-        return gauge, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
+        gauge, pictures, verdict = measured.gauge, measured.pictures, read_results(work.out).verdict
+        rows = [*output.gauge_rows(gauge, verdict), *output.picture_rows(pictures)]
+        values = {**output.gauge_json(gauge, verdict), **output.pictures_json(pictures)}
+        return verdict, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
 
 
 @contextmanager

@@ -79,7 +79,7 @@ def run(
             result = measuring.run_all(folder, out, options, watched, beside)
     measuring.show_run(result, as_json=json)
     measuring.show_times(watched)
-    raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
+    raise typer.Exit(measuring.exit_code(result.results.verdict))
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
@@ -272,9 +272,9 @@ def profile(
     options = arguments.options(part=part, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
     options = arguments.leaving_out(options, folder, exclude)
     with bar() as progress:
-        result, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)
+        verdict, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)
     shown.show(as_json=json)
-    raise typer.Exit(measuring.exit_code(result.verdict))
+    raise typer.Exit(measuring.exit_code(verdict))
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
@@ -283,6 +283,6 @@ def gauge(folder: Set, out: Out, json: Json = False) -> None:
     from core.cli import measuring
 
     with bar() as progress:
-        result, shown = measuring.run_gauge(folder, out, progress)
+        verdict, shown = measuring.run_gauge(folder, out, progress)
     shown.show(as_json=json)
-    raise typer.Exit(measuring.exit_code(result.verdict))
+    raise typer.Exit(measuring.exit_code(verdict))

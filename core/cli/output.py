@@ -26,6 +26,7 @@ from core.files.results.gauge_file import gauge_summary
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.findings.table import gravest_first, is_grave
+from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
@@ -174,15 +175,15 @@ def _poses_used(used: int, poses: int) -> str:
     return told(said)
 
 
-def gauge_rows(gauge: GaugeResult) -> Rows:
-    """Thickness, deviation, verdict and the faces."""
+def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
+    """Thickness, deviation, the verdict on the part and the faces."""
     rows = [(tr("thickness"), thickness_line(gauge, words()))]
     if gauge.nominal_mm is not None and gauge.tolerance_mm is not None and gauge.deviation_mm is not None:
         limits = tr("{nominal:g} mm ± {tolerance:g} mm", nominal=gauge.nominal_mm, tolerance=gauge.tolerance_mm)
         rows.append((tr("nominal"), limits))
         rows.append((tr("deviation"), f"{words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
-    verdict = tr(DECISIONS[gauge.verdict]) if gauge.verdict else tr("none: rig.toml states no nominal value")
-    rows.append((tr("verdict"), verdict))
+    decided = tr(DECISIONS[verdict]) if verdict else tr("none: rig.toml states no nominal value")
+    rows.append((tr("verdict"), decided))
     upper, lower = gauge.points_used
     flatness = tr(
         "{above:.3f} mm above, {below:.3f} mm below (95 % of points)",
@@ -395,12 +396,13 @@ def reason_json(reason: Message | None, name: str = "reason") -> dict[str, Any]:
     return {name: told["text"], "code": told["code"], "values": told["values"]}
 
 
-def gauge_json(gauge: GaugeResult | None) -> dict[str, Any]:
-    """The result for machines; nulls where no thickness was measured."""
+def gauge_json(gauge: GaugeResult | None, verdict: Verdict) -> dict[str, Any]:
+    """The thickness and the verdict on the part, for machines; nulls where no thickness was measured."""
     if gauge is None:
-        return {"thickness_mm": None, "verdict": ""}
+        return {"thickness_mm": None, "verdict": verdict}
     return {
         **gauge_summary(gauge),
+        "verdict": verdict,
         "points_on_faces": dict(zip(("upper", "lower"), gauge.points_used, strict=True)),
     }
 

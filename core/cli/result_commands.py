@@ -45,7 +45,7 @@ def inspect(
     with bar() as progress:
         inspection, written = work.run_inspect(source, plan, out, progress)
     work.show_inspection(inspection, written, as_json=json)
-    raise typer.Exit(work.inspection_exit_code(inspection))
+    raise typer.Exit(work.inspection_exit_code(inspection, written))
 
 
 @commands.command(rich_help_panel=Panel.RESULTS)

@@ -23,9 +23,11 @@ from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
 from core.files.results.comparison_file import ComparisonFile
 from core.files.results.export_list import EXPORTS
+from core.files.results.folder_results import read_results
 from core.files.results.inspection_file import inspection_values
 from core.inspect.characteristic import Characteristic
 from core.inspect.comparison import ComparisonScales
+from core.inspect.conformity import Verdict
 from core.inspect.evaluate import Inspection
 from core.inspect.shown.shown_comparison import ALIGNED
 from core.messages import Message, label, visible
@@ -57,16 +59,22 @@ def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) 
         return inspect_step(source, asked, plan.parent, out, progress)
 
 
-def inspection_exit_code(inspection: Inspection) -> ExitCode:
-    """Of the verdict, or "not proven" where something could not be measured."""
-    return ExitCode.NOT_PROVEN if inspection.problems else exit_code(inspection.verdict)
+def inspection_exit_code(inspection: Inspection, written: Path | None) -> ExitCode:
+    """Of the verdict on the part, or "not proven" where something could not be measured."""
+    return ExitCode.NOT_PROVEN if inspection.problems else exit_code(_verdict_on_part(inspection, written))
+
+
+def _verdict_on_part(inspection: Inspection, written: Path | None) -> Verdict:
+    """Of all results in the folder it was written to."""
+    return inspection.verdict if written is None else read_results(written.parent).verdict
 
 
 def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bool) -> None:
     """Print it, for people or for machines."""
     files = {} if written is None else {"inspection": written}
     if as_json:
-        output.print_json({**inspection_values(inspection), "files": output.files_json(files)})
+        values = inspection_values(inspection) | {"verdict": _verdict_on_part(inspection, written)}
+        output.print_json({**values, "files": output.files_json(files)})
         return
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
     for name in _COLUMNS:

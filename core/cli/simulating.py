@@ -194,7 +194,7 @@ def demo(
         report = str(result.files["report"])
         told = tr("The sample block measures {thickness}; the report is {path}.", thickness=line, path=report)
         sys.stdout.write(f"\n{told}\n")
-    raise typer.Exit(measuring.exit_code(result.gauge.verdict if result.gauge else ""))
+    raise typer.Exit(measuring.exit_code(result.results.verdict))
 
 
 @contextmanager

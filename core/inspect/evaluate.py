@@ -23,6 +23,7 @@ from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import brought_kinds, kind_of
 from core.inspect.plan.plugins import NAME_TAKEN, failure, plugins, unusable
 from core.inspect.plan.temperature import at_reference, compared, temperature_of, with_scale
+from core.inspect.result_list import ResultList
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
@@ -76,12 +77,14 @@ class Inspection:
         return {result.spec.name: result for result in self.results}[name]
 
     @property
+    def unmeasured(self) -> bool:
+        """Whether a feature with limits could not be measured."""
+        return any(result.problem and result.spec.limits for result in self.results)
+
+    @property
     def verdict(self) -> Verdict:
-        """The worst of all. A feature with limits that could not be measured proves nothing."""
-        verdicts = {row.verdict for row in self.characteristics}
-        if any(result.problem and result.spec.limits for result in self.results):
-            verdicts.add(Verdict.NOT_PROVEN)
-        return Verdict.worst(verdicts)
+        """Of the plan alone: that on the part holds a thickness measured beside it as well."""
+        return ResultList(None, self.characteristics, self.unmeasured).verdict
 
 
 def evaluate(

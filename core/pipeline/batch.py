@@ -162,7 +162,7 @@ def _measured(folder: Path, out: Path, measured: RunResult, seconds: float) -> S
         out,
         thickness_mm=None if gauge is None else gauge.thickness_mm,
         U_mm=None if gauge is None else gauge.U_mm,
-        verdict="" if gauge is None else gauge.verdict,
+        verdict=measured.results.verdict,
         points=measured.points,
         frames=len(measured.frames),
         frames_used=sum(frame.used for frame in measured.frames),

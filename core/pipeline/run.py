@@ -12,7 +12,9 @@ from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
+from core.files.results.folder_results import read_results
 from core.files.step_graph import READJUST
+from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
@@ -33,7 +35,8 @@ from core.second_process import SecondProcess
 class RunResult:
     """What a whole run measured, and where its files are.
 
-    `gauge` is None where no thickness was asked for and the part has no two parallel faces. `files` holds what was
+    `gauge` is None where no thickness was asked for and the part has no two parallel faces. `results` are all that are
+    in the folder, with the verdict on the part. `files` holds what was
     written, by the names in `core.pipeline.steps.workspace.FILES`.
     """
 
@@ -43,6 +46,7 @@ class RunResult:
     points: int
     triangles: int
     gauge: GaugeResult | None
+    results: ResultList
     notes: tuple[Message, ...]
     files: dict[str, Path]
 
@@ -109,6 +113,7 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
         points=points,
         triangles=triangles,
         gauge=gauge,
+        results=read_results(work.out),
         notes=work.record().all_notes,
         files=work.written(),
     )

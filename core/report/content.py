@@ -14,8 +14,9 @@ from numpy.typing import NDArray
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
-from core.inspect.characteristic import Characteristic, thickness_characteristic
+from core.inspect.characteristic import Characteristic
 from core.inspect.plan.control_frame import ControlFrame
+from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
@@ -183,7 +184,9 @@ class ReportContent:
     gauge
         The thickness, or None for a scan without two faces.
     inspected
-        Every characteristic of an inspection, the thickness among them if it was one; empty where there was none.
+        Every characteristic of an inspection; empty where there was none.
+    unmeasured
+        Whether a feature with limits could not be measured.
     points
         By name, which points of the cloud a face or a feature rests on: indices.
     features
@@ -255,6 +258,7 @@ class ReportContent:
     timestamp: datetime
     gauge: GaugeResult | None = None
     inspected: tuple[Characteristic, ...] = ()
+    unmeasured: bool = False
     points: Mapping[str, NDArray[np.int64]] = field(default_factory=dict)
     features: Mapping[str, str] = field(default_factory=dict)
     control_frames: Mapping[str, ControlFrame] = field(default_factory=dict)
@@ -308,16 +312,19 @@ class ReportContent:
         return hashlib.sha256("\n".join(lines).encode()).hexdigest()
 
     @property
+    def results(self) -> ResultList:
+        """Every result, and the verdict on the part."""
+        return ResultList.of(self.gauge, self.inspected, unmeasured=self.unmeasured)
+
+    @property
     def characteristics(self) -> tuple[Characteristic, ...]:
-        """Every result in a row: the thickness, unless one was inspected, and what was inspected."""
-        if self.gauge is None or self._thickness_inspected:
-            return self.inspected
-        return (thickness_characteristic(self.gauge), *self.inspected)
+        """Every result in a row: the gauge's thickness first, then what was inspected."""
+        return self.results.rows
 
     @property
     def points_used(self) -> Mapping[str, NDArray[np.int64]]:
         """By name, which points each face or feature rests on."""
-        if self.gauge is None or self._thickness_inspected:
+        if self.gauge is None:
             return self.points
         faces = {label("Upper face"): self.gauge.upper.indices, label("Lower face"): self.gauge.lower.indices}
         return {**faces, **self.points}
@@ -326,22 +333,17 @@ class ReportContent:
     def shown_at(self) -> tuple[tuple[Characteristic, NDArray[np.int64]], ...]:
         """The worst characteristic of each feature, and the points it rests on; at most MOST_CALLOUTS, the worst first.
 
-        A thickness measured alone is shown on its upper face.
+        The gauge's thickness is shown on its upper face.
         """
         found: dict[str, tuple[Characteristic, NDArray[np.int64]]] = {}
         for one in sorted(self.characteristics, key=lambda one: one.room):
             feature = self.features.get(one.name, "")
             indices = self.points.get(self.seen_at.get(feature, feature))
-            if indices is None and self.gauge is not None and one.kind == "thickness":
+            if indices is None and self.gauge is not None and one.kind == "thickness" and not feature:
                 indices = self.gauge.upper.indices
             if indices is not None and len(indices):
                 found.setdefault(feature, (one, indices))
         return tuple(found.values())[:MOST_CALLOUTS]
-
-    @property
-    def _thickness_inspected(self) -> bool:
-        """Whether what was inspected has a thickness of its own, which stands for the one measured alone."""
-        return any(one.kind == "thickness" for one in self.inspected)
 
     @property
     def at_reference(self) -> bool:

@@ -55,7 +55,6 @@ from core.files.results.shown_file import read_shown, write_shown
 from core.files.study.input import read_crossed, read_readings, read_repeats
 from core.files.study.study_file import read_study, write_study
 from core.files.study.table import read_table
-from core.inspect.conformity import Verdict
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import Message
 from core.simulate.scenario import Scenario
@@ -221,7 +220,7 @@ SHOWN = ShownInspection(
             ),
         ),
     ),
-    Verdict.NONE, (), "a",
+    False, (), "a",
 )  # fmt: skip
 """As the programs of an interim check and of a plan write them."""
 

@@ -49,9 +49,9 @@ def quick(monkeypatch):
             time.sleep(0.01)
             progress("camera", 0, 1)
         verdict = "not proven" if "doubtful" in folder.name else "conforming"
-        gauge = SimpleNamespace(thickness_mm=50.0, U_mm=0.02, verdict=verdict)
+        gauge, results = SimpleNamespace(thickness_mm=50.0, U_mm=0.02), SimpleNamespace(verdict=verdict)
         frames = (SimpleNamespace(used=True), SimpleNamespace(used=False))
-        return SimpleNamespace(gauge=gauge, points=1000, frames=frames)
+        return SimpleNamespace(gauge=gauge, results=results, points=1000, frames=frames)
 
     monkeypatch.setattr(batch, "run", run)
 

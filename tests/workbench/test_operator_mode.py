@@ -52,9 +52,10 @@ def operator(window: MainWindow, measured_project: Path, qtbot: Any) -> MainWind
 
 def test_the_worst_result_is_told_large_and_nothing_else_can_be_done(operator: MainWindow, qtbot: Any) -> None:
     page, entries = operator.operator, operator.menus.actions
-    worst = operator.operator_mode.found[0]
+    found = operator.operator_mode.found
+    assert found is not None
     assert page.isVisible() and not operator.menuBar().isVisible() and not operator.rail.isVisible()
-    assert page.headline.text().lower() == (str(worst.verdict) or "no verdict")
+    assert page.headline.text().lower() == (str(found.verdict) or "no verdict")
     assert "mm ±" in page.detail.text()
     assert page.buttons["report"].isEnabled() and page.buttons["next_part"].isEnabled()
     assert page.buttons["measure"].toolTip() == "Everything is done."
@@ -93,6 +94,7 @@ def test_the_next_part_is_measured_without_leaving_it(
     operator: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     page, before = operator.operator, operator.operator_mode.found
+    assert before is not None
 
     def stage() -> Stage:
         return operator.operator_mode.stage
@@ -111,8 +113,9 @@ def test_the_next_part_is_measured_without_leaving_it(
     assert stage() is Stage.DONE, operator.operator_mode.facts
     qtbot.waitUntil(lambda: bool(operator.operator_mode.found), timeout=60_000)
     assert page.isVisible()
-    assert operator.operator_mode.found[0].value == before[0].value
-    assert operator.operator_mode.found[0].verdict in (Verdict.CONFORMING, before[0].verdict)
+    after = operator.operator_mode.found
+    assert after is not None and after.rows[0].value == before.rows[0].value
+    assert after.verdict in (Verdict.CONFORMING, before.verdict)
 
 
 @pytest.mark.parametrize("name", ["de", *(pytest.param(name, marks=pytest.mark.accuracy) for name in ("en", "zh_CN"))])

@@ -59,6 +59,9 @@ ZONE_SHAPES = {
 
 STATUS = {"conforming": "PASS", "not conforming": "FAIL", "not proven": "INDETERMINATE", "none": "NOT_ANALYZED"}
 
+PART_STATUS = {"conforming": "PASS", "not conforming": "FAIL"}
+"""Of all together; QIF has no INDETERMINATE there."""
+
 
 def write_qif(path: Path, content: ReportContent) -> None:
     """Write the results as a QIF 3.0 document; InputError if it cannot be written."""
@@ -183,8 +186,7 @@ def _results(
         listed = put(put(measured, "MeasuredCharacteristics"), "CharacteristicMeasurements", n=f"{len(rows)}")
         for one, (_, _, item_id, own_id) in rows:
             _measurement(listed, one, item_id, own_id, component, content)
-    verdicts = {one.verdict for one, _ in rows} - {""}
-    status = "FAIL" if "not conforming" in verdicts else "PASS" if verdicts == {"conforming"} else "UNKNOWN"
+    status = PART_STATUS.get(content.results.verdict, "UNKNOWN")
     put(put(measured, "InspectionStatus"), "InspectionStatusEnum", status)
     put(put(measured, "ActualComponentIds", n="1"), "Id", f"{component}")
     parts = put(put(parent, "ActualComponentSets", n="1"), "ActualComponentSet", n="1")

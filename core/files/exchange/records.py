@@ -114,6 +114,7 @@ def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
     """Name and value of all that the result rests on besides the pictures."""
     known = {
         "report": content.report_id,
+        "decision": content.results.verdict or "none",
         "measured at": content.timestamp.isoformat(timespec="seconds"),
         "part": content.part,
         "serial number": content.serial,

@@ -41,6 +41,7 @@ def result_tables(content: ReportContent) -> dict[str, Any]:
         "settings_sha256": content.settings_digest,
         "inputs_sha256": content.inputs_digest,
         "inputs": dict(content.hashes),
+        "decision": content.results.verdict or "none",
         "characteristics": [
             {
                 **result_row(one),

@@ -73,6 +73,8 @@ class InspectionFile:
         By a feature's name, its letter as a datum.
     calibration_id
         Of the scan.
+    unmeasured
+        Whether a feature with limits could not be measured, or one without a result may have had limits.
     """
 
     characteristics: tuple[Characteristic, ...]
@@ -85,6 +87,7 @@ class InspectionFile:
     control_frames: dict[str, ControlFrame]
     datums: dict[str, str]
     calibration_id: str
+    unmeasured: bool
 
 
 class _Limits(ResultFile):
@@ -128,6 +131,8 @@ class _Feature(ResultFile):
     name: str
     kind: str
     problem: OptionalMessage = None
+    asked: bool = True
+    """Whether it has limits."""
 
 
 class _InspectionFile(ResultFile):
@@ -215,6 +220,7 @@ def read_inspection(path: Path) -> InspectionFile:
         },
         datums=file.datums,
         calibration_id=file.calibration_id,
+        unmeasured=any(feature.problem and feature.asked for feature in file.features),
     )
 
 
@@ -248,6 +254,7 @@ def _feature(result: FeatureResult) -> dict[str, Any]:
         "name": result.spec.name,
         "kind": result.spec.kind,
         "problem": kept(result.problem),
+        "asked": bool(result.spec.limits),
         "points": len(result.indices),
         "rms_mm": float(np.sqrt(np.mean(result.residuals**2))) if len(result.residuals) else None,
         "shape": None if result.shape is None else result.shape.values(),

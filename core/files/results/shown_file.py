@@ -32,7 +32,6 @@ from core.files.reading import file_hash, json_of, read_json
 from core.files.results.inspection_file import read_inspection
 from core.files.tables import Finite, ResultFile, Row3
 from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import Verdict
 from core.inspect.shown.deviation_map import bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import as_text, from_text, plain
@@ -62,7 +61,6 @@ class _About(ResultFile):
     """What is kept beside the arrays; `of` is the hash of the inspection.json it was written with."""
 
     features: tuple[_Feature, ...]
-    verdict: Verdict
     of: str
     pose_camera_part: _Pose | None = None
 
@@ -103,7 +101,7 @@ def write_shown(inspection: Path, shown: ShownInspection) -> None:
         }
         tolerance = None if one.deviations is None else one.deviations.tolerance_mm
         features.append(about | {"profile": one.profile is not None, "tolerance_mm": tolerance})
-    about = {"features": features, "verdict": shown.verdict, "of": file_hash(inspection)}
+    about = {"features": features, "of": file_hash(inspection)}
     if (pose := shown.pose_camera_part) is not None:
         about["pose_camera_part"] = {"rotation": pose.rotation, "translation": pose.translation}
     write_arrays(inspection.with_name(NAME), {**arrays, "about": pack_texts([to_json(about)])})
@@ -155,7 +153,7 @@ def _shown(about: _About, arrays: Arrays, inspection: Path) -> ShownInspection:
     pose = about.pose_camera_part
     return ShownInspection(
         tuple(features),
-        about.verdict,
+        file.unmeasured,
         file.notes,
         file.calibration_id,
         None if pose is None else Pose(np.array(pose.rotation), np.array(pose.translation)),

@@ -7,14 +7,11 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.results.gauge_file import read_thickness
-from core.files.results.inspection_file import read_inspection
+from core.files.results.folder_results import read_results
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
 from core.messages import Command, Message
-
-GAUGE, INSPECTION = "gauge.json", "inspection.json"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -67,7 +64,7 @@ def measured_in(folder: Path, name: str) -> Measured:
 def _find(folder: Path, name: str) -> Characteristic:
     if not folder.is_dir():
         raise InputError(Message("study.no_such_folder", "there is no such folder of results"), where=folder)
-    known = list(characteristics_in(folder))
+    known = read_results(folder).rows
     found = [one for one in known if one.name == name]
     if not found:
         names = tuple(one.name for one in known)
@@ -83,15 +80,3 @@ def _find(folder: Path, name: str) -> Characteristic:
             ),
         )
     return found[0]
-
-
-def characteristics_in(folder: Path) -> tuple[Characteristic, ...]:
-    """All of a folder: those of inspection.json, and the thickness of gauge.json where the inspection has none.
-
-    InputError if one of the two is damaged.
-    """
-    gauge, inspection = folder / GAUGE, folder / INSPECTION
-    found = read_inspection(inspection).characteristics if inspection.is_file() else ()
-    if not gauge.is_file() or any(one.kind == "thickness" for one in found):
-        return found
-    return (*found, read_thickness(gauge))

@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import Verdict
 from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
@@ -126,11 +125,12 @@ class ShownFeature:
 class ShownInspection:
     """A plan measured on the scan of a project.
 
-    `verdict` is the worst of all; `pose_camera_part` maps part coordinates into the camera frame, where there are any.
+    `unmeasured`: whether a feature with limits could not be measured. `pose_camera_part` maps part coordinates into the
+    camera frame, where there are any.
     """
 
     features: tuple[ShownFeature, ...]
-    verdict: Verdict
+    unmeasured: bool
     notes: tuple[Message, ...]
     calibration_id: str
     pose_camera_part: Pose | None = None

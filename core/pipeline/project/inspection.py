@@ -85,7 +85,7 @@ def _inspected(
 def _shown(inspection: Inspection, scan: InspectedScan) -> ShownInspection:
     features = tuple(_feature(result, scan.cloud) for result in inspection.results)
     return ShownInspection(
-        features, inspection.verdict, inspection.notes, scan.calibration_id, inspection.pose_camera_part
+        features, inspection.unmeasured, inspection.notes, scan.calibration_id, inspection.pose_camera_part
     )
 
 

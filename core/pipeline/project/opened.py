@@ -14,10 +14,12 @@ from core.files.project.results import ProjectResults
 from core.files.reading import resolved
 from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.inspect.characteristic import Characteristic
+from core.inspect.conformity import Verdict
+from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.project.results import load_results
-from core.pipeline.project.verdict import project_characteristics
+from core.pipeline.project.verdict import listed_results
 from core.pipeline.steps.workspace import FILES
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -95,11 +97,20 @@ class OpenedProject:
         path = results_in(self.folder) / FILES["inspection"]
         return read_inspection(path) if path.exists() else None
 
-    @cached_property
+    @property
     def characteristics(self) -> tuple[Characteristic, ...]:
         """Every value with U and verdict, the worst first; nothing without a scan."""
+        return self._listed.worst_first
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict on the part, of all of them together."""
+        return self._listed.verdict
+
+    @cached_property
+    def _listed(self) -> ResultList:
         self._require_unchanged()
-        return project_characteristics(self.folder) if (results_in(self.folder) / FILES["cloud"]).exists() else ()
+        return listed_results(self.folder) if (results_in(self.folder) / FILES["cloud"]).exists() else ResultList()
 
     @cached_property
     def _file(self) -> ProjectFile | None:

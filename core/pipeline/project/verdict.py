@@ -5,14 +5,13 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.files.project.folder import results_in
-from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import WORST_FIRST, Verdict
+from core.inspect.result_list import ResultList
 from core.pipeline.steps.report_step import results_content
 from core.progress import Progress, silent
 
 
-def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[Characteristic, ...]:
-    """Every characteristic among the results of the project in `folder` (or of results), the worst first.
+def listed_results(folder: Path, progress: Progress = silent) -> ResultList:
+    """All results of the project in `folder` (or of results), with the verdict on the part.
 
     Raises
     ------
@@ -20,6 +19,4 @@ def project_characteristics(folder: Path, progress: Progress = silent) -> tuple[
         If there is no scan among the results, or they are damaged.
     """
     progress("results", 0, 1)
-    found = results_content(results_in(folder)).characteristics
-    order = (*WORST_FIRST, Verdict.NONE)
-    return tuple(sorted(found, key=lambda one: (order.index(one.verdict), one.room)))
+    return results_content(results_in(folder)).results

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.errors import InputError
 from core.files.project.folder import is_project, read_project, results_folder, results_in
-from core.files.study.results import characteristics_in
+from core.files.results.folder_results import read_results
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.temperature import expands
 from core.inspect.uncertainty.causes import MASTER_MEASURED
@@ -38,7 +38,9 @@ def measured_master(
     """
     progress("results", 0, 1)
     results = results_in(folder)
-    lengths = [one for one in characteristics_in(results) if expands(one)]
+    found = read_results(results)
+    rows = found.inspected if found.thickness is None else (*found.inspected, found.thickness)
+    lengths = [one for one in rows if expands(one)]
     if not lengths:
         raise InputError(
             Message("inspection.no_length_measured", "no length was measured in it"),

@@ -353,6 +353,7 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
     return replace(
         content,
         inspected=file.characteristics,
+        unmeasured=file.unmeasured,
         points={name: indices for name, indices in file.points.items() if len(indices)},
         features=file.features,
         control_frames=file.control_frames,

@@ -56,10 +56,11 @@ SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
 def result_box(look: ReportLook, content: ReportContent, width: float) -> Table:
     """The box: of the one result, of all of them together, or of the cloud where there is none."""
     inner, found = width - 2 * PADDING, content.characteristics
-    if len(found) == 1:
+    verdict = content.results.verdict
+    if len(found) == 1 and found[0].verdict == verdict:
         rows = _one(look, found[0], inner)
     else:
-        rows = _several(look, content, inner) if found else _cloud(look, content, inner)
+        rows = _several(look, content, inner) if found or verdict else _cloud(look, content, inner)
     style = TableStyle(
         [
             ("FONTNAME", (0, 0), (-1, -1), SANS),
@@ -123,26 +124,24 @@ def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width:
 
 
 def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
-    """The worst characteristic, whose decision is that of the part, and how many of which decision there are."""
-    words, found = look.words, content.characteristics
+    """The decision on the part, the worst characteristic, and how many of which decision there are."""
+    words, found = look.words, content.results.worst_first
     counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
-    worst = next(verdict for verdict in SHOWN_FIRST if counts[verdict])
+    verdict = content.results.verdict
     results = plural_message("report.characteristics", "{n:,} characteristic", "{n:,} characteristics", n=len(found))
     headline: list[Flowable] = [look.say("Result", "label"), look.text(words(results), "result")]
-    if worst:
-        nearest = min((one for one in found if one.verdict == worst), key=lambda one: one.room)
-        title = words("{name}: the worst of {all}", name=headed_name(nearest, words), all=words(results))
-        headline = [look.text(title, "label"), _value(look, nearest)]
+    if found and found[0].verdict:
+        title = words("{name}: the worst of {all}", name=headed_name(found[0], words), all=words(results))
+        headline = [look.text(title, "label"), _value(look, found[0])]
     facts = {decision(verdict, words): grouped(number) for verdict, number in counts.items() if number}
     said = words(
         "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
         "ISO 14253-1 a deviation must stay within its tolerance even when it is enlarged by U."
     )
     return [
-        *_headed(look, headline, worst, width),
+        *_headed(look, headline, verdict, width),
         Spacer(0, 2.5 * mm),
-        _facts(look, facts, width),
-        Spacer(0, 2 * mm),
+        *([_facts(look, facts, width), Spacer(0, 2 * mm)] if facts else []),
         look.text(said),
     ]
 

@@ -31,4 +31,4 @@ def content():
         Characteristic("ball", "sphere diameter", 50.0, 0.02, limits=Limits(50, -0.1, INF)),
         Characteristic("gap\nof two", "distance", math.nan, math.nan, limits=Limits(3, -INF, 0.03)),
     )  # fmt: skip
-    return replace(block_content(), inspected=rows, rig_id="0123456789ab")
+    return replace(block_content(), gauge=None, inspected=rows, rig_id="0123456789ab")

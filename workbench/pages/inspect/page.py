@@ -163,14 +163,14 @@ class InspectPage(StepPage):
             },
             "" if fresh else "measure",
             steady=stage in STEADY,
-            verdict=words.verdict(p.scan.gauge) if fresh else "",
+            verdict=words.verdict(p.results) if fresh else "",
         )
 
     def _words(self) -> dict[Stage, tuple[str, str]]:
         p = self.presenter
-        gauge = p.scan.gauge
+        gauge, verdict = p.scan.gauge, words.verdict(p.results)
         value = words.thickness(gauge) if gauge is not None else ""
-        decided = sentence(tr(DECISIONS[gauge.verdict])) if gauge is not None and gauge.verdict else ""
+        decided = sentence(tr(DECISIONS[verdict])) if verdict else ""
         return {
             Stage.NO_SCAN: (tr("Nothing to inspect yet"), tr("Scan the part first, then come back.")),
             Stage.READING: (tr("Reading the scan …"), tr("The surface is being prepared.")),

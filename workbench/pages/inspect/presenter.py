@@ -12,6 +12,7 @@ from PySide6.QtCore import Signal
 from core.files.project.data import Project
 from core.files.project.folder import source_folder
 from core.files.project.keys import finished
+from core.inspect.result_list import ResultList
 from core.inspect.shown.view_frame import ViewFrame, part_frame, shown_frame
 from workbench.bench import Bench
 from workbench.language import text_of, tr
@@ -179,6 +180,15 @@ class InspectPresenter(StepPresenter):
     def frame(self) -> ViewFrame:
         """The frame the surface is shown in."""
         return shown_frame(self.part_frame, wanted=self.bench.settings.part_frame)
+
+    @property
+    def results(self) -> ResultList | None:
+        """All results on the part; None while it is not known what the features give."""
+        shown = self.features.shown
+        if shown is None:
+            return None if "features" in self.model.results else ResultList.of(self.scan.gauge)
+        rows = [row for feature in shown.features for row in feature.rows]
+        return ResultList.of(self.scan.gauge, rows, unmeasured=shown.unmeasured)
 
     def points_shown(self) -> int:
         """How many of the points are shown."""

@@ -19,6 +19,7 @@ from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow, VerdictKind
 
 if TYPE_CHECKING:
+    from core.inspect.result_list import ResultList
     from core.inspect.results import GaugeResult
     from core.inspect.shown.view_frame import ViewFrame
     from core.study.type1 import Type1Study
@@ -32,14 +33,14 @@ def thickness(gauge: GaugeResult) -> str:
     return thickness_line(gauge, wording())
 
 
-def verdict(gauge: GaugeResult | None) -> VerdictKind:
-    """What is decided; "" for nothing."""
+def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
+    """What is decided on a thickness, or on the part by all results; "" for nothing."""
     kinds: dict[str, VerdictKind] = {
         "conforming": "conforming",
         "not conforming": "not conforming",
         "not proven": "not proven",
     }
-    return "" if gauge is None else kinds.get(gauge.verdict, "")
+    return "" if result is None else kinds.get(result.verdict, "")
 
 
 def result_rows(gauge: GaugeResult) -> list[ValueRow]:

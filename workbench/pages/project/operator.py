@@ -19,7 +19,7 @@ from workbench.step_state import State
 from workbench.work import jobs
 
 if TYPE_CHECKING:
-    from core.inspect.characteristic import Characteristic
+    from core.inspect.result_list import ResultList
 
 
 class Stage(StrEnum):
@@ -98,7 +98,7 @@ class OperatorMode(QObject):
         super().__init__()
         self._bench, self._model, self._whole = bench, bench.model, whole
         self.on = False
-        self.found: tuple[Characteristic, ...] = ()
+        self.found: ResultList | None = None
         self._asked: tuple[object, ...] = ()
         whole.changed.connect(self.changed)
         self._model.results_changed.connect(self.look)
@@ -151,12 +151,12 @@ class OperatorMode(QObject):
         folder, results = self._model.folder, self._model.results
         asked = (folder, *((step, done.key, done.at) for step, done in sorted(results.items())))
         if folder is None or not self.on or "scan" not in results:
-            self.found, self._asked = (), ()
+            self.found, self._asked = None, ()
         elif asked != self._asked:
-            self.found, self._asked = (), asked
+            self.found, self._asked = None, asked
             self._bench.run_quick(
                 self,
-                jobs.PROJECT_CHARACTERISTICS,
+                jobs.LISTED_RESULTS,
                 folder,
                 label=tr("Reading the results"),
                 on_done=lambda found: self._take(asked, found),

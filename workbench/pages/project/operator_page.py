@@ -154,11 +154,12 @@ class OperatorPage(QWidget):
             return "mdi6.progress-clock", "accent", tr("Measuring …"), self.detail.text()
         if stage is Stage.STOPPED:
             return "mdi6.alert-outline", "warn", tr("Not finished"), self._mode.facts.stopped
-        if not self._mode.found:
+        found = self._mode.found
+        if found is None or not found.rows:
             return "mdi6.check", "text", tr("Measured"), ""
-        worst = self._mode.found[0]
-        symbol, colour = VERDICT_ICONS[worst.verdict]
-        verdict = decision(worst.verdict, wording())
+        worst = found.worst_first[0]
+        symbol, colour = VERDICT_ICONS[found.verdict]
+        verdict = decision(found.verdict, wording())
         line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
         return symbol, "text" if colour == "muted" else colour, verdict, line
 

@@ -7,7 +7,7 @@ import pytest
 from numpy.testing import assert_allclose
 
 from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import Limits, Verdict
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.shown.shown_features import ShownFeature, ShownInspection
@@ -34,7 +34,7 @@ def shown_of(plan):
         kind = "distance" if spec.of else "flatness"
         row = Characteristic(f"{spec.name} {kind}", kind, 0.05, 0.005, limits=spec.limits_of(kind))
         features.append(ShownFeature(spec.name, spec.kind, (row,), len(places), places, places[:, :2]))
-    return ShownInspection(tuple(features), Verdict.NONE, (), "cal-1")
+    return ShownInspection(tuple(features), False, (), "cal-1")
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from PySide6.QtCore import QPoint, Qt
 
 from core.errors import InputError
 from core.files.project.keys import finished
-from core.inspect.conformity import Verdict
 from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.clicked_faces import ClickedFace, ClickedFaces
@@ -67,7 +66,7 @@ POSE = Pose(np.eye(3), np.array([0.0, 0.0, 500.0]))
 def shown_of(plan):
     none = np.zeros((0, 3), np.float32)
     features = tuple(ShownFeature(one.name, one.kind, (), 0, none, none[:, :2]) for one in plan.features)
-    return ShownInspection(features, Verdict.NONE, (), "cal-1", POSE if plan.frame else None)
+    return ShownInspection(features, False, (), "cal-1", POSE if plan.frame else None)
 
 
 @pytest.fixture

@@ -13,7 +13,7 @@ from PySide6.QtWidgets import QAbstractButton, QLabel, QStyleOptionViewItem
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import Limits, Verdict
+from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, PointsOf, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.kinds import KINDS, results_of
@@ -55,7 +55,7 @@ def shown_of(project):
         features.append(
             ShownFeature(spec.name, spec.kind, () if lost else rows, len(places), places, places[:, :2], lost)
         )
-    return ShownInspection(tuple(features), Verdict.NONE, (), "cal-1")
+    return ShownInspection(tuple(features), False, (), "cal-1")
 
 
 def with_drawn(project, **drawn):

@@ -8,7 +8,6 @@ import pytest
 from numpy.testing import assert_allclose
 from PySide6.QtCore import QPoint, Qt
 
-from core.inspect.conformity import Verdict
 from core.inspect.plan.feature_spec import Auto, FaceAt, FeatureSpec, InBox, InSphere
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.clicked_faces import ClickedFace, ClickedFaces
@@ -30,7 +29,7 @@ PLACED = InspectionPlan(
 def shown_of(plan):
     none = np.zeros((0, 3), np.float32)
     features = tuple(ShownFeature(one.name, one.kind, (), 0, none, none[:, :2]) for one in plan.features)
-    return ShownInspection(features, Verdict.NONE, (), "cal-1", POSE if plan.frame else None)
+    return ShownInspection(features, False, (), "cal-1", POSE if plan.frame else None)
 
 
 @pytest.fixture

@@ -1,0 +1,21 @@
+"""The list of all results in a folder, from gauge.json and inspection.json alone."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from core.files.results.gauge_file import read_thickness
+from core.files.results.inspection_file import NAME, read_inspection
+from core.inspect.result_list import ResultList
+
+GAUGE = "gauge.json"
+
+
+def read_results(folder: Path) -> ResultList:
+    """All results in a folder, as far as they are there; InputError if one of the files is damaged."""
+    gauge, inspection = folder / GAUGE, folder / NAME
+    thickness = read_thickness(gauge) if gauge.is_file() else None
+    if not inspection.is_file():
+        return ResultList(thickness)
+    file = read_inspection(inspection)
+    return ResultList(thickness, file.characteristics, file.unmeasured)

@@ -1,0 +1,53 @@
+"""All results on one part as one list, and the one verdict on the part: what every reader of them shows."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+from core.inspect.characteristic import Characteristic, thickness_characteristic
+from core.inspect.conformity import WORST_FIRST, Verdict
+from core.inspect.results import GaugeResult
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class ResultList:
+    """Every result on one part.
+
+    Parameters
+    ----------
+    thickness
+        Of the gauge; None: none was measured.
+    inspected
+        What the features of a plan gave, a further thickness among others.
+    unmeasured
+        Whether a feature with limits could not be measured: that proves nothing.
+    """
+
+    thickness: Characteristic | None = None
+    inspected: tuple[Characteristic, ...] = ()
+    unmeasured: bool = False
+
+    @classmethod
+    def of(
+        cls, gauge: GaugeResult | None, inspected: Iterable[Characteristic] = (), *, unmeasured: bool = False
+    ) -> ResultList:
+        """The same of a thickness as it was measured."""
+        return cls(None if gauge is None else thickness_characteristic(gauge), tuple(inspected), unmeasured)
+
+    @property
+    def rows(self) -> tuple[Characteristic, ...]:
+        """All of them, the gauge's thickness first."""
+        return self.inspected if self.thickness is None else (self.thickness, *self.inspected)
+
+    @property
+    def worst_first(self) -> tuple[Characteristic, ...]:
+        """The same by their verdicts, and those of one verdict by the room that is left to their limits."""
+        order = (*WORST_FIRST, Verdict.NONE)
+        return tuple(sorted(self.rows, key=lambda one: (order.index(one.verdict), one.room)))
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict on the part: the worst of all rows, and at best "not proven" where something is unmeasured."""
+        missing = (Verdict.NOT_PROVEN,) if self.unmeasured else ()
+        return Verdict.worst((*(one.verdict for one in self.rows), *missing))
