@@ -97,6 +97,23 @@ def undo(features):
     features.model.undo_stack.undo()
 
 
+def test_the_card_says_the_verdict_on_the_part_and_none_while_it_is_not_known(presenter, features, page, qtbot):
+    def said():
+        page.refresh()
+        return page.card.words.text(), page.card.sign.isVisible()
+
+    assert said()[0].startswith("Conforming") and said()[1]
+    asked = FeatureSpec("step", "thickness", limits=(("thickness", Limits(50.0, -0.015, 0.02)),))
+    features.put(asked)
+    measured(features, qtbot)
+    assert said()[0].startswith("Not proven") and said()[1], "as the report"
+    features.put(replace(asked, limits=(("thickness", Limits(50.0, -0.2, 0.2)),)), "step")
+    assert features.shown is None
+    assert not said()[1] and "proven" not in said()[0]
+    measured(features, qtbot)
+    assert said()[0].startswith("Conforming")
+
+
 # ---- the plan
 
 
