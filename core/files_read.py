@@ -10,7 +10,7 @@ _told: set[Path] = set()
 
 
 def listen(listener: Callable[[Path], None] | None) -> None:
-    """Have each file told that is read from now on; None: nobody wants to know it."""
+    """Have each file told that is read from now on; None: no file is told."""
     global _listener
     _listener = listener
     _told.clear()

@@ -62,7 +62,7 @@ def test_a_glossy_part_is_told_with_how_much_less_to_expose(gloss, stops):
     (note,) = shine_of(replace(RIG, gloss=gloss))
     assert note.code == "scan.shines"
     assert stops[0] <= note.values["stops"] <= stops[1]
-    assert "f-stops less" in str(note)
+    assert "EV less" in str(note)
 
 
 @pytest.mark.parametrize(
