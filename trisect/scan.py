@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from core.calibrate.change import Stability, changes, judge
-from core.calibrate.deviations import calibration_deviations
+from core.calibrate.change import Change, Evidence, Stability, changes, judge
+from core.calibrate.deviations import Deviation, calibration_deviations
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, FanCalibration
 from core.calibrate.rig_spread import stability_by_pictures
 from core.errors import InputError
@@ -19,19 +20,19 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
-from core.model import Camera, Fan, LightPlane
-from core.pipeline.steps.scan_step import assumed_shutter, with_facts_of
+from core.model import Camera, LightPlane
+from core.pipeline.steps.scan.judgement import judged_scan, solved_scan
+from core.pipeline.steps.scan.notes import assumed_shutter
 from core.pipeline.steps.validity import facts_of_planes
+from core.pipeline.steps.workspace import Calibration
 from core.progress import Progress, silent
-from core.scan.bend_correction import reconstruct_twice
-from core.scan.common_errors import CommonErrors, solve_common
+from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_features, read_reference
 from core.scan.features.overexposure import notes_on_shine
-from core.scan.features.picture_faults import faults_first, faults_of
+from core.scan.features.picture_faults import faults_of
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import ScanResult
-from core.scan.scan_evidence import scan_evidence
 from core.scan.surface import fusion, mesh
 from core.scan.surface import triangulate as triangulation
 from core.scan.surface.cloud import Cloud
@@ -217,10 +218,26 @@ def solve_scan(
     sweeps = [piece for frame in features.frames for piece in frame.centrelines]
     faults = (*faults_of(seen), *notes_on_shine(features.fan, sweeps, seen.full_scale))
     features = replace(features, notes=(*faults, *features.notes))
-    with faults_first(features.notes):
-        even, scan = reconstruct_twice(features, camera.camera, fan.fan, solving, progress)
-    scan = replace(scan, notes=(*scan.notes, *assumed_shutter(solving.row_time_us, scan)))
-    return _judged(even, scan, camera, fan, stability, progress)
+    calibration = Calibration(camera, fan)
+    solved = solved_scan(features, calibration, solving, progress)
+    change_by = partial(_change_by_scan, calibration, stability)
+    judgement = judged_scan(solved, change_by, facts_of_planes(fan), progress=progress)
+    cloud = with_normals(solved.scan.cloud, progress=progress)
+    cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
+    notes = (*solved.scan.notes, *assumed_shutter(solving.row_time_us, solved.scan))
+    scan = replace(solved.scan, cloud=cloud, notes=notes)
+    notes = gravest_first((*judgement.notes, *notes))
+    return SolvedScan(cloud, scan, solved.features, judgement.common, judgement.facts, notes)
+
+
+def _change_by_scan(
+    calibration: Calibration, stability: Stability | None, evidence_of: Callable[[Sequence[Deviation]], Evidence]
+) -> Change:
+    """What may have changed since the calibration, by the pictures of the scan alone."""
+    camera, fan = calibration.camera.camera, calibration.fan.fan
+    deviations = (*calibration_deviations(calibration.camera, calibration.fan), *changes(camera, fan))
+    evidence = evidence_of(deviations)
+    return judge(camera, fan, deviations, evidence, stability, assumed=stability_by_pictures(deviations, evidence))
 
 
 def _checked(options: ReconstructOptions) -> ReconstructOptions:
@@ -257,28 +274,6 @@ def _check_known(camera: CameraCalibration) -> None:
 
 def _name(number: int) -> str:
     return f"frame {number + 1}"
-
-
-def _judged(
-    features: ScanFeatures,
-    scan: ScanResult,
-    camera: CameraCalibration,
-    fan: FanCalibration,
-    stability: Stability | None,
-    progress: Progress,
-) -> SolvedScan:
-    """Reckon what the calibrations, and what may have changed since, do to a scan, and whether it proves anything."""
-    calibrated: tuple[Camera, Fan] = camera.camera, fan.fan
-    deviations = (*calibration_deviations(camera, fan), *changes(*calibrated))
-    evidence = scan_evidence(features, scan, *calibrated, deviations)
-    assumed = stability_by_pictures(deviations, evidence)
-    change = judge(*calibrated, deviations, evidence, stability, assumed=assumed)
-    common = solve_common(features, scan, *calibrated, change.deviations, progress=progress)
-    cloud = with_normals(scan.cloud, progress=progress)
-    cloud = replace(cloud, sigma_common=common.sigma(cloud))
-    facts = with_facts_of(scan, change, None, facts_of_planes(fan))
-    notes = gravest_first((*facts.all_doubts, *change.notes, *scan.notes))
-    return SolvedScan(cloud, replace(scan, cloud=cloud), features, common, facts, notes)
 
 
 def fuse(cloud: Cloud, image_size: tuple[int, int], *, progress: Progress = silent) -> Surface:

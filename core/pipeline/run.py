@@ -23,7 +23,7 @@ from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import readjust_step
 from core.pipeline.steps.report_step import prepare_report, report_step
-from core.pipeline.steps.scan_pictures import SeenScan, look_at_scan
+from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent

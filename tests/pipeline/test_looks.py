@@ -16,7 +16,7 @@ from core.files.recording.recording_set import open_set
 from core.files.results.scan_file import read_scan
 from core.pipeline.project.details import recall_poses, show_frame, show_pose
 from core.pipeline.project.frame_stages import frame_stages
-from core.pipeline.steps.scan_pictures import look_at_scan
+from core.pipeline.steps.scan.pictures import look_at_scan
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario

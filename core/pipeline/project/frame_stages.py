@@ -17,7 +17,7 @@ from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
-from core.pipeline.steps.scan_pictures import at_sites, feature_options, of_whole, reference_picture, taken_frames
+from core.pipeline.steps.scan.pictures import at_sites, feature_options, of_whole, reference_picture, taken_frames
 from core.progress import Progress, StepProgress, silent
 from core.scan.features.extraction import (
     LOOK_AHEAD,

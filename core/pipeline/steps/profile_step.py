@@ -25,12 +25,11 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
-from core.pipeline.steps.scan_pictures import feature_options, taken_frames
-from core.pipeline.steps.scan_step import section_change
+from core.pipeline.steps.scan.judgement import SectionChange, facts_of, section_change
+from core.pipeline.steps.scan.pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
 from core.progress import Progress, silent
-from core.scan import changed_section
 from core.scan.common_errors import CommonErrors
 from core.scan.features.frames import FrameRecord
 from core.scan.profiles import Profiles, read_profiles
@@ -97,7 +96,7 @@ def profile_step(
         looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
         change = since_calibration(found, calibration, options, progress)
         common = CommonErrors.of_fan(camera, fan, change.deviations)
-        section: changed_section.ChangedSection | None = None
+        section: SectionChange | None = None
         seen: list[Profiles] = []
         steps, pictures = [], []
         stream = found.stream(paths)
@@ -115,8 +114,7 @@ def profile_step(
             if not seen:  # pictures of one place have one speckle: together they tell no more than the first
                 section = section_change(work, calibration, profiles.pieces)
             if not seen and section is not None:
-                aside = section.deviation(profiles.pieces, camera, fan)
-                common = CommonErrors.of_fan(camera, fan, (*change.deviations, aside))
+                common = CommonErrors.of_fan(camera, fan, (*change.deviations, section.deviation))
             seen.append(profiles)
             step = step_of(
                 _within(profiles.cloud, spec), replace(PointErrors.of_fan(profiles.pieces, common), part=part), known
@@ -135,15 +133,7 @@ def profile_step(
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
         of_section = () if section is None else (section.note,)
-        facts = replace(
-            facts_of_the_day(work, calibration),
-            moved=False,
-            drifted=False,
-            collapsed=False,
-            rig_changed=change.surely,
-            rig_seems_changed=change.seemingly,
-            section_changed=section is not None,
-        )
+        facts = facts_of(facts_of_the_day(work, calibration), change, section)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
         for doubt in reversed(facts.all_doubts):

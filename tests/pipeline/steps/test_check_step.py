@@ -37,8 +37,11 @@ from core.pipeline.steps.check_step import check_step, measure_check, since_cali
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
-from core.pipeline.steps.scan_pictures import look_at_scan
-from core.pipeline.steps.scan_step import Measured, notes_on_focus, scan_step, section_change
+from core.pipeline.steps.scan.judgement import section_change
+from core.pipeline.steps.scan.notes import notes_on_focus
+from core.pipeline.steps.scan.pictures import look_at_scan
+from core.pipeline.steps.scan.results import Measured
+from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import facts_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.wording import decision_sentence, verdict_sentence

@@ -13,7 +13,7 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
@@ -202,7 +202,8 @@ def stream_frames(recording_set: RecordingSet, options: Options, times: StageTim
 
 
 def require_frames(recording_set: RecordingSet, options: Options) -> None:
-    """InputError if all frames are left out by hand."""
+    """InputError if there are no frames, or all are left out by hand."""
+    require_scan(recording_set)
     if not taken_frames(recording_set, options):
         raise InputError(
             Message(

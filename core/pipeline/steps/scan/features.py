@@ -1,0 +1,81 @@
+"""What the pictures of a scan show: kept of an earlier scan, looked at beside, or looked at now."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
+from core.model import Camera, Fan
+from core.pipeline.steps.kept_features import kept_features
+from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
+from core.pipeline.steps.workspace import Calibration, check_size
+from core.progress import Progress
+from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
+from core.scan.preview.frames import Preview
+from core.scan.preview.shown import FramePreview
+
+
+def scan_features(
+    recording_set: RecordingSet,
+    calibration: Calibration,
+    options: Options,
+    progress: Progress,
+    watch: Callable[[FramePreview], None] | None = None,
+    earlier: Path | None = None,
+    seen: Callable[[], SeenScan] | None = None,
+) -> ScanFeatures:
+    """Centrelines and crossings of all pictures of a scan, and the notes on them.
+
+    Parameters
+    ----------
+    recording_set, calibration, options, progress
+        What is looked at, how, and who is told. The set learns the hashes of the pictures and the channel they are
+        seen in.
+    watch
+        Shown each frame with what it would give by itself, if the pictures are looked at now.
+    earlier
+        A scan.npz, whose features are taken if they are those of these pictures, settings and camera.
+    seen
+        Gives what the pictures show, if they are looked at already.
+
+    Raises
+    ------
+    InputError
+        If the reference shows no line of the fan, no frame a sweep, or a picture has another size than the camera's.
+    """
+    camera = calibration.camera.camera
+    kept = kept_features(earlier, recording_set, options, camera, progress) if earlier is not None else None
+    if kept is not None and kept.image_size == camera.image_size:
+        return kept
+    if seen is None:
+        watching = None if watch is None else _watching(watch, camera, calibration.fan.fan)
+        looked = look_at_scan((recording_set, options), progress=progress, camera=camera, watching=watching)
+    else:
+        looked = seen()
+    width, height = looked.lines.image_size
+    check_size(looked.reference, (height, width), camera)
+    recording_set.hashes.update(looked.hashes)
+    recording_set.chosen.update(looked.chosen)
+    features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
+    return replace(features, notes=(*looked.notes, *features.notes))
+
+
+def _watching(
+    watch: Callable[[FramePreview], None], camera: Camera, fan: Fan
+) -> Callable[[ReferenceFeatures], Callable[[FrameFeatures], None]]:
+    """How each frame is shown with what it would give by itself, once the reference is read."""
+
+    def watching(reference: ReferenceFeatures) -> Callable[[FrameFeatures], None]:
+        preview = Preview(reference, camera, fan)
+
+        def show(features: FrameFeatures) -> None:
+            watch(preview(features))
+            while preview.has_more:
+                preview.go_on()
+
+        return show
+
+    return watching

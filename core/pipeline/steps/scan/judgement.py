@@ -1,0 +1,160 @@
+"""What calibrations, and changes since then, do to a solved scan, and whether anything measured in it is proof."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+from core.calibrate.change import Change, Evidence
+from core.calibrate.deviations import Deviation
+from core.errors import InputError
+from core.files.recording.features_file import read_poses
+from core.files.results.fan_file import fan_id
+from core.findings.proof import ScanFacts
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
+from core.pipeline.steps.workspace import Calibration, Workspace
+from core.progress import Progress, silent
+from core.scan.bend_correction import reconstruct_twice
+from core.scan.changed_section import changed_section
+from core.scan.common_errors import CommonErrors, solve_common
+from core.scan.features.extraction import ScanFeatures
+from core.scan.features.picture_faults import faults_first
+from core.scan.method import Method
+from core.scan.reconstruct import ReconstructOptions
+from core.scan.results import ScanResult
+from core.scan.scan_evidence import scan_evidence
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Solved:
+    """A solved scan, the features it rests on in the end, and the calibration it was solved with."""
+
+    features: ScanFeatures
+    scan: ScanResult
+    calibration: Calibration
+
+    def evidence(self, deviations: Sequence[Deviation]) -> Evidence:
+        """What the scan says of K deviations of camera and fan."""
+        return scan_evidence(
+            self.features, self.scan, self.calibration.camera.camera, self.calibration.fan.fan, deviations
+        )
+
+
+@dataclass(frozen=True, slots=True)
+class SectionChange:
+    """What is told of stripes that are skewed otherwise than in the fan's calibration, and what that may do."""
+
+    note: Message
+    deviation: Deviation
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Judgement:
+    """What a scan is worth.
+
+    Parameters
+    ----------
+    change, section
+        What may have changed since the calibration, of camera and fan and of the fan's light.
+    common
+        What displaced calibrations, and these changes, do to the scan.
+    facts
+        What decides whether anything measured in it can prove conformity.
+    """
+
+    change: Change
+    section: SectionChange | None
+    common: CommonErrors
+    facts: ScanFacts
+
+    @property
+    def notes(self) -> tuple[Message, ...]:
+        """What changed, and why nothing measured is proof."""
+        of_section = () if self.section is None else (self.section.note,)
+        return (*self.change.notes, *of_section, *self.facts.all_doubts)
+
+
+def solved_scan(
+    features: ScanFeatures, calibration: Calibration, options: ReconstructOptions, progress: Progress
+) -> Solved:
+    """Solve a scan, and again where its surface bends.
+
+    Raises
+    ------
+    InputError
+        If it cannot be solved; what is wrong with its pictures is told first.
+    """
+    with faults_first(features.notes):
+        found = reconstruct_twice(features, calibration.camera.camera, calibration.fan.fan, options, progress)
+    return Solved(*found, calibration)
+
+
+def judged_scan(
+    solved: Solved,
+    change_by: Callable[[Callable[[Sequence[Deviation]], Evidence]], Change],
+    of_the_day: ScanFacts,
+    section: SectionChange | None = None,
+    method: Method = Method.NETWORK,
+    progress: Progress = silent,
+) -> Judgement:
+    """Reckon what calibrations, and what changed since, do to a scan, and whether anything in it is proof.
+
+    Parameters
+    ----------
+    solved, method
+        The scan, and how its sweeps were located: only the network says anything of the calibrations.
+    change_by
+        Gives what has changed, by what the scan says of deviations, and all else that is known.
+    of_the_day
+        The facts of the planes' calibration, and of the day of the scan.
+    section
+        How the fan's light has changed, if it surely has.
+    progress
+        Called with how far it is.
+
+    Raises
+    ------
+    InputError
+        If the scan cannot be solved with a displaced calibration.
+    """
+    camera, fan = solved.calibration.camera.camera, solved.calibration.fan.fan
+    change = change_by(solved.evidence if method == Method.NETWORK else _nothing)
+    deviations = change.deviations if section is None else (*change.deviations, section.deviation)
+    common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
+    return Judgement(change, section, common, facts_of(of_the_day, change, section, solved.scan))
+
+
+def _nothing(deviations: Sequence[Deviation]) -> Evidence:
+    return Evidence.none(len(deviations))
+
+
+def facts_of(
+    of_the_day: ScanFacts, change: Change, section: SectionChange | None, scan: ScanResult | None = None
+) -> ScanFacts:
+    """The facts of the planes and the day, with those that the pictures show; within one picture nothing moves."""
+    return replace(
+        of_the_day,
+        moved=scan is not None and scan.moved,
+        drifted=scan is not None and scan.drifted,
+        collapsed=scan is not None and scan.collapsed,
+        rig_changed=change.surely,
+        rig_seems_changed=change.seemingly,
+        section_changed=section is not None,
+    )
+
+
+def section_change(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> SectionChange | None:
+    """How the stripes of the `fan` are skewed otherwise than in its calibration, if they surely are.
+
+    None where its poses are not kept. A re-adjusted fan rests on stripes of the day.
+    """
+    camera, of = calibration.camera.camera, calibration.fan
+    if of.readjusted is not None:
+        return None
+    try:
+        poses = read_poses(work.path("poses"), fan_id(of.fan))
+    except InputError:  # the notes on focus tell
+        return None
+    found = changed_section([pose.centrelines for pose in poses], fan, camera, of.fan)
+    return None if found is None else SectionChange(found.note, found.deviation(fan, camera, of.fan))

@@ -1,0 +1,84 @@
+"""All notes of a scan, in one order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from core.errors import InputError
+from core.files.recording.features_file import read_poses
+from core.files.recording.recording_log import lost_frames, read_log
+from core.files.recording.recording_set import RecordingSet
+from core.files.results.fan_file import fan_id
+from core.findings.table import gravest_first
+from core.image.stripes.centreline import Centreline
+from core.messages import Field, Message, plural_message
+from core.pipeline.steps.check_step import assumed_stability
+from core.pipeline.steps.scan.judgement import Judgement
+from core.pipeline.steps.workspace import Calibration, Workspace
+from core.scan.features.frames import left_out_notes
+from core.scan.preview.preflight import other_focus, stripe_width
+from core.scan.results import ScanResult
+
+
+def notes_on_scan(
+    work: Workspace, calibration: Calibration, fan: Sequence[Centreline], scan: ScanResult, judgement: Judgement
+) -> tuple[Message, ...]:
+    """All that is told of a scan, the gravest first; `fan` are the centrelines of the fan in its reference."""
+    recording_set, readjusted = work.recording_set, calibration.fan.readjusted
+    return gravest_first(
+        (
+            *judgement.notes,
+            *left_out_notes(scan.frames),
+            *notes_on_focus(work, calibration, fan),
+            *(() if readjusted is None else (readjusted.note,)),
+            *scan.notes,
+            *assumed_stability(recording_set, judgement.change, calibration.fan),
+            *assumed_shutter(recording_set.rig.row_time_us, scan),
+            *notes_on_lost_frames(recording_set),
+        )
+    )
+
+
+def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> tuple[Message, ...]:
+    """A note if the fan's stripes are much wider than in its calibration; none where its poses are not kept."""
+    of = calibration.fan
+    try:
+        poses = read_poses(work.path("poses"), fan_id(of.fan) if of.readjusted is None else of.readjusted.of)
+    except InputError as error:  # the scan needs nothing of them
+        return (error.message,)
+    then, now = stripe_width(line for pose in poses for line in pose.centrelines), stripe_width(fan)
+    note = None if then is None or now is None else other_focus(now, then)
+    return () if note is None else (note,)
+
+
+def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Message, ...]:
+    """Give a note if nothing says how the camera reads its rows out: the sweeps of a steady hand do not either."""
+    if row_time_us is not None or scan.read_out.moves:
+        return ()
+    return (
+        Message(
+            "scan.shutter_assumed",
+            "Whether the camera's shutter is global or rolling is not stated ({field}); assumed is a "
+            "global one. With a rolling one and a hand that moves, points are off by more than their σ says. State 0 "
+            "for a global shutter.",
+            field=Field("[camera] row_time_us"),
+        ),
+    )
+
+
+def notes_on_lost_frames(recording_set: RecordingSet) -> tuple[Message, ...]:
+    """A note if frames were lost while a live scan was recorded."""
+    try:
+        lost = lost_frames(read_log(recording_set.frames[0].parent))
+    except InputError as error:
+        return (error.message,)
+    if not lost:
+        return ()
+    return (
+        plural_message(
+            "scan.frames_lost",
+            "{n} frame was lost while recording: camera, computer or disk were too slow.",
+            "{n} frames were lost while recording: camera, computer or disk were too slow.",
+            n=lost,
+        ),
+    )

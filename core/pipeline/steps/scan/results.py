@@ -1,0 +1,80 @@
+"""What the scan step gives: in memory, and in cloud.ply, mesh.ply and scan.npz."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from core.files.recording.options import Options
+from core.files.recording.recording_set import RecordingSet
+from core.files.results.ply import write_cloud, write_mesh
+from core.files.results.scan_file import ScanFile, write_scan
+from core.pipeline.steps.kept_features import features_key
+from core.pipeline.steps.scan.judgement import Judgement
+from core.pipeline.steps.workspace import Calibration, StepLog
+from core.progress import Progress
+from core.scan.features.extraction import ScanFeatures
+from core.scan.network.adjustment import SILENCED
+from core.scan.results import FrameRecord, ScanResult
+from core.scan.surface.fused_surface import Mesh
+from core.stage_times import StageTimes, stage
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Measured:
+    """What the scan step gives in memory; the same is in its files."""
+
+    scan: ScanResult
+    mesh: Mesh
+
+
+def write_measured(log: StepLog, measured: Measured, file: ScanFile, progress: Progress) -> None:
+    """Write cloud, mesh and scan.npz in place of profiles; a StageTimes learns what that costs.
+
+    Raises
+    ------
+    InputError
+        If one of them cannot be written.
+    """
+    with stage(progress if isinstance(progress, StageTimes) else None, "writing"):
+        log.gone.update(("profiles", "profile", "profile_table"))
+        write_cloud(log.path("cloud"), measured.scan.cloud, file.calibration_id)
+        write_scan(log.path("scan"), file)
+        write_mesh(log.path("mesh"), measured.mesh, file.calibration_id)
+
+
+def scan_file(
+    features: ScanFeatures,
+    scan: ScanResult,
+    judgement: Judgement,
+    calibration: Calibration,
+    recording_set: RecordingSet,
+    options: Options,
+) -> ScanFile:
+    """What scan.npz is to hold of a scan; the hashes of the pictures in the set must have been taken."""
+    shown = _shown(scan.frames)
+    mine = (scan.crossings.a == shown) & scan.crossings.with_fan & (scan.crossing_weights > SILENCED)
+    return ScanFile(
+        features=features,
+        pis=scan.pis,
+        covariance=scan.covariance,
+        sweep_frames=scan.sweep_frames,
+        fan_line=scan.fan_lines.line,
+        crossings_used=np.asarray(scan.crossings.uv[mine]),
+        shown=shown,
+        calibration_id=calibration.id,
+        features_key=features_key(recording_set, options, calibration.camera.camera),
+        speckle=scan.speckle,
+        second_bounces=tuple(sorted(scan.second_bounces.pieces)),
+        unsure_share=scan.unsure_share,
+        common=judgement.common,
+        change_p=judgement.change.p,
+        facts=judgement.facts,
+    )
+
+
+def _shown(frames: tuple[FrameRecord, ...]) -> int | None:
+    """The frame to show: of those that meet most lines of the fan, the one with most points."""
+    used = [frame for frame in frames if frame.used]
+    return max(used, key=lambda frame: (frame.fan_lines_met, frame.points, -frame.index)).index if used else None
