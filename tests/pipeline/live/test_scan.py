@@ -120,7 +120,7 @@ def test_recording_does_not_wait_for_a_slow_window_nor_for_the_preview(monkeypat
 
 
 def test_points_of_frames_that_were_not_shown_come_with_the_next_view(monkeypatch, tmp_path, stage):
-    source = swept(stage, 50, pace_s=0.04)
+    source = swept(stage, 50, pace_s=0.1)  # so slow that a busy machine previews more frames than it shows
     window = Window(ready=lambda: source.counted == 50)  # however long the reference takes
     scan(monkeypatch, tmp_path, stage, source, window)
     frames = np.unique(np.concatenate([detail.points.frame for detail in window.details]))
