@@ -21,6 +21,11 @@ SET_STATES = {
 }  # fmt: skip
 """Of each of many recording sets."""
 
+VERDICT = label("verdict")
+"""What was decided, as it is called."""
+SPREAD = label("s (n − 1)")
+"""The standard deviation of repeats about their mean, as it is called."""
+
 DECISIONS = {
     "conforming": label("conforming"),
     "not conforming": label("not conforming"),

@@ -32,7 +32,7 @@ from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
-from core.states import CHECKS, DECISIONS
+from core.states import CHECKS, DECISIONS, VERDICT
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
 
@@ -183,7 +183,7 @@ def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
         rows.append((tr("nominal"), limits))
         rows.append((tr("deviation"), f"{words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
     decided = tr(DECISIONS[verdict]) if verdict else tr("none: rig.toml states no nominal value")
-    rows.append((tr("verdict"), decided))
+    rows.append((tr(VERDICT), decided))
     upper, lower = gauge.points_used
     flatness = tr(
         "{above:.3f} mm above, {below:.3f} mm below (95 % of points)",

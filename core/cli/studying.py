@@ -20,7 +20,7 @@ from core.messages import Message, plural_message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
 from core.report.wording import decimals_of, study_name
-from core.states import DECISIONS
+from core.states import DECISIONS, SPREAD, VERDICT
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
 from core.study.budget import UncertaintyBudget, from_budgets, from_stated
 from core.study.capability import LIMIT as CAPABILITY
@@ -259,7 +259,7 @@ def study_rows(study: Study) -> Rows:
             found = [row for one in study.quantities for row in _quantity(one)]
         case SeriesStudy():
             found = _series(study)
-    return [*found, (tr("verdict"), tr(DECISIONS[study.verdict]) if study.verdict else tr("none: no limit was given"))]
+    return [*found, (tr(VERDICT), tr(DECISIONS[study.verdict]) if study.verdict else tr("none: no limit was given"))]
 
 
 def _repeats(study: RepeatStudy) -> Rows:
@@ -282,7 +282,7 @@ def _repeats(study: RepeatStudy) -> Rows:
                 )
             ),
         ),
-        (tr("STD (n − 1)"), shown(found.std_mm)),
+        (tr(SPREAD), shown(found.std_mm)),
     ]
     if study.nominal is not None:
         lines += [

@@ -370,6 +370,6 @@ def test_a_decision_stands_in_one_line(name, verdict):
 
 @pytest.mark.parametrize("name", ["en", "de"])
 def test_no_head_of_the_result_breaks_within_a_word(name):
-    heads = ("nominal", "permitted", "measured", "U", "k", "deviation", "decision")
+    heads = ("nominal", "permitted", "measured", "U", "k", "deviation", "verdict")
     for width, head in zip(WIDTHS, heads, strict=True):
         assert words_width(Words.of(name)(head), SANS, 7) < width - 6, head  # its padding

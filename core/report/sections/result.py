@@ -46,6 +46,7 @@ from core.report.wording import (
     value_parts,
     with_unit,
 )
+from core.states import VERDICT
 
 PADDING = 5 * mm  # of the box, inside
 BADGE = 46 * mm  # width of the decision's mark
@@ -183,7 +184,7 @@ def characteristics_table(
 ) -> Table:
     """One row for each characteristic, its name leading to its key, if it has one."""
     head = heads(
-        look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", "decision",
+        look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", VERDICT,
         numbers=range(1, 7),
     )  # fmt: skip
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]

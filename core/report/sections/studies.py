@@ -15,7 +15,7 @@ from core.report.content import ReportContent
 from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, heads, plain_table, ruled_table, section
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.wording import decimals_of, study_name
-from core.states import DECISIONS
+from core.states import DECISIONS, SPREAD, VERDICT
 
 TITLES = {
     "repeats": label("Repeats of {name}"),
@@ -95,7 +95,7 @@ def _named(look: ReportLook, study: Study) -> dict[str, str]:
 
 def _parts(look: ReportLook, study: Study) -> list[Flowable]:
     """Figures and tables of one study."""
-    verdict = {look.words("verdict"): look.words(DECISIONS[study["verdict"]])} if study["verdict"] else {}
+    verdict = {look.words(VERDICT): look.words(DECISIONS[study["verdict"]])} if study["verdict"] else {}
     match study["kind"]:
         case "repeats":
             return [_figures(look, _repeats(look, study) | verdict)]
@@ -117,7 +117,7 @@ def _repeats(look: ReportLook, study: Study) -> dict[str, str]:
         words("mean"): study["mean"],
         words("error"): study["error"],
         words("RMSE"): study["rmse"],
-        words("s (n − 1)"): spread,
+        words(SPREAD): spread,
         words("largest error"): study["largest_error"],
         words("U of the mean"): budget["U"],
     }
@@ -130,7 +130,7 @@ def _type1(look: ReportLook, study: Study) -> dict[str, str]:
         words("reference value"): study["reference"],
         words("T"): study["tolerance_width"],
         words("mean"): study["mean"],
-        words("s (n − 1)"): study["s"],
+        words(SPREAD): study["s"],
         words("bias"): study["bias"],
     }
     ratios = {words("Cg"): _ratio(look, study["cg"]), words("Cgk"): _ratio(look, study["cgk"])}
@@ -144,7 +144,7 @@ def _series(look: ReportLook, study: Study) -> dict[str, str]:
         words("lower limit"): study["lower_limit"],
         words("upper limit"): study["upper_limit"],
         words("mean"): study["mean"],
-        words("s (n − 1)"): study["s"],
+        words(SPREAD): study["s"],
     }
     known = {name: value if value is not None and math.isfinite(value) else None for name, value in limits.items()}
     found = {words("n"): f"{study['n']}"} | _lengths(look, known, decimals, unit)
@@ -198,7 +198,7 @@ def _ratio(look: ReportLook, value: float) -> str:
 def _quantities(look: ReportLook, study: Study) -> Flowable:
     words = look.words
     rows: list[list[Flowable]] = [
-        heads(look, "Quantity", "positions", "largest error, mm", "at", "limit, mm", "decision", numbers=(1, 2, 4))
+        heads(look, "Quantity", "positions", "largest error, mm", "at", "limit, mm", VERDICT, numbers=(1, 2, 4))
     ]
     rows += [
         [

@@ -10,7 +10,7 @@ from core.files.csv_text import harmless
 from core.files.project.data import Repeat
 from core.messages import capital
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
-from core.states import DECISIONS
+from core.states import DECISIONS, SPREAD
 from core.study.repeats import RepeatStatistics
 from workbench.language import number, text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
@@ -112,7 +112,7 @@ def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> l
             "",
         ),
         (tr("RMSE"), mm(statistics.rmse_mm), tr("Root mean square of the single errors"), ""),
-        (tr("STD"), std, tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
+        (tr(SPREAD), std, tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
         (tr("Largest error"), mm(statistics.largest_error_mm), tr("Largest magnitude of a single error"), ""),
     ]
     return rows
@@ -188,7 +188,7 @@ def repeats_tsv(
             (tr("mean [mm]"), statistics.mean_mm),
             (tr("error of the mean [mm]"), statistics.error_mm),
             ("RMSE [mm]", statistics.rmse_mm),
-            ("STD [mm]", statistics.std_mm),
+            (f"{tr(SPREAD)} [mm]", statistics.std_mm),
             (tr("largest error [mm]"), statistics.largest_error_mm),
         )
         lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]

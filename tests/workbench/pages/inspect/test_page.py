@@ -539,7 +539,7 @@ def test_a_repeat_is_added_shown_and_refused_twice(shown, qtbot):
     shown.refreshing.at_once()
     assert table.rows()[0][:4] == ("scan-1", "50.012", "±\u00a00.024", "cal-1")
     assert shown.series.rows.text_of("Mean") == "50.0120 mm"
-    assert shown.series.rows.text_of("STD") == "needs two repeats"
+    assert shown.series.rows.text_of("s (n − 1)") == "needs two repeats"
     again = shown.card.buttons["repeat"]
     shown.refreshing.at_once()
     assert not again.isEnabled() and again.toolTip().startswith("This scan is among the repeats already.")

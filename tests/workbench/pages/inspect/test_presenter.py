@@ -477,7 +477,7 @@ def test_the_series_is_copied_with_all_digits(shown):
     assert lines[1].split("\t")[:2] == ["recordings/scan-2", "50.012346"]
     assert lines[1].split("\t")[5].startswith("2025-03-04T10:30:00")
     assert [line.split("\t")[0] for line in lines[4:]] == [
-        "mean [mm]", "error of the mean [mm]", "RMSE [mm]", "STD [mm]", "largest error [mm]",
+        "mean [mm]", "error of the mean [mm]", "RMSE [mm]", "s (n − 1) [mm]", "largest error [mm]",
     ]  # fmt: skip
 
 

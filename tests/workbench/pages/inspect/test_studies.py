@@ -113,7 +113,7 @@ def test_an_acceptance_check_has_its_limits(tab, studies, qtbot):
     tab.editor.make.click()
     made(studies, qtbot)
     tab.window().refreshing.at_once()
-    assert tab.rows.text_of("Decision") == "not conforming" and "not a certificate" in tab.notes.text()
+    assert tab.rows.text_of("Verdict") == "not conforming" and "not a certificate" in tab.notes.text()
     assert tab.table.copied().split("\n")[1].split("\t")[1:4] == ["2", "+0.0300", "right"]
 
 
@@ -136,7 +136,7 @@ def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(ta
     tab.window().refreshing.at_once()
     assert all(chart.isVisible() for chart in tab.charts)
     assert tab.charts[1].axis_text("left") == "moving range [mm]"
-    assert tab.rows.text_of("Decision") == "not proven" and "(" in tab.rows.text_of("Cpk")
+    assert tab.rows.text_of("Verdict") == "not proven" and "(" in tab.rows.text_of("Cpk")
     assert tab.table.copied().split("\n")[26].split("\t")[0::2] == ["part 26", "1"]
     assert "part 26" in tab.notes.text()
 
@@ -161,7 +161,7 @@ def test_a_short_series_draws_no_limits_and_says_why(tab, studies, qtbot):
     made(studies, qtbot)
     tab.window().refreshing.at_once()
     assert not any(chart.isVisible() for chart in tab.charts)
-    assert "20 or more" in tab.notes.text() and tab.rows.text_of("Decision") == "not proven"
+    assert "20 or more" in tab.notes.text() and tab.rows.text_of("Verdict") == "not proven"
 
 
 def test_rows_of_other_projects_and_of_a_file_go_into_the_table(tab, studies, presenter, qtbot, monkeypatch, tmp_path):

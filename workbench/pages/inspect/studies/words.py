@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from core.messages import capital
 from core.model.arrays import Array
-from core.states import DECISIONS
+from core.states import DECISIONS, VERDICT
 from core.study.series_chart import RULE_WORDS, Chart
 from workbench.language import joined, named, number, text_of, tr
 from workbench.pages.inspect import words as inspect_words
@@ -106,7 +107,12 @@ def _shown(chart: Chart, count: int, label_of: Callable[[int], str], axes: tuple
 
 def verdict_row(verdict: str) -> ValueRow:
     """What was decided."""
-    return tr("Decision"), tr(DECISIONS[verdict]) if verdict else tr("no limit stated"), "", LEVELS.get(verdict, "")
+    return (
+        capital(tr(VERDICT)),
+        tr(DECISIONS[verdict]) if verdict else tr("no limit stated"),
+        "",
+        LEVELS.get(verdict, ""),
+    )
 
 
 def _grr_rows(study: GrrStudy) -> list[ValueRow]:
@@ -169,7 +175,7 @@ def _quantities(study: AcceptanceCheck) -> Table:
         (tr("Largest error"), "mm"),
         (tr("At"), ""),
         (tr("Limit"), "mm"),
-        (tr("Decision"), ""),
+        (capital(tr(VERDICT)), ""),
     ]
     body: list[Sequence[str]] = [
         [
