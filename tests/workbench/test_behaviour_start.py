@@ -94,7 +94,9 @@ except Stopped:
 @pytest.mark.skipif(sys.platform == "win32", reason="a program is ended without a word there")
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGHUP"])
 def test_ended_by_a_signal_it_leaves_no_temporary_folder_of_saved_code(tmp_path: Path, name: str) -> None:
-    program = """
+    program = f"""
+import signal
+signal.signal(signal.{name}, signal.default_int_handler)  # some who run tests ignore it
 from PySide6.QtCore import QCoreApplication, QTimer
 from core.code_cache import code_cache
 from workbench.app import remove_cache_before_signals_end
@@ -116,5 +118,8 @@ app.exec()
         assert window.stdout.readline() == "waits\n"
         assert [path.name[:17] for path in (tmp_path / "temporary").iterdir()] == ["trisect-compiled-"]
         window.send_signal(getattr(signal, name))
-        assert window.wait(20) == -getattr(signal, name)
+        try:
+            assert window.wait(60) == -getattr(signal, name)
+        finally:
+            window.kill()
     assert list((tmp_path / "temporary").iterdir()) == []
