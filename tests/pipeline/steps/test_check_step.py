@@ -576,7 +576,8 @@ def test_a_step_is_compared_by_its_height_in_the_inspection(measured, simulated,
 def inspected(names, budget=()):
     """Results whose inspection has these heights of steps."""
     rows = [Characteristic(name, "height", 20.0, 0.01, budget=budget) for name in names]
-    return InspectionFile(tuple(rows), {"stairs": "steps"}, (), (), {}, dict.fromkeys(names, "stairs"), {}, {}, {}, "")
+    features = dict.fromkeys(names, "stairs")
+    return InspectionFile(tuple(rows), {"stairs": "steps"}, (), (), {}, features, {}, {}, {}, "", unmeasured=False)
 
 
 @pytest.mark.parametrize(
