@@ -26,11 +26,12 @@ MISSING = Message("file.missing", "the file is missing")
 def read_bytes(path: Path, *, most: int = DATA_BYTES) -> bytes:
     """The bytes of a file; InputError if it cannot be read, is no file, or has more than `most` bytes."""
     check_file(path, most)
-    tell(path)
     try:
-        return path.read_bytes()
+        content = path.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a path with a NUL
         raise cannot_read(path, error) from error
+    tell(path)
+    return content
 
 
 def resolved(path: Path) -> Path:
@@ -61,14 +62,15 @@ def read_text(path: Path, *, missing: Message = MISSING, todo: Message | None = 
         If it is missing, cannot be read, is no file, too large, or no UTF-8.
     """
     check_file(path, most)
-    tell(path)
     try:
-        return path.read_text(encoding="utf-8-sig")
+        text = path.read_text(encoding="utf-8-sig")
     except FileNotFoundError as error:
         raise InputError(missing, where=path, todo=todo or "") from error
     except (OSError, ValueError) as error:
         what = Message("file.no_text", "cannot be read as UTF-8 text ({reason})", reason=str(error))
         raise InputError(what, where=path) from error
+    tell(path)
+    return text
 
 
 def read_json(path: Path, *, todo: Message | None = None) -> Any:

@@ -173,7 +173,7 @@ def test_studies_are_printed_with_figures_and_notes(data):
     assert "is pooled with the error" in text
     assert "Repeats of thickness n mean error RMSE s (n − 1) largest error 12 50.00" in text
     assert "U of the mean verdict 0.0" in text
-    assert "Quantity positions largest error, mm at limit, mm decision" in text
+    assert "Quantity positions largest error, mm at limit, mm verdict" in text
     assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text
     assert "probing error, size 4 +0.0100 p0 0.012 conforming" in text
     assert "4 of the 10 positions the guideline asks for" in text

@@ -31,12 +31,12 @@ class SeenView:
 class SeenViews:
     """Views in all pictures of the camera target, in the order of the set; `where` they lie, for messages.
 
-    `hot` is the number of pixels that shine by themselves in the pictures.
+    `hot` is the number of pixels that shine by themselves in the pictures; None: not known.
     """
 
     views: tuple[SeenView, ...]
     where: str
-    hot: int = 0
+    hot: int | None = None
 
     @property
     def size(self) -> tuple[int, int] | None:
@@ -75,7 +75,7 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
             for quality in calibration.views
         ),
         where,
-        calibration.hot_pixels or 0,
+        calibration.hot_pixels,
     )
 
 

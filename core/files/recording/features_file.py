@@ -62,7 +62,7 @@ def write_views(path: Path, key: str, seen: SeenViews) -> None:
         "names": pack_texts([one.name for one in seen.views]),
         "reasons": pack_messages([one.reason for one in seen.views]),
         "sizes": np.array([one.size or (0, 0) for one in seen.views], dtype=np.int64).reshape(-1, 2),
-        "hot": np.array(seen.hot, dtype=np.int64),
+        **({} if seen.hot is None else {"hot": np.array(seen.hot, dtype=np.int64)}),
         **pack_views([one.view for one in seen.views]),
     }
     write_arrays(path, arrays)
@@ -89,7 +89,7 @@ def read_views(path: Path, key: str) -> SeenViews | None:
             SeenView(name, view, reason, (int(size[0]), int(size[1])) if size.any() else None)
             for name, view, reason, size in columns
         )
-        hot = int(arrays["hot"]) if "hot" in arrays else 0  # files of earlier versions
+        hot = int(arrays["hot"]) if "hot" in arrays else None  # files of earlier versions
         return SeenViews(views, str(arrays["where"]), hot)
 
 

@@ -181,7 +181,7 @@ def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraC
     """The calibration with the number of hot pixels; a note where so many that some lie at corners and in stripes."""
     width, height = calibration.camera.image_size
     calibration = replace(calibration, hot_pixels=seen.hot)
-    if seen.hot < FEWEST_HOT_SHARE * width * height:
+    if seen.hot is None or seen.hot < FEWEST_HOT_SHARE * width * height:
         return calibration
     note = plural_message(
         "camera.hot_pixels",

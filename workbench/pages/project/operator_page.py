@@ -155,12 +155,13 @@ class OperatorPage(QWidget):
         if stage is Stage.STOPPED:
             return "mdi6.alert-outline", "warn", tr("Not finished"), self._mode.facts.stopped
         found = self._mode.found
-        if found is None or not found.rows:
+        if found is None or not (found.rows or found.verdict):
             return "mdi6.check", "text", tr("Measured"), ""
-        worst = found.worst_first[0]
         symbol, colour = VERDICT_ICONS[found.verdict]
         verdict = decision(found.verdict, wording())
-        line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
+        line = ""
+        for worst in found.worst_first[:1]:
+            line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
         return symbol, "text" if colour == "muted" else colour, verdict, line
 
     def _measure(self) -> None:
