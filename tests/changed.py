@@ -197,7 +197,8 @@ def _differs(root: Path, commit: str, path: str) -> bool:
 def touched_modules(changed: set[str]) -> set[str]:
     """Modules that have changed, or read a file that has."""
     modules = {_module_name(Path(path)) for path in changed if path.endswith(".py")}
-    return modules | {_reader(path) for path in changed if not path.endswith((".py", ".md"))}
+    readers = {_reader(path) for path in changed if not path.endswith((".py", ".md"))}
+    return modules | (readers - {""})
 
 
 def _reader(path: str) -> str:

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.changed import PROVEN, Tree, changed_files, packing_changed, proofs_of, touched_proofs
+from tests.changed import PROVEN, Tree, changed_files, packing_changed, proofs_of, touched_modules, touched_proofs
 
 MARK = "@pytest.mark." + "accuracy"  # in two pieces, or this module were taken for one of proofs
 FILES = {
@@ -122,3 +122,8 @@ def test_no_proof_of_this_project_is_overlooked():
     proofs = proofs_of()
     assert len(proofs) > 100
     assert all("tests.conftest" in tree.proof(path) and "core" in tree.proof(path) for path in proofs[:10])
+
+
+def test_files_that_no_proof_reads_touch_no_module():
+    """An empty name would be one that every module with an empty text in it names."""
+    assert touched_modules({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
