@@ -20,6 +20,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PROVEN = Path(".ci/proven")
+PROGRAM = "trisect"
+"""In a text it is the program's name, or a folder's; scripts import the package."""
 PACKAGES = ("core", "workbench", "trisect", "resources", "tests")
 
 READ_BY = {
@@ -120,7 +122,7 @@ class Tree:
                 )
                 base = base or node.module or ""
                 named |= {base, *(f"{base}.{one.name}" for one in node.names)}
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value != PROGRAM:
                 named.add(node.value)
         return named & self._names
 

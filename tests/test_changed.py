@@ -127,3 +127,12 @@ def test_no_proof_of_this_project_is_overlooked():
 def test_files_that_no_proof_reads_touch_no_module():
     """An empty name would be one that every module with an empty text in it names."""
     assert touched_modules({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
+
+
+def test_no_proof_of_numbers_rests_on_the_window():
+    """The program's name stands in many texts, and is that of the package for scripts, whose start knows the window."""
+    tree = Tree(Path(__file__).parents[1])
+    found = {path.as_posix() for path in proofs_of() if "workbench.app" in tree.proof(path)}
+    assert found and not {
+        path for path in found if path.startswith(("tests/accuracy", "tests/calibrate", "tests/scan"))
+    }
