@@ -12,6 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from core.files.project.people import Rules, person, write_rules
 from core.inspect.conformity import Verdict
+from core.inspect.result_list import ResultList
 from tests.workbench.clipped import clipped
 from tests.workbench.test_fit import window_in
 from workbench.bench import Bench
@@ -134,3 +135,11 @@ def test_nothing_is_cut_in_the_smallest_window(
         for button in window.operator.buttons.values():
             corner = button.mapTo(window, QPoint(button.width() - 1, button.height() - 1))
             assert window.rect().contains(corner)
+
+
+def test_a_part_of_which_nothing_asked_for_could_be_measured_is_not_called_measured(
+    operator: MainWindow, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(operator.operator_mode, "found", ResultList(None, (), unmeasured=True))
+    operator.operator.refresh()
+    assert (operator.operator.headline.text(), operator.operator.detail.text()) == ("Not proven", "")
