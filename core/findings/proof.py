@@ -116,7 +116,7 @@ class ScanFacts:
 
     @property
     def all_doubts(self) -> tuple[Message, ...]:
-        """The same with that of the size; None of it is known counts as unconfirmed."""
+        """The same with that of the size, which is unconfirmed where it is not known."""
         return self.doubts if self.size_unconfirmed is False else (*self.doubts, SIZE_UNCONFIRMED)
 
     def _held(self, rows: Mapping[str, Message], unknown: Message) -> tuple[Message, ...]:

@@ -11,13 +11,13 @@ Every point lies on the known ray r of its pixel, so noise can only move its dep
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import FANS, UNEXPLAINED, Source
-from core.findings.proof import SIZE_UNCONFIRMED
+from core.findings.proof import SIZE_UNCONFIRMED, ScanFacts
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.inspect.uncertainty.part import Part
@@ -83,6 +83,10 @@ class PointErrors:
     def all_doubts(self) -> tuple[Message, ...]:
         """The doubts, and that of the target's size."""
         return (*self.doubts, SIZE_UNCONFIRMED) if self.size_unconfirmed else self.doubts
+
+    def doubted_by(self, facts: ScanFacts) -> PointErrors:
+        """The same errors with the doubts of their scan; a size that is not known is unconfirmed."""
+        return replace(self, doubts=facts.doubts, size_unconfirmed=facts.size_unconfirmed is not False)
 
     @classmethod
     def of_scan(

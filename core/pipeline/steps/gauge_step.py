@@ -156,7 +156,7 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    return replace(errors, doubts=scan.facts.doubts, size_unconfirmed=scan.facts.size_unconfirmed is not False)
+    return errors.doubted_by(scan.facts)
 
 
 def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:
