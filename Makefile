@@ -34,7 +34,7 @@ ON_SCREEN   := -n 1 $(AS_MODULES)
 PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
 PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
 # $(call prove,SURROUNDINGS,FILES): pytest would take no file for all of them.
-prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest $(SIDE_BY_SIDE) -m accuracy $(2)),true)
+prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -rs $(SIDE_BY_SIDE) -m accuracy $(2)),true)
 
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
