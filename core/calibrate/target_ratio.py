@@ -63,14 +63,15 @@ class TargetRatio:
                 other=other,
                 p=self.fit_p,
             )
-        found = {"percent": 100 * (self.ratio - 1), "U": 200 * self.u, "n": self.pictures, "p": self.p(scale_sd)}
         if self.p(scale_sd) >= P_TOLD:
             return Message(
                 "target.sizes_agree",
                 "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against "
                 "that than stated, as what is stated lets one expect.",
                 other=other,
-                **found,
+                percent=100 * (self.ratio - 1),
+                U=200 * self.u,
+                n=self.pictures,
             )
         return Message(
             "target.sizes_disagree",
@@ -78,7 +79,10 @@ class TargetRatio:
             "than stated (probability that it is chance: {p:.1g}); one of the two sizes is wrong, and all lengths are "
             "uncertain by as much: measure both.",
             other=other,
-            **found,
+            percent=100 * (self.ratio - 1),
+            U=200 * self.u,
+            n=self.pictures,
+            p=self.p(scale_sd),
         )
 
 

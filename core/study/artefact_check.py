@@ -101,13 +101,14 @@ class ArtefactCheck:
     @property
     def sentence(self) -> Message:
         """What came of it, and what to do."""
-        values = {"id": self.artefact.id, "error_mm": self.error_mm, "e_n": self.e_n}
         if self.verdict == "failed":
             return Message(
                 "artefact.failed",
                 "{id} is measured wrong by {error_mm:+.3f} mm (E_n = {e_n:.2f}, above 1): look for what changed, and "
                 "calibrate again.",
-                **values,
+                id=self.artefact.id,
+                error_mm=self.error_mm,
+                e_n=self.e_n,
             )
         if self.lapsed:
             return Message(
@@ -115,12 +116,16 @@ class ArtefactCheck:
                 "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), but its certificate holds only until {due}: "
                 "have it calibrated.",
                 due=str(self.artefact.due),
-                **values,
+                id=self.artefact.id,
+                error_mm=self.error_mm,
+                e_n=self.e_n,
             )
         if self.outside is not None:
             return self.outside
         return Message(
             "artefact.passed",
             "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), as its certificate and the uncertainty allow.",
-            **values,
+            id=self.artefact.id,
+            error_mm=self.error_mm,
+            e_n=self.e_n,
         )

@@ -80,15 +80,16 @@ def _bad_fit(rms_px: float, times: float) -> Message | None:
     )
 
 
-def _at_the_target(calibration: CameraCalibration, px: float) -> dict[str, float]:
-    """What pixels are in mm across the line of sight where the target was: at the median depth of its corners."""
+def _at_the_target(calibration: CameraCalibration, px: float) -> tuple[float, float]:
+    """Pixels in mm across the line of sight where the target was, and that depth in mm: the median of its corners."""
     depth, focal = float(np.median(corner_depths(calibration))), float(calibration.camera.matrix[[0, 1], [0, 1]].mean())
-    return {"mm": px * depth / focal, "depth_mm": depth}
+    return px * depth / focal, depth
 
 
 def _on_rings(calibration: CameraCalibration, outwards: Judgement) -> Message:
     ring = outwards.strongest
     px = float(outwards.profile[ring])
+    mm, depth_mm = _at_the_target(calibration, abs(px))
     return Message(
         "camera.pattern_outwards",
         "In all views corners lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm) "
@@ -96,7 +97,8 @@ def _on_rings(calibration: CameraCalibration, outwards: Judgement) -> Message:
         "The standard deviations contain it.",
         direction=_INWARDS if px < 0 else _OUTWARDS,
         px=abs(px),
-        **_at_the_target(calibration, abs(px)),
+        mm=mm,
+        depth_mm=depth_mm,
         share=(ring + 0.5) / RINGS,
     )
 
@@ -105,6 +107,7 @@ def _on_regions(calibration: CameraCalibration, found: Judgement) -> Message:
     region = found.strongest % (GRID[0] * GRID[1])
     u, v = found.profile.reshape(2, -1)[:, region]
     px = float(np.hypot(u, v))
+    mm, depth_mm = _at_the_target(calibration, px)
     return Message(
         "camera.pattern_in_region",
         "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a "
@@ -113,7 +116,8 @@ def _on_regions(calibration: CameraCalibration, found: Judgement) -> Message:
         place=REGIONS[region],
         direction=direction_of(u, v),
         px=px,
-        **_at_the_target(calibration, px),
+        mm=mm,
+        depth_mm=depth_mm,
     )
 
 

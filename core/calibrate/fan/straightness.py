@@ -87,7 +87,6 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
     middle = judgement.profile[CELLS // 2]
     ends = (judgement.profile[0] + judgement.profile[-1]) / 2
     twist = (judgement.profile[-1] - judgement.profile[0]) / 2
-    values = {"mm": abs(ends - middle), "rms": judgement.rms, "expected": judgement.expected}
     if abs(twist) > abs(ends - middle):
         return (
             Message(
@@ -95,7 +94,9 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
                 "the lines are no planes of light: in all poses their stripes bend to and fro by {mm:.3f} mm "
                 "(residuals {rms:.3f} mm, expected {expected:.3f} mm), which their uncertainty contains: is the camera "
                 "well calibrated, the laser's lens clean?",
-                **{**values, "mm": abs(twist)},
+                mm=abs(twist),
+                rms=judgement.rms,
+                expected=judgement.expected,
             ),
         )
     where = Message("fan.bent_away", "away from") if ends > middle else Message("fan.bent_towards", "towards")
@@ -106,7 +107,9 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
             "(residuals {rms:.3f} mm, expected {expected:.3f} mm), which their uncertainty contains: the laser's line "
             "lens, a target that is curled alike in every pose (state its flatness), or the camera's calibration",
             where=where,
-            **values,
+            mm=abs(ends - middle),
+            rms=judgement.rms,
+            expected=judgement.expected,
         ),
     )
 

@@ -370,25 +370,25 @@ def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalib
 
 def _charted(spread: RigSpread, recording_set: RecordingSet) -> Message:
     """What the history of the rig's checks says of how much it changes."""
-    values = {
-        "times": spread.factor,
-        "days": spread.days,
-        "first": spread.first.astimezone(),
-        "last": spread.last.astimezone(),
-    }
     if recording_set.rig.stability is not None or recording_set.rig.drift != NO_DRIFT:
         return Message(
             "scan.stability_more_than_stated",
             "By checks on {days} days from {first} to {last} the rig changes by {times:.2f} times what is assumed of a "
             "rig without a history, which is more than rig.toml states ([stability]): that is reckoned with.",
-            **values,
+            times=spread.factor,
+            days=spread.days,
+            first=spread.first.astimezone(),
+            last=spread.last.astimezone(),
         )
     return Message(
         "scan.stability_charted",
         "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
         "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}. What has "
         "knocked it since then is not in that: only a check of the day shows it.",
-        **values,
+        times=spread.factor,
+        days=spread.days,
+        first=spread.first.astimezone(),
+        last=spread.last.astimezone(),
     )
 
 
