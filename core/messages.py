@@ -1,8 +1,9 @@
 """What is told to people: a code that programs can rely on, the values in its places, and the text made of both.
 
 Algorithms make a `Message` and nothing else; a `Language` turns it into text at the edge: window, command line, report,
-``--json``. No logic looks at a text; it looks at the code. The English text stands in the call, where gettext's tools
-find it (`Message:1c,2`); other languages stand in ``resources/translations``, by the code.
+``--json``. No logic looks at a text, and none decides by a code. The English text stands in the call; that of a note
+on a result stands in the table of findings (`core.findings`), and the call is `note_of(code, values)`. `make
+translations` reads both; other languages stand in ``resources/translations``, by the code.
 
 Places are those of `str.format`: ``{rms_px:.3f} px``. A number is a value, never written into the text, so that each
 language writes it in its own way. A sequence takes how it is joined as its format: ``{names}`` gives 'a, b, c',

@@ -1,7 +1,7 @@
 """`make messages`: the manual's page of every error and warning, by code, with its text and what to do.
 
-Texts come from the calls that tell them; what to do is the advice that stands beside an error in its call. What is
-explained at more length is on the page on troubleshooting, which people write.
+Texts come from the calls that tell them and from the table of findings; what to do is the advice that stands beside an
+error in its call. What is explained at more length is on the page on troubleshooting, which people write.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from string import Formatter
 
 from core.findings.table import FINDINGS
 from tests.code import ROOT, modules, nodes, syntax_tree
-from tests.translations import CODED, all_texts, called
+from tests.translations import CODED, all_texts, called, literals
 
 MANUAL = ROOT / "resources" / "manual"
 PAGE = MANUAL / "messages.md"
@@ -181,9 +181,11 @@ def _messages(node: ast.expr, named: Named) -> list[tuple[str, str]]:
     if isinstance(node, ast.BoolOp):
         return [one for value in node.values for one in _messages(value, named)]
     if isinstance(node, ast.Call) and called(node) in CODED:
-        code, text = node.args[0], node.args[CODED[called(node)]]
+        code, text = node.args[0], node.args[CODED[called(node)]][-1]
         told = [str(one.value) for one in (code, text) if isinstance(one, ast.Constant)]
         return [(told[0], told[1])] if len(told) == 2 else []
+    if isinstance(node, ast.Call) and called(node) == "note_of":
+        return [(code, FINDINGS[code].many or FINDINGS[code].text) for code in literals(node.args[0])]
     if isinstance(node, ast.Call):
         return named.get(f"{called(node)}()", [])
     return named.get(ast.unparse(node), []) if named else []

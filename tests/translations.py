@@ -20,8 +20,8 @@ from tests.code import ROOT, modules, nodes
 
 FOLDER = ROOT / "resources" / "translations"
 
-CODED = {"Message": 1, "plural_message": 2}
-"""Calls whose first argument is a code, and how many texts follow it."""
+CODED = {"Message": slice(1, 2), "plural_message": slice(1, 3), "Finding": slice(3, 5)}
+"""Calls whose first argument is a code, and which of their arguments are its texts."""
 WORDS_AT = {"tr": slice(1), "label": slice(1), "words": slice(1), "say": slice(1), "section": slice(2, 3),
             "heads": slice(1, None), "progress": slice(1), "steps": slice(2, 3)}  # fmt: skip
 """Calls that tell fixed words, and which of their arguments those are."""
@@ -72,8 +72,8 @@ def texts_of(of_module: Iterable[ast.AST], path: str = "") -> Iterator[Text]:
         if not isinstance(node, ast.Call):
             continue
         name = called(node)
-        if name in CODED and len(node.args) > CODED[name]:
-            code, *english = (literals(argument) for argument in node.args[: CODED[name] + 1])
+        if name in CODED and (given := node.args[CODED[name]]):
+            code, *english = (literals(argument) for argument in (node.args[0], *given))
             if len(code) == 1 and all(len(one) == 1 for one in english):
                 yield Text(code[0], tuple(one[0] for one in english), path, node.lineno)
         for argument in node.args[WORDS_AT[name]] if name in WORDS_AT else ():

@@ -7,6 +7,7 @@ from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
+from core.findings.table import note_of
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.gauge import measure_gauge
 from core.inspect.plan.feature_spec import FeatureSpec
@@ -14,18 +15,13 @@ from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.results import GaugeResult
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.messages import Message
 from core.pipeline.steps.gauge_step import of_part
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from trisect.scan import SolvedScan
 
-POINTS_ALONE = Message(
-    "api.points_alone",
-    "Only points were given: the uncertainty holds neither calibrations nor what points have in common, so nothing "
-    "proves conformity.",
-)
+POINTS_ALONE = note_of("api.points_alone")
 """Why nothing measured on points alone proves conformity."""
 
 

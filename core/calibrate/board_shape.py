@@ -22,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.messages import Field, Message
 from core.model.arrays import Array
 
@@ -91,12 +92,7 @@ class BoardTolerance:
         A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
         that not where its shape is known from them.
         """
-        flatness = Message(
-            "target.flatness_assumed",
-            "How flat the target is, is not stated ({field}): {mm:g} mm is assumed as standard deviation.",
-            field=Field(f"{target}.flatness_mm", whole=True),
-            mm=SUSPECTED_MM,
-        )
+        flatness = note_of("target.flatness_assumed", field=Field(f"{target}.flatness_mm", whole=True), mm=SUSPECTED_MM)
         notes = []
         if self.scale_sd is None:
             notes.append(size_assumed(target))
@@ -129,12 +125,8 @@ class BoardTolerance:
 
 def size_assumed(target: Literal["camera_target", "plane_target"]) -> Message:
     """Say that the size of a target is not stated, and what is assumed."""
-    return Message(
-        "target.size_assumed",
-        "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as standard "
-        "uncertainty, as of an office laser printer's print.",
-        field=Field(f"{target}.scale_sd", whole=True),
-        per_mille=SUSPECTED_SCALE * 1e3,
+    return note_of(
+        "target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=SUSPECTED_SCALE * 1e3
     )
 
 

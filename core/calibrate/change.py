@@ -33,6 +33,7 @@ from scipy.special import chdtrc
 
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.deviations import UNEXPLAINED, Deviation, Source, moved_fan
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan, LightPlane
 from core.model.arrays import Array
@@ -227,22 +228,8 @@ class Change:
         if self.p >= P_TOLD:
             return ()
         if np.isinf(self.times):
-            return (
-                Message(
-                    "scan.fan_is_elsewhere",
-                    "In the pictures of the check no stripe is where the calibration has the fan: laser or camera were "
-                    "moved since; calibrate again.",
-                ),
-            )
-        return (
-            Message(
-                "scan.fan_has_moved",
-                "Laser or camera have changed since they were calibrated, by {times:.1f} times what the calibrations "
-                "allow (probability that it is chance: {p:.1g}), or the target was not true: calibrate again.",
-                times=self.times,
-                p=self.p,
-            ),
-        )
+            return (note_of("scan.fan_is_elsewhere"),)
+        return (note_of("scan.fan_has_moved", times=self.times, p=self.p),)
 
 
 def reckoned(

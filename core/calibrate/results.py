@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape
+from core.findings.table import note_of
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Fan, Pose
@@ -154,11 +155,8 @@ class Readjustment:
     def note(self) -> Message:
         """What is moved, in a sentence: of what is proposed as of what was accepted."""
         turn, shift, drift, focal = np.split(np.asarray(self.change), [3, 6, 8])
-        return Message(
+        return note_of(
             "fan.readjusted",
-            "Re-adjustment of camera and fan by {poses} poses of a check of {date}: fan turned by {turn_urad:.0f} µrad "
-            "and moved by {shift_um:.0f} µm, picture by {drift_px:.2f} px, focal length by {focal_ppm:+.0f}·10⁻⁶ "
-            "(p before {p_before:.1g}, after {p_after:.2g}).",
             poses=self.poses,
             date=self.taken_at.astimezone(),
             turn_urad=1e6 * float(np.linalg.norm(turn)),

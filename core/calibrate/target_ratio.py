@@ -15,6 +15,7 @@ from scipy.optimize import least_squares
 from scipy.special import chdtrc, ndtr
 
 from core.calibrate.camera.reprojection import moved
+from core.findings.table import note_of
 from core.image.targets import estimate_pose
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -55,29 +56,13 @@ class TargetRatio:
     def note(self, scale_sd: float, other: Message) -> Message:
         """What the pictures say of the sizes stated; `other` is what the plane target is seen beside."""
         if self.fit_p < NOT_FIXED:
-            return Message(
-                "target.not_fixed",
-                "The {n} pictures that show the plane target beside {other} do not have them in one place against each "
-                "other (probability {p:.1g}): fix one to the other; they say nothing of the sizes.",
-                n=self.pictures,
-                other=other,
-                p=self.fit_p,
-            )
+            return note_of("target.not_fixed", n=self.pictures, other=other, p=self.fit_p)
         if self.p(scale_sd) >= P_TOLD:
-            return Message(
-                "target.sizes_agree",
-                "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against "
-                "that than stated, as what is stated lets one expect.",
-                other=other,
-                percent=100 * (self.ratio - 1),
-                U=200 * self.u,
-                n=self.pictures,
+            return note_of(
+                "target.sizes_agree", other=other, percent=100 * (self.ratio - 1), U=200 * self.u, n=self.pictures
             )
-        return Message(
+        return note_of(
             "target.sizes_disagree",
-            "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against that "
-            "than stated (probability that it is chance: {p:.1g}); one of the two sizes is wrong, and all lengths are "
-            "uncertain by as much: measure both.",
             other=other,
             percent=100 * (self.ratio - 1),
             U=200 * self.u,

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum, StrEnum
+from string import Formatter
+from typing import Any
+
+from core.messages import Message, plural_message
 
 
 class Weight(IntEnum):
@@ -33,20 +37,51 @@ class Finding:
     Parameters
     ----------
     code
-        Of the message that tells it.
+        Of the note that tells it.
     weight, effect
         How grave it is, and what it does.
+    text, many
+        The English text of the note with {places}, as of a `Message`; where it counts `n` things, that of a single one
+        and that of any other number.
+    fact
+        Of what takes away a proof: the field of `core.findings.proof.ScanFacts` that does so. "" where it is no fact
+        of a scan, but of one result or of a study.
 
     Raises
     ------
     ValueError
-        If nothing is proven, or there is no result, and it is not grave.
+        If nothing is proven, or there is no result, and it is not grave; if a fact is named that takes away no proof.
     """
 
     code: str
     weight: Weight
-    effect: Effect = Effect.NONE
+    effect: Effect
+    text: str
+    many: str = ""
+    fact: str = ""
 
     def __post_init__(self) -> None:
         if self.effect in (Effect.NO_PROOF, Effect.NO_RESULT) and self.weight != Weight.GRAVE:
             raise ValueError(f"{self.code} takes away a proof and is not grave")
+        if self.fact and self.effect != Effect.NO_PROOF:
+            raise ValueError(f"{self.code} names a fact and takes away no proof")
+
+    @property
+    def places(self) -> frozenset[str]:
+        """Names of the values that the note tells, and of the number it counts."""
+        named = [name for text in (self.text, self.many) for _, name, _, _ in Formatter().parse(text) if name]
+        return frozenset((*named, "n") if self.many else named)
+
+    def note(self, **values: Any) -> Message:
+        """The note that tells it.
+
+        Raises
+        ------
+        ValueError
+            If the values are not those of its places.
+        """
+        if values.keys() != self.places:
+            raise ValueError(f"{self.code} tells {sorted(self.places)}, not {sorted(values)}")
+        if self.many:
+            return plural_message(self.code, self.text, self.many, **values)
+        return Message(self.code, self.text, **values)

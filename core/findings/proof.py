@@ -9,58 +9,18 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from core.findings import of_proof
+from core.findings.table import note_of
 from core.messages import Field, Message
 
-MOVED_WITHIN = Message(
-    "inspection.moved_during_scan", "Something moved during the scan: nothing measured proves conformity."
-)
-DRIFTED_WITHIN = Message(
-    "inspection.drifted_during_scan", "The rig drifted during the scan: nothing measured proves conformity."
-)
-COLLAPSED = Message(
-    "inspection.planes_collapsed",
-    "The sweeps' light planes have fallen together into one: nothing measured proves conformity.",
-)
-CHANGED = Message(
-    "inspection.rig_has_changed",
-    "Laser or camera have surely changed since they were calibrated: nothing measured proves conformity.",
-)
-MAY_HAVE_CHANGED = Message(
-    "inspection.rig_may_have_changed",
-    "Laser or camera seem to have changed since they were calibrated, and no check of the day is in order: nothing "
-    "measured proves conformity. Check with one to three pictures of the plane target in the fan.",
-)
-SECTION_CHANGED = Message(
-    "inspection.section_has_changed",
-    "The light of the fan reaches further to one side than when it was calibrated: nothing measured proves conformity.",
-)
-SIZE_UNCONFIRMED = Message(
-    "target.size_unconfirmed",
-    "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, so that "
-    "only what is compared with a master proves anything: state its standard uncertainty by its source, measure a "
-    "known artefact, or take a picture of it fixed to the camera's target whose own size is stated.",
-    field=Field("plane_target.scale_sd", whole=True),
-)
-UNSETTLED = Message(
-    "validity.planes_not_settled",
-    "The calibration of the laser planes had not settled: nothing measured proves conformity. Record more poses of the "
-    "target, at different distances and tilts, and calibrate again.",
-)
-POINTS_UNCONFIRMED = Message(
-    "validity.target_points_off",
-    "In all poses of the laser planes' calibration the target's points lie off alike, which U need not contain: "
-    "nothing measured proves conformity. Calibrate again with a true target and camera, or measure a known artefact.",
-)
-PLANES_UNKNOWN = Message(
-    "validity.planes_unknown",
-    "The file of the laser planes' calibration, of another program or an earlier version, does not say whether it had "
-    "settled and fitted its target: nothing measured proves conformity. Calibrate the laser planes again.",
-)
-SCAN_UNKNOWN = Message(
-    "validity.scan_unknown",
-    "The file of the scan, of another program or an earlier version, does not say whether anything moved or changed: "
-    "nothing measured proves conformity. Measure the scan again.",
-)
+OF_SCAN: Mapping[str, Message] = {row.fact: row.note() for row in of_proof.SCAN}
+"""Why nothing is proven where a fact of the scan holds, by its name, in the order in which they are said."""
+OF_PLANES: Mapping[str, Message] = {row.fact: row.note() for row in of_proof.PLANES}
+"""The same of the planes' calibration."""
+SCAN_UNKNOWN, PLANES_UNKNOWN = note_of("validity.scan_unknown"), note_of("validity.planes_unknown")
+"""Why nothing is proven where one of these facts is not known."""
+SIZE_UNCONFIRMED = note_of("target.size_unconfirmed", field=Field("plane_target.scale_sd", whole=True))
+"""Why only what is compared with a master is proven."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,7 +67,7 @@ class ScanFacts:
         Examples
         --------
         >>> nothing = dict.fromkeys([*OF_SCAN, *OF_PLANES], False)
-        >>> ScanFacts(**nothing).doubts, ScanFacts(**{**nothing, "moved": True}).doubts == (MOVED_WITHIN,)
+        >>> ScanFacts(**nothing).doubts, ScanFacts(**{**nothing, "moved": True}).doubts == (OF_SCAN["moved"],)
         ((), True)
         >>> ScanFacts().doubts == (SCAN_UNKNOWN, PLANES_UNKNOWN)
         True
@@ -124,16 +84,3 @@ class ScanFacts:
         facts = {name: getattr(self, name) for name in rows}
         holding = tuple(doubt for name, doubt in rows.items() if facts[name])
         return (*holding, unknown) if None in facts.values() else holding
-
-
-OF_SCAN: Mapping[str, Message] = {
-    "moved": MOVED_WITHIN,
-    "drifted": DRIFTED_WITHIN,
-    "collapsed": COLLAPSED,
-    "rig_changed": CHANGED,
-    "rig_seems_changed": MAY_HAVE_CHANGED,
-    "section_changed": SECTION_CHANGED,
-}
-"""Why nothing is proven where a fact of the scan holds, by its name, in the order in which they are said."""
-OF_PLANES: Mapping[str, Message] = {"planes_unsettled": UNSETTLED, "points_off_alike": POINTS_UNCONFIRMED}
-"""The same of the planes' calibration."""

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.findings.table import note_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.features.measured import FeatureResult, Measure, Scene
@@ -185,12 +186,7 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
 def _brought(kind: str) -> Message:
     """That a result is none of this program's own."""
     origin = brought_kinds()[kind][1]
-    return Message(
-        "plugin.measured_by",
-        "Measured by the package {package} {version}, which is no part of Trisect.",
-        package=origin.package,
-        version=origin.version,
-    )
+    return note_of("plugin.measured_by", package=origin.package, version=origin.version)
 
 
 def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
@@ -230,7 +226,7 @@ def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, Message | None]
     for name in frame.names:
         result = scene.found.get(name)
         if result is None or result.element is None:
-            why = Message("feature.frame_not_measured", "{name} was not measured as a plane, axis or point.", name=name)
+            why = note_of("feature.frame_not_measured", name=name)
             return None, _no_frame(why)
         elements.append(result.element)
     try:
@@ -240,7 +236,7 @@ def _frame(frame: PartFrame, scene: Scene) -> tuple[Pose | None, Message | None]
 
 
 def _no_frame(why: Message) -> Message:
-    return Message("inspection.no_frame", "There are no part coordinates: {why}", why=why)
+    return note_of("inspection.no_frame", why=why)
 
 
 def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, framed: bool) -> str:
@@ -296,11 +292,7 @@ def _of_part(plan: InspectionPlan, part: Part | None) -> tuple[Message, ...]:
         return assumed
     return (
         *assumed,
-        Message(
-            "part.thicknesses_alone",
-            "What is stated of the part's surface, a layer of spray or how deep its material is seen, is taken off "
-            "thicknesses alone: all else is as light shows it.",
-        ),
+        note_of("part.thicknesses_alone"),
     )
 
 
@@ -310,17 +302,5 @@ def _missing(errors: PointErrors) -> tuple[Message, ...]:
     if not missing:
         return ()
     if errors.sweep_covariance is not None:
-        return (
-            Message(
-                "inspection.missing_in_u",
-                "The stated uncertainties do not hold {missing}: they are less than is known.",
-                missing=missing,
-            ),
-        )
-    return (
-        Message(
-            "inspection.missing_in_u_proves_nothing",
-            "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing.",
-            missing=missing,
-        ),
-    )
+        return (note_of("inspection.missing_in_u", missing=missing),)
+    return (note_of("inspection.missing_in_u_proves_nothing", missing=missing),)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError
+from core.findings.table import note_of
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces, region_field
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.plane_fit import (
@@ -170,7 +171,7 @@ def measure_gauge(
     missing = errors.missing()
     notes: tuple[Message, ...] = ()
     if missing:
-        notes = (Message("gauge.missing_in_u", "The stated uncertainty does not hold {missing}.", missing=missing),)
+        notes = (note_of("gauge.missing_in_u", missing=missing),)
     gauge = GaugeResult(
         thickness_mm=fit.thickness_mm,
         u_mm=u,

@@ -15,6 +15,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from core.findings.table import note_of
 from core.inspect.faces import FacePair
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE
 from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
@@ -26,7 +27,7 @@ from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
 from core.inspect.uncertainty.causes import FACE_TILT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, OBSERVED
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.messages import Message, plural_message
+from core.messages import Message
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
@@ -351,20 +352,7 @@ def _notes_on_form(steps: Sequence[Step]) -> tuple[Message, ...]:
 
 
 def _notes(count: int, alike: float) -> tuple[Message, ...]:
-    notes = [
-        plural_message(
-            "profile.mean_of",
-            "The thickness is that of {n} picture.",
-            "The thickness is the mean of {n} pictures.",
-            n=count,
-        )
-    ]
+    notes = [note_of("profile.mean_of", n=count)]
     if count > 1 and alike >= _STOOD_STILL:
-        notes.append(
-            Message(
-                "profile.stood_still",
-                "The pictures show one and the same place, so that they are no surer together than one of them: move "
-                "the part a little between pictures.",
-            )
-        )
+        notes.append(note_of("profile.stood_still"))
     return tuple(notes)

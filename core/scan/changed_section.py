@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from core.calibrate.deviations import Deviation, moved_fan
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model import Camera, Fan
@@ -54,16 +55,8 @@ class ChangedSection:
     @property
     def note(self) -> Message:
         """What is said of it."""
-        return Message(
-            "scan.section_changed",
-            "The fan's stripes are skewed otherwise than when it was calibrated (skewness {now:.2f}, then {then:.2f}, "
-            "± {error:.2f}): their light reaches further to one side, as behind a lens that was knocked or smeared, "
-            "or from a laser in another mode. They may lie up to {shift_px:.1f} px aside, which U contains. Clean the "
-            "lens, set the focus back, or calibrate again.",
-            now=self.skewness,
-            then=self.then,
-            error=self.error,
-            shift_px=self.shift_px,
+        return note_of(
+            "scan.section_changed", now=self.skewness, then=self.then, error=self.error, shift_px=self.shift_px
         )
 
     def deviation(self, fan: Sequence[Centreline], camera: Camera, calibrated: Fan) -> Deviation:

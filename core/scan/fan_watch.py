@@ -23,6 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -88,24 +89,12 @@ class FanRest:
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Note for the technician if anything moved; `frames` frames are used."""
         if self.drifts:
-            return (
-                Message(
-                    "scan.drifted",
-                    "The rig drifts: from the first frame to the last the fan's light moves evenly, by {shift_px:.2g} "
-                    "px, which is {shift_mm:.2g} mm in depth. All frames are used. Let camera and lasers warm up "
-                    "before a scan, and scan faster.",
-                    shift_px=self.shift_px,
-                    shift_mm=self.shift_mm,
-                ),
-            )
+            return (note_of("scan.drifted", shift_px=self.shift_px, shift_mm=self.shift_mm),)
         if not self.first_after:
             return ()
         return (
-            Message(
+            note_of(
                 "scan.fan_shifted",
-                "Something moved during the scan, {what}, {when:and}: {percent:.0f} % of the fan's light lies about "
-                "{shift_px:.2g} px aside, which is {shift_mm:.2g} mm in depth. Only {n} frames between which nothing "
-                "moved are used. Hold part and camera still and scan again.",
                 what=EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS,
                 when=self.when(names),
                 percent=100 * self.share,

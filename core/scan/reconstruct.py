@@ -13,7 +13,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.messages import Field, Message, plural_message
+from core.findings.table import note_of
+from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
@@ -320,15 +321,7 @@ def _unsure(found: Cloud, cloud: Cloud, solved: _Solved, options: ReconstructOpt
     share = _unsure_share(found, cloud)
     if not solved.read_out.shifts_mm or share <= MANY_LOST:
         return ()
-    return (
-        Message(
-            "scan.points_unsure_by_motion",
-            "{percent:.0f} % of the points are left out: the hand's motion while rows were read out leaves them less "
-            "sure than {cut_mm:g} mm. Move slower, rest the hand, or take more sweeps.",
-            percent=100 * share,
-            cut_mm=options.sigma_cut_mm,
-        ),
-    )
+    return (note_of("scan.points_unsure_by_motion", percent=100 * share, cut_mm=options.sigma_cut_mm),)
 
 
 def _unsure_share(found: Cloud, cloud: Cloud) -> float:
@@ -352,12 +345,4 @@ def _fan_notes(lines: FanLines) -> tuple[Message, ...]:
     left_out = [reason for reason in lines.reason if reason is not None]
     if not left_out:
         return ()
-    return (
-        plural_message(
-            "scan.fan_light_unused",
-            "Not used of the fan's light: {n} stretch ({reason}).",
-            "Not used of the fan's light: {n} stretches ({reason}).",
-            n=len(left_out),
-            reason=left_out[0],
-        ),
-    )
+    return (note_of("scan.fan_light_unused", n=len(left_out), reason=left_out[0]),)

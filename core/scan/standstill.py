@@ -29,6 +29,7 @@ from scipy.sparse import diags_array
 from scipy.spatial import cKDTree
 
 from core.errors import InputError
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -195,15 +196,7 @@ class StillPart:
         """Note for the technician if anything moved; `frames` frames are used."""
         if not self.movements:
             return ()
-        return (
-            Message(
-                "scan.moved",
-                "Object or camera moved {when:and}: crossings of the frames before and after disagree. Only {n} frames "
-                "between which nothing moved are used. Hold both still and scan again to use them all.",
-                when=_when(self.movements, names),
-                n=frames,
-            ),
-        )
+        return (note_of("scan.moved", when=_when(self.movements, names), n=frames),)
 
 
 def still_part(

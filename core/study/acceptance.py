@@ -27,6 +27,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message, label
 from core.model.arrays import Array
@@ -134,9 +135,7 @@ TITLES: Mapping[Quantity, Message] = {
     "spacing": Message("study.sphere_spacing", "sphere-spacing error"),
     "flatness": Message("study.flatness_error", "flatness error"),
 }
-PATTERN = Message(
-    "study.after_the_guideline", "Acceptance check after the pattern of VDI/VDE 2634 part 2; not a certificate."
-)
+PATTERN = note_of("study.after_the_guideline")
 
 
 @dataclass(frozen=True, slots=True)
@@ -238,23 +237,9 @@ class AcceptanceCheck:
         for one in self.quantities:
             if not one.enough_positions:
                 count = len({reading.position for reading in one.readings})
-                said.append(
-                    Message(
-                        "study.few_positions",
-                        "{what}: {n} of the {all} positions the guideline asks for.",
-                        what=one.title,
-                        n=count,
-                        all=POSITIONS[one.quantity],
-                    )
-                )
+                said.append(note_of("study.few_positions", what=one.title, n=count, all=POSITIONS[one.quantity]))
             if one.limit is not None and not any(reading.u for reading in one.readings):
-                said.append(
-                    Message(
-                        "study.artefact_without_u",
-                        "{what}: no uncertainty of the artefact was stated; the verdict takes it as nothing.",
-                        what=one.title,
-                    )
-                )
+                said.append(note_of("study.artefact_without_u", what=one.title))
         return tuple(said)
 
 

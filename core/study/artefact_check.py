@@ -13,6 +13,7 @@ from dataclasses import dataclass
 from datetime import date
 from typing import Literal, TypeAlias
 
+from core.findings.table import note_of
 from core.messages import Message, label
 
 ArtefactKind: TypeAlias = Literal["block", "sphere", "step"]
@@ -102,30 +103,11 @@ class ArtefactCheck:
     def sentence(self) -> Message:
         """What came of it, and what to do."""
         if self.verdict == "failed":
-            return Message(
-                "artefact.failed",
-                "{id} is measured wrong by {error_mm:+.3f} mm (E_n = {e_n:.2f}, above 1): look for what changed, and "
-                "calibrate again.",
-                id=self.artefact.id,
-                error_mm=self.error_mm,
-                e_n=self.e_n,
-            )
+            return note_of("artefact.failed", id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n)
         if self.lapsed:
-            return Message(
-                "artefact.lapsed",
-                "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), but its certificate holds only until {due}: "
-                "have it calibrated.",
-                due=str(self.artefact.due),
-                id=self.artefact.id,
-                error_mm=self.error_mm,
-                e_n=self.e_n,
+            return note_of(
+                "artefact.lapsed", due=str(self.artefact.due), id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n
             )
         if self.outside is not None:
             return self.outside
-        return Message(
-            "artefact.passed",
-            "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), as its certificate and the uncertainty allow.",
-            id=self.artefact.id,
-            error_mm=self.error_mm,
-            e_n=self.e_n,
-        )
+        return note_of("artefact.passed", id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n)

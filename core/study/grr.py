@@ -37,6 +37,7 @@ import numpy as np
 from scipy.special import fdtrc
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -250,40 +251,13 @@ class GrrStudy:
         p, o, r = self.values.shape
         said = []
         if self.pooled:
-            said.append(
-                Message(
-                    "study.interaction_pooled",
-                    "The interaction of parts and operators is not significant (p > {limit}) and is pooled with the "
-                    "error.",
-                    limit=POOLED_ABOVE,
-                )
-            )
+            said.append(note_of("study.interaction_pooled", limit=POOLED_ABOVE))
         if o == 1:
-            said.append(
-                Message(
-                    "study.one_operator",
-                    "One operator alone shows no reproducibility: gauge R&R is the repeatability.",
-                )
-            )
+            said.append(note_of("study.one_operator"))
         if p < 10 or o < 3 or r < 2 or p * o * r < 60:
-            said.append(
-                Message(
-                    "study.few_measurements",
-                    "{p} × {o} × {r} measurements are few: 10 parts, 3 operators and 2 to 3 repeats are usual.",
-                    p=p,
-                    o=o,
-                    r=r,
-                )
-            )
+            said.append(note_of("study.few_measurements", p=p, o=o, r=r))
         if self.categories is not None and self.categories < ENOUGH_CATEGORIES:
-            said.append(
-                Message(
-                    "study.few_categories",
-                    "{n} distinct categories: with fewer than {least} the gauge hardly tells these parts apart.",
-                    n=self.categories,
-                    least=ENOUGH_CATEGORIES,
-                )
-            )
+            said.append(note_of("study.few_categories", n=self.categories, least=ENOUGH_CATEGORIES))
         return tuple(said)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, Zones, decide
 from core.messages import Message
 from core.model.arrays import Array
@@ -165,29 +166,11 @@ class RepeatStudy:
         """What to know about the figures."""
         said = []
         if self.doubted:
-            said.append(
-                Message(
-                    "study.doubted",
-                    "By their own results {names} prove nothing, and so their mean does not: read their notes.",
-                    names=self.doubted,
-                )
-            )
+            said.append(note_of("study.doubted", names=self.doubted))
         if not self.complete:
-            said.append(
-                Message(
-                    "study.scatter_alone",
-                    "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what "
-                    "is common to all of them (calibration) is not in it, and nothing is proven.",
-                )
-            )
+            said.append(note_of("study.scatter_alone"))
         if self.run is not None and self.run.outside:
-            said.append(
-                Message(
-                    "study.beyond_run_chart",
-                    "Beyond the limits of the run chart: {names}; look for what changed there.",
-                    names=[self.labels[place] for place in self.run.outside],
-                )
-            )
+            said.append(note_of("study.beyond_run_chart", names=[self.labels[place] for place in self.run.outside]))
         return tuple(said)
 
 

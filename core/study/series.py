@@ -14,6 +14,7 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.inspect.results import Contribution
 from core.messages import Message
 from core.model.arrays import Array
@@ -165,33 +166,17 @@ class SeriesStudy:
     def _of_charts(self) -> list[Message]:
         said = []
         if self.points < FEWEST_POINTS:
-            said.append(
-                Message(
-                    "study.series_too_short",
-                    "The chart has {n} points; limits need {least} or more, so none are drawn, and no Cp or Cpk given.",
-                    n=self.points,
-                    least=FEWEST_POINTS,
-                )
-            )
+            said.append(note_of("study.series_too_short", n=self.points, least=FEWEST_POINTS))
         elif self.charts is None:
-            said.append(
-                Message(
-                    "study.series_no_spread",
-                    "Values one after another are all the same: the resolution hides the spread, and no "
-                    "limits are drawn.",
-                )
-            )
+            said.append(note_of("study.series_no_spread"))
         if over := self.n % self.size:
-            said.append(
-                Message("study.series_values_over", "Values at the end that make no whole subgroup: {n}.", n=over)
-            )
+            said.append(note_of("study.series_values_over", n=over))
         if self.charts is None:
             return said
         breaks = self.charts.location.breaks
         said += [
-            Message(
+            note_of(
                 "study.rule_broken",
-                "Rule {rule} ({words}): broken at {names}.",
                 rule=rule,
                 words=words,
                 names=[self.label_of(one.place) for one in breaks if one.rule == rule],
@@ -201,53 +186,21 @@ class SeriesStudy:
         ]
         if self.charts.spread.breaks:
             names = [self.label_of_spread(one.place) for one in self.charts.spread.breaks]
-            said.append(
-                Message("study.spread_beyond_limits", "The spread is beyond its limits at {names}.", names=names)
-            )
+            said.append(note_of("study.spread_beyond_limits", names=names))
         if breaks:
-            said.append(
-                Message(
-                    "study.breaks_by_chance",
-                    "A steady process breaks one of the four rules about once in {every:.0f} points: "
-                    "look for what changed, before anything is adjusted.",
-                    every=POINTS_A_BREAK,
-                )
-            )
+            said.append(note_of("study.breaks_by_chance", every=POINTS_A_BREAK))
         return said
 
     def _of_capability(self) -> list[Message]:
         said = []
         if self.short is not None and self._beyond_limits:
-            said.append(
-                Message(
-                    "study.not_steady",
-                    "The process was not steady: Cp and Cpk say what it could do, not what it does.",
-                )
-            )
+            said.append(note_of("study.not_steady"))
         if self.overall is not None and not looks_normal(self.values):
-            said.append(
-                Message(
-                    "study.not_normal",
-                    "The values are not normally distributed (Anderson–Darling test, 5 %), as the indices and their "
-                    "intervals assume.",
-                )
-            )
+            said.append(note_of("study.not_normal"))
         if self.stated is None and self.overall is not None:
-            said.append(
-                Message(
-                    "study.series_without_u",
-                    "No uncertainty is stated: what moves all values alike (calibration) is not in the intervals "
-                    "of the indices.",
-                )
-            )
+            said.append(note_of("study.series_without_u"))
         if self.doubted:
-            said.append(
-                Message(
-                    "study.series_doubted",
-                    "By their own results {names} prove nothing, and so the series does not: read their notes.",
-                    names=self.doubted,
-                )
-            )
+            said.append(note_of("study.series_doubted", names=self.doubted))
         return said
 
 

@@ -17,6 +17,7 @@ import numpy as np
 from scipy.special import chdtri, stdtr, stdtrit
 
 from core.errors import WrongValue
+from core.findings.table import note_of
 from core.messages import Message
 from core.model.arrays import Array
 
@@ -119,27 +120,13 @@ class Type1Study:
         """What to know about the figures."""
         said = []
         if self.n < FEW_MEASUREMENTS:
-            said.append(
-                Message(
-                    "study.few_repeats",
-                    "{n} repeats say little about the spread: take at least {least}, better 50.",
-                    n=self.n,
-                    least=FEW_MEASUREMENTS,
-                )
-            )
+            said.append(note_of("study.few_repeats", n=self.n, least=FEW_MEASUREMENTS))
         if self.cgk < LIMIT <= self.cg:
-            said.append(
-                Message(
-                    "study.bias_too_large",
-                    "The spread would suffice; the bias does not: correct it, or calibrate anew.",
-                )
-            )
+            said.append(note_of("study.bias_too_large"))
         if self.bias_is_significant:
-            said.append(
-                Message("study.bias_significant", "The bias differs from zero (t-test, p = {p:.2g}).", p=self.p)
-            )
+            said.append(note_of("study.bias_significant", p=self.p))
         if self.s == 0:
-            said.append(Message("study.no_spread", "All values are the same: the resolution hides the spread."))
+            said.append(note_of("study.no_spread"))
         return tuple(said)
 
 

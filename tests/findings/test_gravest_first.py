@@ -3,10 +3,11 @@
 import pytest
 
 from core.cli import output
-from core.findings.proof import CHANGED, MOVED_WITHIN
+from core.findings.proof import OF_SCAN
 from core.findings.table import gravest_first, is_grave
 from core.messages import Message, plain
 
+CHANGED, MOVED_WITHIN = OF_SCAN["rig_changed"], OF_SCAN["moved"]
 ASSUMED, POINTLESS = plain("Assumed is a plate."), plain("5 frames gave no points.")
 
 

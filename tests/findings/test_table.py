@@ -1,10 +1,19 @@
-"""The table of findings holds every note, and no other code."""
+"""The table of findings holds every note, and no other; each call that makes a note gives what its text tells."""
+
+import ast
+from dataclasses import fields
 
 import pytest
 
+from core.findings import of_proof
 from core.findings.finding import Effect, Finding, Weight
-from core.findings.table import FINDINGS
-from tests.translations import all_texts, texts
+from core.findings.proof import ScanFacts
+from core.findings.table import FINDINGS, note_of
+from core.messages import plural_message
+from tests.code import ROOT, modules, nodes
+from tests.translations import all_texts, called, literals, texts
+
+pytestmark = pytest.mark.usefixtures("syntax_trees")
 
 ROOMS = ("core/calibrate/", "core/image/", "core/scan/", "core/inspect/", "core/study/", "core/pipeline/steps/")
 """Rooms whose sentences are notes of results."""
@@ -12,22 +21,104 @@ LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", 
 """What these say is of the moment: of one picture, one crossing, the next sweep."""
 ANSWERS = {"readjust.proposed", "readjust.undone"}
 """What a command answers."""
+OF_ONE_RESULT = {
+    "api.points_alone", "inspection.light_is_skewed", "inspection.missing_in_u_proves_nothing",
+    "study.doubted", "study.series_doubted",
+}  # fmt: skip
+"""What takes away the proof of one result, or of a study, by a doubt of its own."""
+NOT_KNOWN = {"validity.scan_unknown", "validity.planes_unknown"}
+"""What does so where a fact is not known."""
 
 
-def test_every_row_is_a_message_of_the_program():
-    assert {text.code for text in all_texts()} >= set(FINDINGS)
+def wrong_calls(of_module):
+    """(line, code, why) of each call of `note_of` in a module, given all its nodes, that fails when it is run."""
+    for node in of_module:
+        if isinstance(node, ast.Call) and called(node) == "note_of":
+            given = {keyword.arg for keyword in node.keywords}
+            codes = literals(node.args[0]) or [""]
+            for code in codes:
+                if code not in FINDINGS:
+                    yield node.lineno, code, "has no row"
+                elif given != FINDINGS[code].places:
+                    yield node.lineno, code, f"tells {sorted(FINDINGS[code].places)}"
 
 
-def test_what_takes_away_a_proof_is_grave():
+def made(of_module):
+    """The codes of all notes that a module makes, given all its nodes."""
+    calls = (node for node in of_module if isinstance(node, ast.Call) and called(node) == "note_of")
+    return {code for call in calls for code in literals(call.args[0])}
+
+
+def test_every_note_that_is_made_has_a_row_and_gets_what_its_text_tells():
+    found = [
+        f"{path.relative_to(ROOT)}:{line} {code} {why}"
+        for path in modules("core", "workbench", "trisect")
+        for line, code, why in wrong_calls(nodes(path))
+    ]
+    assert found == [], "a code of the table, and its values by name: no ** hides them"
+
+
+@pytest.mark.parametrize(
+    ("call", "why"),
+    [
+        ('note_of("camera.no_such_code")', "has no row"),
+        ("note_of(code, n=1, least=2)", "has no row"),
+        ('note_of("camera.few_views", n=1)', "tells ['least', 'n']"),
+        ('table.note_of("camera.few_views", n=1, least=2, more=3)', "tells ['least', 'n']"),
+        ('note_of("camera.few_views", **values)', "tells ['least', 'n']"),
+        ('note_of("camera.misfound_corners", view=name)', "tells ['n', 'view']"),
+        ('note_of("study.no_spread" if x else "camera.few_views")', "tells ['least', 'n']"),
+        ('note_of("camera.few_views", n=1, least=2)', None),
+        ('note_of("study.no_spread" if x else "study.not_steady")', None),
+    ],
+)
+def test_a_call_that_would_fail_is_seen(call, why):
+    assert [why for *_, why in wrong_calls(list(ast.walk(ast.parse(call))))] == ([] if why is None else [why])
+
+
+def test_every_row_is_made_somewhere():
+    by_facts = {row.code for row in (*of_proof.SCAN, *of_proof.PLANES)}
+    assert set(FINDINGS) - by_facts - set().union(*(made(nodes(path)) for path in modules("core", "trisect"))) == set()
+
+
+def test_values_that_are_not_those_of_the_text_are_refused():
+    for values in ({"n": 1}, {"n": 1, "least": 2, "more": 3}):
+        with pytest.raises(ValueError, match="tells"):
+            note_of("camera.few_views", **values)
+    with pytest.raises(KeyError):
+        note_of("camera.no_such_code")
+
+
+def test_a_note_that_counts_has_a_text_for_one_and_one_for_more():
+    one, many = "One misfound corner of {view} is left out.", "{n} misfound corners of {view} are left out."
+    for n in (1, 3):
+        told = note_of("camera.misfound_corners", view="a", n=n)
+        assert told == plural_message("camera.misfound_corners", one, many, n=n, view="a")
+        assert list(told.values) == ["n", "view"]
+
+
+def test_no_other_call_tells_a_text_of_the_table():
+    elsewhere = {text.code for text in all_texts() if not text.path.startswith("core/findings/of_")}
+    assert elsewhere & set(FINDINGS) == set()
+
+
+def test_what_takes_away_a_proof_is_grave_and_nothing_else_names_a_fact():
     with pytest.raises(ValueError, match="is not grave"):
-        Finding("scan.x", Weight.CAUTION, Effect.NO_PROOF)
+        Finding("scan.x", Weight.CAUTION, Effect.NO_PROOF, "It moved.")
+    with pytest.raises(ValueError, match="takes away no proof"):
+        Finding("scan.x", Weight.GRAVE, Effect.NONE, "It moved.", fact="moved")
 
 
-def test_every_sentence_that_is_told_of_a_result_has_a_row():
+def test_what_takes_away_a_proof_names_the_fact_that_does_so():
+    named = {row.code: row.fact for row in FINDINGS.values() if row.effect == Effect.NO_PROOF}
+    assert {code for code, fact in named.items() if not fact} == OF_ONE_RESULT | NOT_KNOWN
+    assert {fact for fact in named.values() if fact} == {one.name for one in fields(ScanFacts)}
+
+
+def test_every_sentence_that_is_told_of_a_result_is_a_row_of_the_table():
     told = {
         text.code
         for text in texts(*ROOMS)
         if text.code and text.english[0].endswith(".") and not text.path.startswith(LIVE)
     }
-    assert len(told) > 100
-    assert told - set(FINDINGS) - ANSWERS == set()
+    assert told == ANSWERS

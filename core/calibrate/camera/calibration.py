@@ -39,6 +39,7 @@ from core.calibrate.camera.third_radial import third_radial
 from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
 from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
 from core.errors import InputError
+from core.findings.table import note_of
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
@@ -102,12 +103,8 @@ def calibrate_camera(
         else next(solved)
         for view in views
     )
-    note = Message(
-        "camera.views_left_out_by_hand",
-        "{n} of {all} views are left out by hand: {names}.",
-        n=len(left_out),
-        all=len(views),
-        names=tuple(view.name for view in left_out),
+    note = note_of(
+        "camera.views_left_out_by_hand", n=len(left_out), all=len(views), names=tuple(view.name for view in left_out)
     )
     return replace(calibration, views=qualities, notes=(note, *calibration.notes))
 

@@ -13,6 +13,7 @@ import numpy as np
 from core.calibrate.camera.coverage import REGIONS
 from core.calibrate.camera.expected_error import corner_depths, residual_field
 from core.calibrate.results import CameraCalibration
+from core.findings.table import note_of
 from core.messages import Message
 from core.model.residuals import Judgement, Residuals, judge_residuals, of_vectors, over_picture
 
@@ -70,14 +71,7 @@ def bad_fit(calibration: CameraCalibration) -> Message | None:
 def _bad_fit(rms_px: float, times: float) -> Message | None:
     if not (rms_px > BAD_PX or (rms_px > LITTLE_PX and times > BAD_TIMES)):
         return None
-    return Message(
-        "camera.bad_fit",
-        "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
-        "Look for views with blur or a moved target, check the target's corners and how flat it is, or take "
-        "the views again.",
-        rms=rms_px,
-        times=times,
-    )
+    return note_of("camera.bad_fit", rms=rms_px, times=times)
 
 
 def _at_the_target(calibration: CameraCalibration, px: float) -> tuple[float, float]:
@@ -90,11 +84,8 @@ def _on_rings(calibration: CameraCalibration, outwards: Judgement) -> Message:
     ring = outwards.strongest
     px = float(outwards.profile[ring])
     mm, depth_mm = _at_the_target(calibration, abs(px))
-    return Message(
+    return note_of(
         "camera.pattern_outwards",
-        "In all views corners lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm) "
-        "at {share:.0%} of the way from the picture's centre to its farthest corner: the lens is not fully described. "
-        "The standard deviations contain it.",
         direction=_INWARDS if px < 0 else _OUTWARDS,
         px=abs(px),
         mm=mm,
@@ -108,16 +99,8 @@ def _on_regions(calibration: CameraCalibration, found: Judgement) -> Message:
     u, v = found.profile.reshape(2, -1)[:, region]
     px = float(np.hypot(u, v))
     mm, depth_mm = _at_the_target(calibration, px)
-    return Message(
-        "camera.pattern_in_region",
-        "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px ({mm:.3f} mm at a "
-        "distance of {depth_mm:.0f} mm): the lens or the print is not fully described, or corners are drawn aside by "
-        "blur. The standard deviations contain it.",
-        place=REGIONS[region],
-        direction=direction_of(u, v),
-        px=px,
-        mm=mm,
-        depth_mm=depth_mm,
+    return note_of(
+        "camera.pattern_in_region", place=REGIONS[region], direction=direction_of(u, v), px=px, mm=mm, depth_mm=depth_mm
     )
 
 

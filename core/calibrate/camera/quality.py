@@ -15,8 +15,9 @@ from core.calibrate.camera.picture_residuals import notes_on_picture
 from core.calibrate.camera.screening import Verdict, screen
 from core.calibrate.camera.zhang import pose_from_homography
 from core.calibrate.results import CameraCalibration, ViewQuality
+from core.findings.table import note_of
 from core.image.targets.target_view import TargetView
-from core.messages import Message, plural_message
+from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array
 
@@ -103,101 +104,43 @@ def notes_on(calibration: CameraCalibration, widening: SharedErrorFactors) -> tu
     """Make notes on views and corners left out, missing coverage, small tilt, few views and correlated residuals."""
     used = [quality for quality in calibration.views if quality.used]
     notes = [
-        Message("camera.view_left_out", "{view} is left out: {reason}.", view=_name(quality), reason=quality.reason)
+        note_of("camera.view_left_out", view=_name(quality), reason=quality.reason)
         for quality in calibration.views
         if quality.reason is not None
     ]
     notes += [
-        plural_message(
-            "camera.misfound_corners",
-            "One misfound corner of {view} is left out.",
-            "{n} misfound corners of {view} are left out.",
-            n=int(np.sum(~quality.counted)),
-            view=_name(quality),
-        )
+        note_of("camera.misfound_corners", n=int(np.sum(~quality.counted)), view=_name(quality))
         for quality in used
         if not quality.counted.all()
     ]
     notes += _worse_views(used)
     if len(used) < _ENOUGH_VIEWS:
-        notes.append(
-            Message(
-                "camera.few_views",
-                "Only {n} views are used: take at least {least}, better 10 to 15.",
-                n=len(used),
-                least=_ENOUGH_VIEWS,
-            )
-        )
+        notes.append(note_of("camera.few_views", n=len(used), least=_ENOUGH_VIEWS))
     uv = np.concatenate([quality.view.uv[quality.counted] for quality in used])
     empty = empty_regions(uv, calibration.camera.image_size)
     if empty:
-        notes.append(
-            Message(
-                "camera.empty_regions",
-                "There is no corner in the {places:and} of the picture: take a view that reaches there.",
-                places=tuple(empty),
-            )
-        )
+        notes.append(note_of("camera.empty_regions", places=tuple(empty)))
     if calibration.tilt_range < _ENOUGH_TILT_RANGE:
-        notes.append(
-            Message(
-                "camera.small_tilts",
-                "The views are tilted by at most {tilt:.0f}° against each other: tilt the target by about 30° in "
-                "different directions, or the focal length stays uncertain.",
-                tilt=np.rad2deg(calibration.tilt_range),
-            )
-        )
+        notes.append(note_of("camera.small_tilts", tilt=np.rad2deg(calibration.tilt_range)))
     if np.isnan(calibration.cross_validation_mm):
-        notes.append(
-            Message(
-                "camera.too_few_to_compare",
-                "With fewer than six views two halves of them cannot be checked against each other.",
-            )
-        )
+        notes.append(note_of("camera.too_few_to_compare"))
     shape = calibration.board
     if shape.surely_bowed and shape.departure_mm > _BOWED_MM:
-        notes.append(
-            Message(
-                "camera.bowed_target",
-                "The target is bowed by {bow:.2f} mm from its lowest to its highest place, which is taken into "
-                "account: better fix it to something flat.",
-                bow=shape.departure_mm,
-            )
-        )
+        notes.append(note_of("camera.bowed_target", bow=shape.departure_mm))
     notes += notes_on_picture(calibration)
     limit = max(_MUCH_WIDER, 1 + _CHANCE_SDS * widening.chance)
     if widening.within_views > limit:
-        notes.append(
-            Message(
-                "camera.corners_err_together",
-                "Corners of one view err together (a target that is not flat, blur, or a detector's bias): the "
-                "standard deviations are {times:.1f} times those of independent corners.",
-                times=widening.within_views,
-            )
-        )
+        notes.append(note_of("camera.corners_err_together", times=widening.within_views))
     if widening.across_views > _MUCH_WIDER:
-        notes.append(
-            Message(
-                "camera.corners_err_alike",
-                "Corners of the target err alike in every view (a print that is not true): the standard deviations are "
-                "{times:.1f} times those of independent corners.",
-                times=widening.across_views,
-            )
-        )
+        notes.append(note_of("camera.corners_err_alike", times=widening.across_views))
     return tuple(notes)
 
 
 def _worse_views(used: list[ViewQuality]) -> list[Message]:
     typical = float(np.median([quality.rms_px for quality in used]))
     return [
-        Message(
-            "camera.worse_view",
-            "{view} fits {times:.0f} times worse than most views ({rms:.2f} px against {usual:.2f} px): look at its "
-            "corners, and take it again or leave it out.",
-            view=_name(quality),
-            times=quality.rms_px / typical,
-            rms=quality.rms_px,
-            usual=typical,
+        note_of(
+            "camera.worse_view", view=_name(quality), times=quality.rms_px / typical, rms=quality.rms_px, usual=typical
         )
         for quality in used
         if quality.rms_px > _WORSE_VIEW * typical

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from core.calibrate.camera.bundle import Bundle, Observed, normal_equations, refine, residual_lengths
 from core.calibrate.camera.skew import FEWEST_VIEWS, MANY_ERRORS
 from core.calibrate.results import CAMERA_PARAMETERS
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -60,11 +61,8 @@ class ThirdRadial:
     @property
     def note(self) -> Message:
         """That k3 is solved for, and what it does."""
-        return Message(
+        return note_of(
             "camera.third_radial",
-            "The lens asks for its third radial coefficient k₃, which is solved for: with it, each view fits the "
-            "camera of all others better, by {gain:.1%} ± {gain_error:.1%} of its squared residuals in the mean. It "
-            "moves corners by up to {px:.2f} px ({mm:.3f} mm at a distance of {depth_mm:.0f} mm).",
             gain=self.gain,
             gain_error=self.gain_error,
             px=self.px,

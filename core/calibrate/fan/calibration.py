@@ -32,6 +32,7 @@ from core.calibrate.fan.verdict import Constrained, judge
 from core.calibrate.levenberg import MOST_STEPS
 from core.calibrate.results import LEFT_OUT, FanCalibration
 from core.errors import InputError
+from core.findings.table import note_of
 from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -54,12 +55,7 @@ BENDS_MM = 0.03
 assumed, for a sheet on a board of some mm."""
 OUTLYING = 5.0
 """A pose this many times worse than the median pose is left out."""
-NOT_CONVERGED = Message(
-    "fan.not_converged",
-    "Planes and poses had not settled after {n} steps and stay as they were then: what is measured with them may be "
-    "off by more than U. Record more poses of the target, at different distances and tilts, and calibrate again.",
-    n=MOST_STEPS,
-)
+NOT_CONVERGED = note_of("fan.not_converged", n=MOST_STEPS)
 
 
 @dataclass(frozen=True, slots=True)
@@ -254,14 +250,7 @@ def _further_line(located: Sequence[LocatedPose], camera: Camera, rough: Array) 
         rays = np.vstack([line.pivots for line in lines])
         apart = np.abs(rays @ (rough - pi).T) / np.abs(rays @ pi)[:, None]
         if 2 * len(lines) > sum(pose.used for pose in located) and np.median(apart, axis=0).min() > DISTINCT:
-            return [
-                Message(
-                    "fan.further_plane",
-                    "a further light plane is seen in {n} poses: check {field}",
-                    n=len(lines),
-                    field=_LINES,
-                )
-            ]
+            return [note_of("fan.further_plane", n=len(lines), field=_LINES)]
     return []
 
 
@@ -403,13 +392,7 @@ def _solve_without_outlying_poses(
         worst = int(np.argmax(bundle.pose_errors))
         times = float(bundle.pose_errors[worst] / np.median(bundle.pose_errors))
         trial = list(located)
-        trial[used[worst]] = located[used[worst]].left_out(
-            Message(
-                "fan.outlying_pose",
-                "its stripes or target points fit {times:.0f} times worse than in the other poses",
-                times=times,
-            )
-        )
+        trial[used[worst]] = located[used[worst]].left_out(note_of("fan.outlying_pose", times=times))
         if dispensable == 0 or times < OUTLYING or not _seen_twice(trial, len(planes.pis)):
             return located, bundle
         located, dispensable, planes = trial, dispensable - 1, bundle.planes

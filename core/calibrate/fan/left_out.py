@@ -6,6 +6,7 @@ import math
 from collections.abc import Sequence
 
 from core.calibrate.results import LEFT_OUT, PlanePose
+from core.findings.table import note_of
 from core.messages import Message
 
 
@@ -26,6 +27,4 @@ def note_on_left_out(poses: Sequence[PlanePose]) -> Message | None:
     ]
     if not out:
         return None
-    return Message(
-        "fan.poses_left_out", "{n} of {all} poses left out: {names:;}", n=len(out), all=len(poses), names=tuple(out)
-    )
+    return note_of("fan.poses_left_out", n=len(out), all=len(poses), names=tuple(out))

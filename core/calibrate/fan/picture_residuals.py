@@ -19,6 +19,7 @@ from core.calibrate.camera.coverage import REGIONS
 from core.calibrate.camera.picture_residuals import GRID, direction_of
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.poses.located_pose import LocatedPose
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array
@@ -84,25 +85,12 @@ def notes_on_points(found: PointResiduals) -> tuple[Message, ...]:
     point, (dx, dy) = _strongest(found.over_target)
     if np.hypot(dx, dy) > TOLD_MM:
         x, y = found.places[point]
-        return (
-            Message(
-                "fan.point_off_target",
-                "in all poses the target's point at ({x:g}, {y:g}) mm lies off its place by ({dx:.2f}, {dy:.2f}) mm, "
-                "which U need not contain: the print is not true, or the camera is not as it was calibrated",
-                x=float(x),
-                y=float(y),
-                dx=dx,
-                dy=dy,
-            ),
-        )
+        return (note_of("fan.point_off_target", x=float(x), y=float(y), dx=dx, dy=dy),)
     region, (du, dv) = _strongest(found.over_picture)
     if np.hypot(du, dv) > TOLD_PX:
         return (
-            Message(
+            note_of(
                 "fan.points_off_in_region",
-                "in all poses the target's points in the {place} of the picture lie too far {direction} by "
-                "{px:.2f} px, which U need not contain: calibrate the camera anew, or look for a print that is not "
-                "true",
                 place=REGIONS[region],
                 direction=direction_of(du, dv),
                 px=float(np.hypot(du, dv)),

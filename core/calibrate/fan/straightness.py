@@ -16,6 +16,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.stripe_lines import StripeLine
 from core.calibrate.fan.poses.target_plane import on_target
+from core.findings.table import note_of
 from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
@@ -88,39 +89,17 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
     ends = (judgement.profile[0] + judgement.profile[-1]) / 2
     twist = (judgement.profile[-1] - judgement.profile[0]) / 2
     if abs(twist) > abs(ends - middle):
-        return (
-            Message(
-                "fan.lines_wavy",
-                "the lines are no planes of light: in all poses their stripes bend to and fro by {mm:.3f} mm "
-                "(residuals {rms:.3f} mm, expected {expected:.3f} mm), which their uncertainty contains: is the camera "
-                "well calibrated, the laser's lens clean?",
-                mm=abs(twist),
-                rms=judgement.rms,
-                expected=judgement.expected,
-            ),
-        )
+        return (note_of("fan.lines_wavy", mm=abs(twist), rms=judgement.rms, expected=judgement.expected),)
     where = Message("fan.bent_away", "away from") if ends > middle else Message("fan.bent_towards", "towards")
     return (
-        Message(
-            "fan.lines_bent",
-            "the lines are no planes of light: in all poses their ends bend {where} the camera by {mm:.3f} mm "
-            "(residuals {rms:.3f} mm, expected {expected:.3f} mm), which their uncertainty contains: the laser's line "
-            "lens, a target that is curled alike in every pose (state its flatness), or the camera's calibration",
-            where=where,
-            mm=abs(ends - middle),
-            rms=judgement.rms,
-            expected=judgement.expected,
-        ),
+        note_of("fan.lines_bent", where=where, mm=abs(ends - middle), rms=judgement.rms, expected=judgement.expected),
     )
 
 
 def bow_or_bend(judgement: Judgement) -> Message:
     """Note that stripes bend alike on a flat target, of which `judgement` is, and that a bow has been taken for it."""
-    return Message(
+    return note_of(
         "fan.bow_or_bend",
-        "in all poses the stripes bend alike by {mm:.3f} mm: a bowed target does that, and light that is no plane. "
-        "Taken is a bowed target, as its flatness is not stated to be better; the uncertainty contains the other. Use "
-        "a flat target and state its flatness ({field})",
         mm=float(np.nanmax(judgement.profile) - np.nanmin(judgement.profile)),
         field=Field("plane_target.flatness_mm"),
     )

@@ -18,6 +18,7 @@ from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.straightness import bends_of, bow_or_bend, judge_lines, notes_on_lines, off_planes_mm
 from core.calibrate.fan.verdict import Verdict, fan_of
 from core.calibrate.results import FanCalibration, PlanePose
+from core.findings.table import note_of
 from core.messages import Field, Message
 from core.model import LightPlane, Pose
 from core.model.arrays import Array
@@ -166,15 +167,7 @@ def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose]) -> tuple[
     stripes = [stripe for pose in located for stripe in pose.stripes.values()]
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:
-        notes.append(
-            Message(
-                "fan.saturated_stripes",
-                "the stripes are saturated at {share:.0%} of their points, which can shift them: expose shorter, dim "
-                "the laser, or set {field} to a colour in which the laser is weaker",
-                share=share,
-                field=Field("channel"),
-            )
-        )
+        notes.append(note_of("fan.saturated_stripes", share=share, field=Field("channel")))
     return tuple(notes)
 
 
@@ -188,27 +181,14 @@ def _notes_on_scatter(prediction_errors: Array, expected_mm: float) -> tuple[Mes
     times = scatter / expected_mm
     if scatter < WORTH_A_NOTE_MM or times < SCATTERED:
         return ()
-    return (
-        Message(
-            "fan.poses_scatter",
-            "the poses scatter by {scatter:.2f} mm, {times:.0f} times their noise, which the planes' uncertainty "
-            "contains: is the target curled, its size as stated, the camera well calibrated?",
-            scatter=scatter,
-            times=times,
-        ),
-    )
+    return (note_of("fan.poses_scatter", scatter=scatter, times=times),)
 
 
 def _notes_on_predictions(names: Sequence[str], foretold: Predictions) -> tuple[Message, ...]:
     """On the poses that the others predict badly, of all that have these names."""
     return tuple(
-        Message(
-            "fan.poorly_predicted",
-            "the other poses foretell the stripes of {pose} to {error:.3f} mm only, those of a usual pose to "
-            "{usual:.3f} mm: look at its pictures, or take more poses like it",
-            pose=names[index],
-            error=float(foretold.error_mm[index]),
-            usual=foretold.usual_mm,
+        note_of(
+            "fan.poorly_predicted", pose=names[index], error=float(foretold.error_mm[index]), usual=foretold.usual_mm
         )
         for index in foretold.poor
     )
@@ -218,11 +198,4 @@ def _notes_on_bow(shape: BoardShape) -> tuple[Message, ...]:
     """On a plate that is surely bowed."""
     if not shape.surely_bowed or shape.departure_mm < WORTH_A_NOTE_MM:
         return ()
-    return (
-        Message(
-            "fan.bowed_target",
-            "the plane target is bowed by {bow:.2f} mm from its lowest to its highest place, which is taken into "
-            "account: better fix it to something flat",
-            bow=shape.departure_mm,
-        ),
-    )
+    return (note_of("fan.bowed_target", bow=shape.departure_mm),)

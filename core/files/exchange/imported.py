@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
 from core.errors import InputError, WrongValue
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera
 
@@ -69,12 +70,5 @@ def imported_camera(
         coverage=math.nan,
         tilt_range=math.nan,
         cross_validation_mm=math.nan,
-        notes=(
-            Message(
-                "camera.imported",
-                "The camera was calibrated by another program and read from {name}: its standard deviations are not "
-                "known, so no uncertainty here holds the camera's share.",
-                name=path.name,
-            ),
-        ),
+        notes=(note_of("camera.imported", name=path.name),),
     )

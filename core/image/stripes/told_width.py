@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings
 from core.messages import Message
@@ -48,12 +49,4 @@ def told_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings 
     measured = max(widths, key=lambda width: abs(np.log(width / told.width_px)), default=told.width_px)
     if _NARROWEST <= measured / told.width_px <= _WIDEST:
         return ()
-    return (
-        Message(
-            "stripes.told_width_wrong",
-            "The stripes were told to be {told_px:.1f} px wide, but are {measured_px:.1f} px: the measured width was "
-            "used instead.",
-            told_px=told.width_px,
-            measured_px=measured,
-        ),
-    )
+    return (note_of("stripes.told_width_wrong", told_px=told.width_px, measured_px=measured),)

@@ -27,6 +27,7 @@ from numpy.typing import NDArray
 from scipy.special import chdtrc
 
 from core.calibrate.camera.coverage import REGIONS
+from core.findings.table import note_of
 from core.inspect.fit.plane_search import search_tolerance
 from core.inspect.fit.shapes import Parts, Shape
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
@@ -296,10 +297,8 @@ def notes_on_deviation(cloud: Cloud, deviation: Array, normals: Array, errors: P
         return ()
     most = int(np.argmax(np.abs(pattern.height)))
     return (
-        Message(
+        note_of(
             "form.off_nominal",
-            "However the part is laid on its nominal surface: at the {place}, as the camera sees it, it is {mm:.2g} mm "
-            "{where}, more than the uncertainty of its points explains.",
             place=_region(pattern.at[most]),
             mm=abs(float(pattern.height[most])),
             where=_UP if pattern.height[most] > 0 else _DOWN,
@@ -339,15 +338,7 @@ def of_scatter(found: Judgement, names: Sequence[Message]) -> tuple[Message, ...
     asked = ((found.whole, found.whole_freedom), (found.alone, found.freedom))
     if any(times <= TIMES or _by_chance(times, freedom) >= SURELY for times, freedom in asked):
         return ()
-    return (
-        Message(
-            "form.scatter",
-            "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts "
-            "on them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise.",
-            name=list(names),
-            times=found.whole,
-        ),
-    )
+    return (note_of("form.scatter", name=list(names), times=found.whole),)
 
 
 def _by_chance(times: float, freedom: float) -> float:
@@ -365,36 +356,21 @@ def _of_pattern(pattern: Pattern, places: Places, number: int, name: Message) ->
     middle = float(solved[0] - np.average(bowl, weights=count))
     if explained > _BOWL and abs(middle) > np.ptp(bowl) / 4:
         where, to_edges = ABOVE if middle > 0 else BELOW, places.sides[0] / (places.sides[0] - 1)
-        return Message(
-            "form.bowed",
-            "The form of {name} is not true: it is bowed, its middle is {mm:.2g} mm {where} its rim. U contains "
-            "what that does to the value.",
-            name=name,
-            mm=float(np.ptp(_parabola(to_edges * pattern.at) @ solved)),
-            where=where,
+        return note_of(
+            "form.bowed", name=name, mm=float(np.ptp(_parabola(to_edges * pattern.at) @ solved)), where=where
         )
     most = int(np.argmax(np.abs(height)))
     size, where = abs(float(height[most])), _UP if height[most] > 0 else _DOWN
     if len(places.sides) == 1:
         first, last = places.mm[number]
-        return Message(
+        return note_of(
             "form.uneven_along",
-            "The form of {name} is not true: {at_mm:.1f} mm along the section it is {mm:.2g} mm {where}. U contains "
-            "what that does to the value.",
             name=name,
             at_mm=float(first + (pattern.at[most, 0] + 1) / 2 * (last - first)),
             mm=size,
             where=where,
         )
-    return Message(
-        "form.uneven",
-        "The form of {name} is not true: at the {place}, as the camera sees it, it is {mm:.2g} mm {where}. U "
-        "contains what that does to the value.",
-        name=name,
-        place=_region(pattern.at[most]),
-        mm=size,
-        where=where,
-    )
+    return note_of("form.uneven", name=name, place=_region(pattern.at[most]), mm=size, where=where)
 
 
 def _region(at: Array) -> Message:

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.linalg import block_diag
 
+from core.findings.table import note_of
 from core.inspect.fit.judged_form import ABOVE, BELOW, Left, Places, Stretches, of_scatter, pattern_on
 from core.inspect.fit.shapes import Parts, Shape
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -64,11 +65,8 @@ def notes_on_profiles(pictures: Sequence[FacesInPicture], names: Sequence[Messag
         if pattern is not None:
             most = int(np.argmax(np.abs(pattern.height)))
             notes.append(
-                Message(
+                note_of(
                     "profile.not_straight",
-                    "The profiles of {name} are not straight: at {share:.0%} of its length from the left they are "
-                    "{mm:.2g} mm {where} their line. The face is not plane, or the light is bent; more pictures do not "
-                    "average it out.",
                     name=name,
                     share=float((pattern.at[most, 0] + 1) / 2),
                     mm=abs(float(pattern.height[most])),

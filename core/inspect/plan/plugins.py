@@ -13,6 +13,7 @@ from functools import cache
 from importlib.metadata import EntryPoint, entry_points
 from typing import Any
 
+from core.findings.table import note_of
 from core.inspect.plan.feature_kind import FeatureKind
 from core.messages import Message
 
@@ -83,14 +84,7 @@ def failure(origin: Origin, name: str, error: Exception) -> Message:
 
 def unusable(name: str, origin: Origin, why: Message | str) -> Message:
     """What is told of what cannot be used at all."""
-    return Message(
-        "plugin.unusable",
-        "{name} of the package {package} {version} cannot be used: {why}.",
-        name=name,
-        package=origin.package,
-        version=origin.version,
-        why=why,
-    )
+    return note_of("plugin.unusable", name=name, package=origin.package, version=origin.version, why=why)
 
 
 def _origin(point: EntryPoint) -> Origin:

@@ -22,6 +22,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import replace
 
+from core.findings.table import note_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
 from core.inspect.plan.kinds import expanding
@@ -90,22 +91,12 @@ def correction_to_reference(
     change = by_scale - length_mm * temperature.alpha * (temperature.part_celsius - REFERENCE_C)
     if temperature.celsius_assumed:
         return change, rows, (_of_scale_alone(by_scale, temperature.scale_celsius),) if by_scale else ()
-    note = Message(
-        "feature.stated_at_20",
-        "Stated at 20 °C: {change_um:+.2f} µm for a part at {part_celsius:g} °C.",
-        change_um=change * 1000,
-        part_celsius=temperature.part_celsius,
-    )
+    note = note_of("feature.stated_at_20", change_um=change * 1000, part_celsius=temperature.part_celsius)
     return change, rows, (note,)
 
 
 def _of_scale_alone(change_mm: float, celsius: float) -> Message:
-    return Message(
-        "feature.scale_at_20",
-        "Corrected by {change_um:+.2f} µm for a calibration target at {celsius:g} °C.",
-        change_um=change_mm * 1000,
-        celsius=celsius,
-    )
+    return note_of("feature.scale_at_20", change_um=change_mm * 1000, celsius=celsius)
 
 
 def temperature_of(part: Part) -> Temperature | None:
@@ -172,21 +163,11 @@ def compared(length: Characteristic, master: Master) -> Characteristic:
     if not expands(length):
         return length
     if abs(length.value - master.measured_mm) > ALIKE * master.measured_mm:
-        note = Message(
-            "feature.master_too_different",
-            "Not compared with master {master}, whose length of {certified_mm:g} mm is too different.",
-            master=master.name,
-            certified_mm=master.certified_mm,
-        )
+        note = note_of("feature.master_too_different", master=master.name, certified_mm=master.certified_mm)
         return replace(length, notes=(*length.notes, note))
     correction = master.certified_mm - master.measured_mm
     rows = _difference(length.budget, master)
-    note = Message(
-        "feature.compared_with_master",
-        "Compared with master {master}: {correction_um:+.2f} µm.",
-        master=master.name,
-        correction_um=correction * 1000,
-    )
+    note = note_of("feature.compared_with_master", master=master.name, correction_um=correction * 1000)
     return replace(
         length,
         value=length.value + correction,

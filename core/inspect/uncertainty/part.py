@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import NamedTuple
 
+from core.findings.table import note_of
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import PART_OFFSET, SPRAY, SPRAY_ASSUMED
 from core.messages import Field, Message
@@ -178,10 +179,8 @@ class Part:
         if not self.thicker_mm:
             return ()
         return (
-            Message(
+            note_of(
                 "part.surface_corrected",
-                "Corrected by {change_um:+.1f} µm for what is stated of the part: its material is seen {offset_um:g} "
-                "µm below the surface, a layer of spray adds {spray_um:g} µm.",
                 change_um=self.thicker_mm * 1e3,
                 offset_um=(self.offset_mm or 0.0) * 1e3,
                 spray_um=(self.spray_mm or 0.0) * 1e3,
@@ -195,10 +194,8 @@ class Part:
         if self.material is None:
             alpha, u_alpha = self.expansion
             notes.append(
-                Message(
+                note_of(
                     "part.material_assumed",
-                    "What the part is made of is not stated ({field}): the uncertainty holds light from below its "
-                    "surface as far as nothing excludes it, and an expansion of ({alpha:g} ± {u_alpha:g})·10⁻⁶/K.",
                     field=Field("part.material", whole=True),
                     alpha=alpha * 1e6,
                     u_alpha=u_alpha * 1e6,
@@ -206,10 +203,8 @@ class Part:
             )
         if self.celsius is None:
             notes.append(
-                Message(
+                note_of(
                     "part.temperature_assumed",
-                    "The part's temperature is not stated ({field}): {celsius:g} °C with a standard uncertainty of "
-                    "{u:g} °C is assumed.",
                     field=Field("part.celsius", whole=True),
                     celsius=SUSPECTED_CELSIUS,
                     u=SUSPECTED_CELSIUS_SD,

@@ -30,6 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.table import note_of
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
 from core.inspect.uncertainty.coverage import COVERAGE
@@ -182,9 +183,4 @@ def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:
     rest = [row.u_mm for row in budget if row.source not in (SKEWED_LIGHT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED)]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
         return None
-    return Message(
-        "inspection.light_is_skewed",
-        "The laser's light is skewed in depth on what was measured: part of it comes from below the surface (plastic, "
-        "wax, paper), or shines to one side. U holds what that may do, but nothing is proved: spray the part matt, or "
-        "compare it with a master of its material.",
-    )
+    return note_of("inspection.light_is_skewed")

@@ -19,10 +19,11 @@ from core.files.pictures import Picture
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, require_camera
 from core.files.results.camera_file import read_camera, write_camera
+from core.findings.table import note_of
 from core.image.hot_pixels import hot_pixels, standing_out
 from core.image.targets import detect
 from core.image.targets.target_view import TargetView
-from core.messages import Field, Message, plural_message
+from core.messages import Field, Message
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -166,13 +167,8 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
         return calibration
     solved = iter(calibration.views)
     views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen.views)
-    note = Message(
-        "camera.views_without_target",
-        "{n} of {all} views show no usable target, the first {name}: {reason}.",
-        n=len(lost),
-        all=len(seen.views),
-        name=lost[0].name,
-        reason=lost[0].reason,
+    note = note_of(
+        "camera.views_without_target", n=len(lost), all=len(seen.views), name=lost[0].name, reason=lost[0].reason
     )
     return replace(calibration, views=views, notes=(*calibration.notes, note))
 
@@ -183,15 +179,7 @@ def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraC
     calibration = replace(calibration, hot_pixels=seen.hot)
     if seen.hot is None or seen.hot < FEWEST_HOT_SHARE * width * height:
         return calibration
-    note = plural_message(
-        "camera.hot_pixels",
-        "{n} pixel of {all} shines by itself in all pictures (hot pixel): it pulls corners and stripes. Map it out in "
-        "the camera, cool it or expose for a shorter time.",
-        "{n} pixels of {all} shine by themselves in all pictures (hot pixels): they pull corners and stripes. Map them "
-        "out in the camera, cool it or expose for a shorter time.",
-        n=seen.hot,
-        all=width * height,
-    )
+    note = note_of("camera.hot_pixels", n=seen.hot, all=width * height)
     return replace(calibration, notes=(*calibration.notes, note))
 
 

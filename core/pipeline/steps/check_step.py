@@ -36,6 +36,7 @@ from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
 from core.files.results.rig_history import PastCheck, keep_check
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -166,15 +167,8 @@ class _OfStep(NamedTuple):
         if not calibrations or check.unseen_mm <= LEAVES_MUCH * calibrations:
             return ()
         return (
-            Message(
-                "check.leaves_much",
-                "The check leaves a step of {step_mm:g} mm uncertain by U = {unseen_mm:.3f} mm, the calibrations alone "
-                "by {calibrations_mm:.3f} mm. Take twice as many pictures more, near and far, each tilted by about 40° "
-                "to another side: seen nearly square on, a target's few corners say little of how it is tilted, a "
-                "black square's four less than a grid of them.",
-                step_mm=check.step_mm,
-                unseen_mm=check.unseen_mm,
-                calibrations_mm=calibrations,
+            note_of(
+                "check.leaves_much", step_mm=check.step_mm, unseen_mm=check.unseen_mm, calibrations_mm=calibrations
             ),
         )
 
@@ -238,12 +232,7 @@ def since_calibration(
     if apart <= SAME_DAY:
         return judged(recording_set, calibration, options, progress, of_measured, poses, at_scan=True).change
     change = judged(replace(recording_set, check=()), calibration, options, progress, of_measured, at_scan=True).change
-    other_day = Message(
-        "check.another_day",
-        "The pictures of the check were taken {days:.0f} days from those of the scan: they say nothing of its day and "
-        "were not used; check again.",
-        days=apart,
-    )
+    other_day = note_of("check.another_day", days=apart)
     return replace(change, left_out=(other_day,))
 
 
@@ -353,10 +342,7 @@ def judged(
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(pose.misses_fan for pose in checked):
         change = replace(change, p=0.0, times=math.inf)
-    left_out = (
-        Message("check.pose_left_out", "Picture {pose} of the check says nothing: {reason}.", pose=pose, reason=reason)
-        for pose, reason in reasons
-    )
+    left_out = (note_of("check.pose_left_out", pose=pose, reason=reason) for pose, reason in reasons)
     return Judged(deviations, evidence, checked, replace(change, left_out=tuple(left_out)))
 
 
@@ -370,21 +356,9 @@ def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalib
 
 def _charted(spread: RigSpread, recording_set: RecordingSet) -> Message:
     """What the history of the rig's checks says of how much it changes."""
-    if recording_set.rig.stability is not None or recording_set.rig.drift != NO_DRIFT:
-        return Message(
-            "scan.stability_more_than_stated",
-            "By checks on {days} days from {first} to {last} the rig changes by {times:.2f} times what is assumed of a "
-            "rig without a history, which is more than rig.toml states ([stability]): that is reckoned with.",
-            times=spread.factor,
-            days=spread.days,
-            first=spread.first.astimezone(),
-            last=spread.last.astimezone(),
-        )
-    return Message(
-        "scan.stability_charted",
-        "How far the rig may have changed since its calibration is from its control chart: {times:.2f} times "
-        "what is assumed of a rig without a history, by checks on {days} days from {first} to {last}. What has "
-        "knocked it since then is not in that: only a check of the day shows it.",
+    stated = recording_set.rig.stability is not None or recording_set.rig.drift != NO_DRIFT
+    return note_of(
+        "scan.stability_more_than_stated" if stated else "scan.stability_charted",
         times=spread.factor,
         days=spread.days,
         first=spread.first.astimezone(),

@@ -11,6 +11,7 @@ from core.files.recording.rig import GaugeSpec, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import ScanFile, read_scan
+from core.findings.table import note_of
 from core.inspect.gauge import adjusted, measure_gauge
 from core.inspect.plan.temperature import correction_to_reference, temperature_of
 from core.inspect.results import GaugeResult
@@ -89,15 +90,7 @@ def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
     )
     if MATTERS**2 * (gauge.u_mm**2 - change**2) >= gauge.u_mm**2:
         return ()
-    return (
-        Message(
-            "inspection.rig_not_checked",
-            "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
-            "Take 3 pictures of the plane target in the fan (1 min).",
-            part_mm=gauge.k * change,
-            U_mm=gauge.U_mm,
-        ),
-    )
+    return (note_of("inspection.rig_not_checked", part_mm=gauge.k * change, U_mm=gauge.U_mm),)
 
 
 @contextmanager
@@ -164,7 +157,7 @@ def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[Gau
     try:
         return gauge_step(work, progress), None
     except InputError as error:
-        why = Message("gauge.none_measured", "No thickness was measured: {reason}", reason=error.message)
+        why = note_of("gauge.none_measured", reason=error.message)
         with work.step("gauge") as log:
             log.settings[PART] = part_table(work.recording_set.rig.part)
             log.notes.append(why)

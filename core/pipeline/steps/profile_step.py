@@ -17,6 +17,7 @@ from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
 from core.files.step_graph import resting_on
+from core.findings.table import note_of
 from core.inspect.face_region import inside_polygon
 from core.inspect.gauge import adjusted, doubted
 from core.inspect.results import GaugeResult
@@ -237,36 +238,20 @@ def _cloud(seen: Sequence[Profiles], shown: int, common: CommonErrors) -> Cloud:
     return replace(cloud, sigma_common=common.sigma(cloud))
 
 
-_ONE_LINE_ON_PART = Message(
-    "profile.one_line_on_part",
-    "One line alone meets the upper face: that it is plane, and parallel to the lower one, is taken for granted.",
-)
+_ONE_LINE_ON_PART = note_of("profile.one_line_on_part")
 
 
 def _assumed(lines: int, tilt: StatedTilt | None, shown: Step) -> tuple[Message, ...]:
     """What the thickness takes for granted."""
-    resting = Message(
-        "profile.assumes_rest",
-        "The part is taken to have been at rest during each exposure, and its two faces to be parallel.",
-    )
+    resting = note_of("profile.assumes_rest")
     if shown.faces.planes.tilt_determined or tilt is None:
         upper = np.unique(shown.cloud.sweep[shown.pair.upper])
         return (resting,) if len(upper) > 1 else (resting, _ONE_LINE_ON_PART)
     sd = float(np.degrees(STAGE_SD if tilt.sd is None else tilt.sd))
     if tilt.stage:
-        how = Message(
-            "profile.assumes_stage",
-            "The faces are taken to be parallel to the plate of {stage}, to a standard uncertainty of {sd_deg:.2g}°.",
-            stage=tilt.stage,
-            sd_deg=sd,
-        )
+        how = note_of("profile.assumes_stage", stage=tilt.stage, sd_deg=sd)
     else:
-        how = Message(
-            "profile.assumes_square",
-            "The light plane is taken to stand at right angles on the faces, to a standard uncertainty of "
-            "{sd_deg:.2g}°; no picture shows whether it does.",
-            sd_deg=sd,
-        )
+        how = note_of("profile.assumes_square", sd_deg=sd)
     return resting, how
 
 

@@ -12,6 +12,7 @@ from core.calibrate.results import FanCalibration
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
+from core.findings.table import note_of
 from core.messages import Field, Message
 
 _HOUR = timedelta(hours=1)
@@ -70,14 +71,7 @@ def notes_since_check(rig: Rig) -> tuple[Message, ...]:
     known = rig.air.checked is not None and rig.air.scanned is not None
     if known or not rig.drift.per_kelvin.over_default.any():
         return ()
-    return (
-        Message(
-            "scan.kelvins_since_check_assumed",
-            "How warm it was at the check and at the scan is not stated for both ([air] in rig.toml): a difference of "
-            "{kelvins:g} K between them is assumed.",
-            kelvins=KELVINS_WITHIN_DAY,
-        ),
-    )
+    return (note_of("scan.kelvins_since_check_assumed", kelvins=KELVINS_WITHIN_DAY),)
 
 
 def _since_calibration(
@@ -106,35 +100,23 @@ def _guessed(rig: Rig, since: Apart) -> Iterator[bool]:
 
 
 def _not_stated(size: Stability) -> Message:
-    return Message(
-        "scan.stability_assumed",
-        "How far the rig may have changed since its calibration is not stated ([stability] in rig.toml); assumed "
-        "are standard uncertainties of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:g} px.",
-        turn_urad=size.turn * 1e6,
-        shift_um=size.shift_mm * 1e3,
-        centre_px=size.centre_px,
+    return note_of(
+        "scan.stability_assumed", turn_urad=size.turn * 1e6, shift_um=size.shift_mm * 1e3, centre_px=size.centre_px
     )
 
 
 def _warmer(since: Apart) -> Iterator[Message]:
     """A note where the default is not enough."""
     if not since.kelvins_assumed and since.kelvins > USUAL_KELVINS:
-        yield Message(
-            "scan.warmer_than_usual",
-            "The rig was calibrated at a temperature {kelvins:g} K away, and how far it changes by that is not stated "
-            "({field}): what is assumed for {usual:g} K is reckoned with in proportion.",
-            kelvins=since.kelvins,
-            usual=USUAL_KELVINS,
-            field=Field("[stability] per_kelvin"),
+        yield note_of(
+            "scan.warmer_than_usual", kelvins=since.kelvins, usual=USUAL_KELVINS, field=Field("[stability] per_kelvin")
         )
 
 
 def _said(rig: Rig, since: Apart, stability: Stability) -> Iterator[Message]:
     """What is reckoned with, and which of kelvins and hours are assumed."""
-    yield Message(
+    yield note_of(
         "scan.change_by_warmth_and_time",
-        "By {kelvins:.1f} K and {hours:.1f} h since its calibration the rig may have changed by standard uncertainties "
-        "of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:.2g} px.",
         kelvins=since.kelvins,
         hours=since.hours,
         turn_urad=stability.turn * 1e6,
@@ -143,15 +125,6 @@ def _said(rig: Rig, since: Apart, stability: Stability) -> Iterator[Message]:
     )
     kelvins, hours = _guessed(rig, since)
     if kelvins:
-        yield Message(
-            "scan.kelvins_assumed",
-            "How warm it was is not stated for both times ([air] in rig.toml): a difference of {kelvins:g} K is "
-            "assumed.",
-            kelvins=since.kelvins,
-        )
+        yield note_of("scan.kelvins_assumed", kelvins=since.kelvins)
     if hours:
-        yield Message(
-            "scan.hours_assumed",
-            "No picture of the calibration is there to tell when it was made: {hours:g} hours ago is assumed.",
-            hours=since.hours,
-        )
+        yield note_of("scan.hours_assumed", hours=since.hours)

@@ -14,6 +14,7 @@ from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_r
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.set_listing import pictures_in
+from core.findings.table import note_of
 from core.image.targets import BlackSquare, Target, TargetNotFound, detect
 from core.image.targets.picture import Picture
 from core.image.targets.target_view import TargetView
@@ -63,8 +64,7 @@ def compare_targets(recording_set: RecordingSet, camera: Camera) -> tuple[Target
             shown.append(_both(other, rig.plane_target, picture, name, camera))
         except TargetNotFound as error:
             notes.append(
-                Message("target.not_both", "{picture} does not show both targets: {reason}.", picture=name,
-                        reason=error.what)
+                note_of("target.not_both", picture=name, reason=error.what)
             )  # fmt: skip
     return (target_ratio(shown, camera) if shown else None), tuple(notes)
 

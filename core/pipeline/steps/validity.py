@@ -16,7 +16,8 @@ from core.files.recording.set_listing import taken_at
 from core.files.results.rig_history import PastCheck, RigHistory, read_history
 from core.files.results.run_file import RunRecord
 from core.findings.proof import ScanFacts
-from core.messages import Message, plural_message
+from core.findings.table import note_of
+from core.messages import Message
 from core.pipeline.steps.target_sizes import with_known_size
 from core.pipeline.steps.workspace import Calibration, Workspace
 
@@ -47,22 +48,13 @@ def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
     try:
         checks = history_of(recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError as error:
-        unreadable = Message(
-            "validity.history_unreadable",
-            "The history of this rig's checks cannot be read ({reason}): nothing measured proves conformity.",
-            reason=error.message,
-        )
+        unreadable = note_of("validity.history_unreadable", reason=error.message)
         return replace(facts, of_the_day=(unreadable,))
     if fan.readjusted is not None:
         checks = (*checks, _as_check(fan.readjusted, calibration.id))
     nearest = _nearest(checks, when)
     if nearest is not None and nearest.verdict == "failed":
-        failed = Message(
-            "validity.check_failed",
-            "The check of camera and laser of {date} failed: nothing measured with these calibrations proves "
-            "conformity; calibrate again.",
-            date=nearest.taken_at.astimezone(),
-        )
+        failed = note_of("validity.check_failed", date=nearest.taken_at.astimezone())
         return replace(facts, of_the_day=(failed,))
     lapsed = (
         _calibration_lapsed(recording_set, work.record(), when),
@@ -147,13 +139,7 @@ def stated_validity(rig: Rig) -> tuple[Message, ...]:
     """A note where no limit is stated."""
     if rig.validity.calibration_days is not None and rig.validity.check_days is not None:
         return ()
-    return (
-        Message(
-            "validity.not_stated",
-            "How long a calibration or a check holds is not stated in full ([validity] in rig.toml): what is not "
-            "stated has no limit.",
-        ),
-    )
+    return (note_of("validity.not_stated"),)
 
 
 def _calibration_lapsed(recording_set: RecordingSet, record: RunRecord, when: datetime) -> Message | None:
@@ -162,24 +148,11 @@ def _calibration_lapsed(recording_set: RecordingSet, record: RunRecord, when: da
         return None
     made = list(_made(recording_set, record))
     if not made:
-        return Message(
-            "validity.calibration_undated",
-            "It is not known when camera and laser were calibrated, and a calibration holds for {days:g} days only: "
-            "nothing measured proves conformity.",
-            days=days,
-        )
+        return note_of("validity.calibration_undated", days=days)
     age = _days(when, min(made))
     if age <= days:
         return None
-    return plural_message(
-        "validity.calibration_lapsed",
-        "Camera and laser were calibrated {n} day before this was recorded, and a calibration holds for {days:g}: "
-        "nothing measured proves conformity; calibrate again.",
-        "Camera and laser were calibrated {n} days before this was recorded, and a calibration holds for {days:g}: "
-        "nothing measured proves conformity; calibrate again.",
-        n=math.ceil(age),
-        days=days,
-    )
+    return note_of("validity.calibration_lapsed", n=math.ceil(age), days=days)
 
 
 def _check_lapsed(rig: Rig, nearest: PastCheck | None, when: datetime) -> Message | None:
@@ -187,19 +160,8 @@ def _check_lapsed(rig: Rig, nearest: PastCheck | None, when: datetime) -> Messag
     if days is None or (nearest is not None and abs(_days(when, nearest.taken_at)) <= days):
         return None
     if nearest is None:
-        return Message(
-            "validity.never_checked",
-            "Camera and laser were never checked with these calibrations, and are to be every {days:g} days: nothing "
-            "measured proves conformity; check.",
-            days=days,
-        )
-    return Message(
-        "validity.check_lapsed",
-        "The check of camera and laser nearest to this recording is of {date}, and they are to be checked every "
-        "{days:g} days: nothing measured proves conformity; check again.",
-        date=nearest.taken_at.astimezone(),
-        days=days,
-    )
+        return note_of("validity.never_checked", days=days)
+    return note_of("validity.check_lapsed", date=nearest.taken_at.astimezone(), days=days)
 
 
 def _made(recording_set: RecordingSet, record: RunRecord) -> Iterator[datetime]:

@@ -17,7 +17,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.messages import Message, plural_message
+from core.findings.table import note_of
+from core.messages import Message
 from core.model.arrays import Array
 from core.model.residuals import over_picture
 from core.scan.features.frames import FrameFeatures
@@ -74,14 +75,8 @@ def notes_on_blur(blurs: Array) -> tuple[Message, ...]:
     if blurred.sum() < max(1.0, WORTH_A_NOTE * known.sum()):
         return ()
     return (
-        plural_message(
+        note_of(
             "scan.exposure_blur",
-            "In {n} of {known} frames the stripe is blurred by the hand's motion or tremor within the exposure, by up "
-            "to {blur_px:.1f} px (σ; at rest it is {at_rest_px:.1f} px). σ holds how much less sure these points are. "
-            "Expose shorter, with more light or gain, or move slower and rest the hand.",
-            "In {n} of {known} frames the stripe is blurred by the hand's motion or tremor within the exposure, by up "
-            "to {blur_px:.1f} px (σ; at rest it is {at_rest_px:.1f} px). σ holds how much less sure these points are. "
-            "Expose shorter, with more light or gain, or move slower and rest the hand.",
             n=int(blurred.sum()),
             known=int(known.sum()),
             blur_px=float(blur[blurred].max()),

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model.arrays import Array
@@ -156,10 +157,8 @@ def _notes_on_exposure(frames: Sequence[FrameFeatures], number: int) -> Iterator
         points = sum(sum(map(len, frame.centrelines)) for frame, _ in again)
         stops = float(np.log2(np.median(factors)))
         shorter, longer = Message("scan.shorter", "shorter"), Message("scan.longer", "longer")
-        yield Message(
+        yield note_of(
             "scan.further_exposures",
-            "{n} of {all} frames have an exposure @{number}, {stops:.1f} f-stops {which} than the first one: "
-            "{percent:.1f} % of the points on their stripes are from it.",
             n=len(again),
             all=len(frames),
             number=number,
@@ -168,11 +167,8 @@ def _notes_on_exposure(frames: Sequence[FrameFeatures], number: int) -> Iterator
             percent=100 * sum(seen.points for _, seen in again) / max(points, 1),
         )
     if moved:
-        yield Message(
+        yield note_of(
             "scan.further_exposures_moved",
-            "Between the first exposure and @{number} of {n} of {all} frames, the first {name}, the hand-held laser "
-            "moved: the stripe lies {shift_px:.1f} px aside, and that exposure is not used there. Hold the laser still "
-            "for all of them.",
             number=number,
             n=len(moved),
             all=len(again),
@@ -188,11 +184,8 @@ def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
     most = max((frame.light_change for frame in changed), key=abs)
     brighter, darker = Message("scan.brighter", "brighter"), Message("scan.darker", "darker")
     return (
-        Message(
+        note_of(
             "scan.room_light_changed",
-            "The room's light changed in {n} of {all} frames, the first {name}: the background is up to "
-            "{percent:.0f} % {which} than in the reference, which makes stripes less sure. Keep the light as it is "
-            "during a scan, or scan again.",
             n=len(changed),
             all=len(frames),
             name=changed[0].name,
@@ -207,16 +200,7 @@ def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
     if not moved:
         return ()
     return (
-        Message(
-            "scan.frames_moved",
-            "Object or camera moved during the scan: {n} of {all} frames were left out, the first {name} (the fan's "
-            "light is {shift_px:.1f} px or more aside, measured across its lines). Hold both still and scan again to "
-            "use them all.",
-            n=len(moved),
-            all=len(frames),
-            name=moved[0].name,
-            shift_px=moved[0].shift_px,
-        ),
+        note_of("scan.frames_moved", n=len(moved), all=len(frames), name=moved[0].name, shift_px=moved[0].shift_px),
     )
 
 
@@ -227,22 +211,10 @@ def left_out_notes(frames: Sequence[FrameRecord]) -> tuple[Message, ...]:
         if not frame.used:
             names.setdefault(frame.reason or NO_REASON, []).append(frame.name)
     return tuple(
-        Message(
-            "scan.frames_without_points",
-            "{n} of {all} frames gave no points ({reason}): {names}.",
-            n=len(mine),
-            all=len(frames),
-            reason=reason,
-            names=mine,
-        )
+        note_of("scan.frames_without_points", n=len(mine), all=len(frames), reason=reason, names=mine)
         if len(mine) <= _NAMED
-        else Message(
-            "scan.many_frames_without_points",
-            "{n} of {all} frames gave no points ({reason}): {names} and others.",
-            n=len(mine),
-            all=len(frames),
-            reason=reason,
-            names=mine[:_NAMED],
+        else note_of(
+            "scan.many_frames_without_points", n=len(mine), all=len(frames), reason=reason, names=mine[:_NAMED]
         )
         for reason, mine in names.items()
     )

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.findings.table import note_of
 from core.image.exposure import BRIGHTEST
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
@@ -55,15 +56,4 @@ def notes_on_shine(fan: Sequence[Centreline], sweeps: Sequence[Centreline], full
     pieces = (*fan, *sweeps)
     heights = np.concatenate([piece.strength[piece.saturated] for piece in pieces])
     stops = math.log2(float(np.percentile(heights, _BRIGHT)) / (BRIGHTEST * full_scale))
-    return (
-        Message(
-            "scan.shines",
-            "{fan:.1f} % of the fan's points and {sweeps:.1f} % of the hand-held laser's are saturated: the surface "
-            "shines there (gloss), or the exposure is too long. Nothing is measured there, and points beside it may be "
-            "off: expose {stops:g} EV less, add second exposures that much shorter (NAME@2.png beside NAME.png), "
-            "or spray the part matt.",
-            fan=100 * of_fan,
-            sweeps=100 * of_sweeps,
-            stops=max(math.ceil(2 * stops), 1) / 2,
-        ),
-    )
+    return (note_of("scan.shines", fan=100 * of_fan, sweeps=100 * of_sweeps, stops=max(math.ceil(2 * stops), 1) / 2),)

@@ -12,6 +12,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from core.errors import InputError
+from core.findings.table import note_of
 from core.image.mosaic import PERIOD_PX, is_interpolated
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import NoiseModel
@@ -50,15 +51,7 @@ def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
     """A note on frames of this noise if what compression leaves them off is more than their noise."""
     if noise.compression.grey <= noise.read_grey:
         return ()
-    return (
-        Message(
-            "scan.compressed",
-            "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
-            "it; record PNG.",
-            grey=noise.compression.grey,
-            noise=noise.read_grey,
-        ),
-    )
+    return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)
 
 
 def _notes_on_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
@@ -67,16 +60,7 @@ def _notes_on_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
     width = float(np.median(widths))
     if width >= PERIOD_PX or not is_interpolated(reference.base):
         return ()
-    return (
-        Message(
-            "scan.colour_mosaic",
-            "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are finer than its "
-            "tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), or "
-            "stripes of σ {tile} px or more.",
-            width_px=width,
-            tile=PERIOD_PX,
-        ),
-    )
+    return (note_of("scan.colour_mosaic", width_px=width, tile=PERIOD_PX),)
 
 
 def _notes_on_raw_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
@@ -93,14 +77,7 @@ def _notes_on_raw_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
     medians = [float(np.median(each)) for each in seen]
     if max(medians) <= _UNEVEN * max(min(medians), 0.0):
         return ()
-    return (
-        Message(
-            "scan.raw_mosaic",
-            "The pictures look like the raw ones of a colour camera: the laser is seen {times:.1f} times as bright at "
-            "some pixels of each 2 × 2 as at others. State mosaic in rig.toml.",
-            times=max(medians) / max(min(medians), reference.noise.read_grey),
-        ),
-    )
+    return (note_of("scan.raw_mosaic", times=max(medians) / max(min(medians), reference.noise.read_grey)),)
 
 
 def _notes_on_speckle(reference: ReferenceFeatures) -> tuple[Message, ...]:
@@ -108,14 +85,7 @@ def _notes_on_speckle(reference: ReferenceFeatures) -> tuple[Message, ...]:
     share = _scatter(reference.fan, reference.noise)
     if share <= SPECKLED_SHARE:
         return ()
-    return (
-        Message(
-            "scan.speckled",
-            "The fan's light scatters by {percent:.0f} % from point to point beyond noise: strong speckle, or a grainy "
-            "surface. Open the lens's aperture, spray the part, or use wider lines.",
-            percent=100 * share,
-        ),
-    )
+    return (note_of("scan.speckled", percent=100 * share),)
 
 
 def _scatter(pieces: Sequence[Centreline], noise: NoiseModel) -> float:

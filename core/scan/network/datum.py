@@ -19,6 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -73,20 +74,11 @@ class Datum:
         advice = Message("scan.advice_relief", "put a step beside the part, or let the fan meet more relief")
         percent = 100 * self.scale
         if self.scale > UNKNOWN:
-            return Message(
-                "scan.scale_unknown",
-                "The fan meets no relief, so nothing fixes the scale of heights; {advice}. Its own points and flat "
-                "faces are right all the same.",
-                advice=advice,
-            )
+            return note_of("scan.scale_unknown", advice=advice)
         if not self.weak:
-            return Message(
-                "scan.scale_fixed", "The relief under the fan fixes the scale to {percent:.2g} %.", percent=percent
-            )
-        return Message(
+            return note_of("scan.scale_fixed", percent=percent)
+        return note_of(
             "scan.scale_weak",
-            "The relief under the fan fixes the scale only to {percent:.2g} %: {error_mm:.2g} mm on a height of "
-            "{height_mm:.0f} mm; {advice}.",
             percent=percent,
             error_mm=self.height_mm,
             height_mm=max(self.relief_mm, LEAST_RELIEF_MM),

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_solve
 
 from core.calibrate.camera.coverage import REGIONS
+from core.findings.table import note_of
 from core.messages import Message
 from core.model.arrays import Array
 from core.model.residuals import Judgement, Residuals, judge_with_covariance, over_picture
@@ -106,24 +107,13 @@ def notes_on_network(scale: float, cells: CellErrors, image_size: tuple[int, int
     if len(cells.z) and (found := judge_fan_cells(cells, image_size, scale)).p < SURELY:
         place = found.strongest
         return (
-            Message(
+            note_of(
                 "scan.fan_off_in_region",
-                "In the {place} of the picture the sweeps lie {mm:.2g} mm {where} than the fan's light, more than its "
-                "speckle explains: laser or camera are not as calibrated, or something moved after the reference was "
-                "taken. U need not contain it: check the rig, and scan again.",
                 place=REGIONS[place],
                 mm=abs(float(found.profile[place])),
                 where=_FARTHER if found.profile[place] > 0 else _NEARER,
             ),
         )
     if scale > TIMES:
-        return (
-            Message(
-                "scan.crossings_scatter",
-                "Crossings of the stripes disagree {times:.1f} times as much as their noise explains, everywhere "
-                "alike; the points' σ contains it. The hand may have moved during exposures, or the laser is out of "
-                "focus.",
-                times=scale,
-            ),
-        )
+        return (note_of("scan.crossings_scatter", times=scale),)
     return ()

@@ -21,8 +21,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.table import note_of
 from core.image.stripes.stripe import WIDTH_IN_SIGMA
-from core.messages import Message, plural_message
+from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import huber_weights, mad_sd
@@ -72,17 +73,7 @@ class SecondBounces:
         """A note for the technician if there are any."""
         if not self.pieces:
             return ()
-        return (
-            plural_message(
-                "scan.second_bounces",
-                "Second bounces: {n} piece of the hand-held laser's stripe is left out. Shiny sides mirror its light "
-                "onto table or part: spray the part matt, or lay it on something dark.",
-                "Second bounces: {n} pieces of the hand-held laser's stripe are left out, in {frames} frames. Shiny "
-                "sides mirror its light onto table or part: spray the part matt, or lay it on something dark.",
-                n=len(self.pieces),
-                frames=len({frame for frame, _ in self.pieces}),
-            ),
-        )
+        return (note_of("scan.second_bounces", n=len(self.pieces), frames=len({frame for frame, _ in self.pieces})),)
 
 
 NO_BOUNCES = SecondBounces()

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy.linalg import block_diag
 
 from core.errors import InputError
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model import Camera, Fan
@@ -156,22 +157,9 @@ def locate_together(
     network = solve_network(renumbered, CrossingRays.of(crossings, camera), line, fan, len(frames), progress, read_out)
     notes: tuple[Message, ...] = ()
     if network.fan_silenced:
-        notes = (
-            Message(
-                "scan.fan_disagrees",
-                "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
-                "and that object and camera stood still.",
-            ),
-        )
+        notes = (note_of("scan.fan_disagrees"),)
     if network.collapsed:
-        notes += (
-            Message(
-                "scan.collapsed",
-                "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
-                "hand-held laser more between frames, and cross the fan on object and table. Shiny sides that mirror "
-                "the laser onto the table do this, too: spray them matt.",
-            ),
-        )
+        notes += (note_of("scan.collapsed"),)
     return LocatedSweeps(
         frames,
         network.pis,

@@ -22,6 +22,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.robust import huber_weights
@@ -98,26 +99,9 @@ def hand_notes(
         return ()
     twist = _twist(sweeps, crossings, camera, read_out)
     if not stated:
-        return (
-            Message(
-                "scan.rows_roll",
-                "The sheets of light are twisted, by about {twist_mm:.2g} mm: rows of the camera see them one after "
-                "another while the hand moves (rolling shutter). Their planes follow the hand row by row, and σ holds "
-                "what that leaves unsure. State {field} in rig.toml, move slower, or use a global shutter.",
-                twist_mm=twist,
-                field="[camera] row_time_us",
-            ),
-        )
+        return (note_of("scan.rows_roll", twist_mm=twist, field="[camera] row_time_us"),)
     return (
-        Message(
-            "scan.hand_moved",
-            "The hand moved at about {speed:.0f} mm/s while the camera read its rows out for {time_ms:.0f} ms: sheets "
-            "of light are twisted by {twist_mm:.2g} mm. Their planes follow it row by row, and σ holds what that "
-            "leaves unsure. Move slower, rest the hand, or use a camera that reads out faster.",
-            speed=1000 * twist / read_out.time_ms,
-            time_ms=read_out.time_ms,
-            twist_mm=twist,
-        ),
+        note_of("scan.hand_moved", speed=1000 * twist / read_out.time_ms, time_ms=read_out.time_ms, twist_mm=twist),
     )
 
 

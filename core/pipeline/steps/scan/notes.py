@@ -9,9 +9,9 @@ from core.files.recording.features_file import read_poses
 from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet
 from core.files.results.fan_file import fan_id
-from core.findings.table import gravest_first
+from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
-from core.messages import Field, Message, plural_message
+from core.messages import Field, Message
 from core.pipeline.steps.check_step import assumed_stability
 from core.pipeline.steps.scan.judgement import Judgement
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -55,15 +55,7 @@ def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Messag
     """Give a note if nothing says how the camera reads its rows out: the sweeps of a steady hand do not either."""
     if row_time_us is not None or scan.read_out.moves:
         return ()
-    return (
-        Message(
-            "scan.shutter_assumed",
-            "Whether the camera's shutter is global or rolling is not stated ({field}); assumed is a "
-            "global one. With a rolling one and a hand that moves, points are off by more than their σ says. State 0 "
-            "for a global shutter.",
-            field=Field("[camera] row_time_us"),
-        ),
-    )
+    return (note_of("scan.shutter_assumed", field=Field("[camera] row_time_us")),)
 
 
 def notes_on_lost_frames(recording_set: RecordingSet) -> tuple[Message, ...]:
@@ -74,11 +66,4 @@ def notes_on_lost_frames(recording_set: RecordingSet) -> tuple[Message, ...]:
         return (error.message,)
     if not lost:
         return ()
-    return (
-        plural_message(
-            "scan.frames_lost",
-            "{n} frame was lost while recording: camera, computer or disk were too slow.",
-            "{n} frames were lost while recording: camera, computer or disk were too slow.",
-            n=lost,
-        ),
-    )
+    return (note_of("scan.frames_lost", n=lost),)

@@ -15,6 +15,7 @@ from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
+from core.findings.table import note_of
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes
@@ -250,9 +251,5 @@ def reference_picture(
         )
     if camera is not None:
         check_size(sample[0], pictures[0].shape, camera)
-    note = Message(
-        "scan.no_reference",
-        "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel.",
-        n=len(pictures),
-    )
+    note = note_of("scan.no_reference", n=len(pictures))
     return quantile_reference(pictures), [note]

@@ -1,0 +1,53 @@
+"""Findings of a scan's light planes and surface."""
+
+from __future__ import annotations
+
+from core.findings.finding import Effect, Finding, Weight
+
+ROWS = (
+    # What moved within it
+    Finding("scan.moved", Weight.GRAVE, Effect.NO_PROOF,
+            "Object or camera moved {when:and}: crossings of the frames before and after disagree. Only {n} frames "
+            "between which nothing moved are used. Hold both still and scan again to use them all.", fact="moved"),
+    Finding("scan.fan_shifted", Weight.GRAVE, Effect.NO_PROOF,
+            "Something moved during the scan, {what}, {when:and}: {percent:.0f} % of the fan's light lies about "
+            "{shift_px:.2g} px aside, which is {shift_mm:.2g} mm in depth. Only {n} frames between which nothing "
+            "moved are used. Hold part and camera still and scan again.", fact="moved"),
+    Finding("scan.drifted", Weight.GRAVE, Effect.NO_PROOF,
+            "The rig drifts: from the first frame to the last the fan's light moves evenly, by {shift_px:.2g} px, "
+            "which is {shift_mm:.2g} mm in depth. All frames are used. Let camera and lasers warm up before a scan, "
+            "and scan faster.", fact="drifted"),
+    # Where the light planes are
+    Finding("scan.collapsed", Weight.GRAVE, Effect.NO_PROOF,
+            "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
+            "hand-held laser more between frames, and cross the fan on object and table. Shiny sides that mirror "
+            "the laser onto the table do this, too: spray them matt.", fact="collapsed"),
+    Finding("scan.crossings_scatter", Weight.CAUTION, Effect.WIDENS_U,
+            "Crossings of the stripes disagree {times:.1f} times as much as their noise explains, everywhere alike; "
+            "the points' σ contains it. The hand may have moved during exposures, or the laser is out of focus."),
+    Finding("scan.fan_disagrees", Weight.GRAVE, Effect.NONE,
+            "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
+            "and that object and camera stood still."),
+    Finding("scan.fan_off_in_region", Weight.CAUTION, Effect.WIDENS_U,
+            "In the {place} of the picture the sweeps lie {mm:.2g} mm {where} than the fan's light, more than its "
+            "speckle explains: laser or camera are not as calibrated, or something moved after the reference was "
+            "taken. U need not contain it: check the rig, and scan again."),
+    # What fixes the scale of heights
+    Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,
+            "The relief under the fan fixes the scale to {percent:.2g} %."),
+    Finding("scan.scale_weak", Weight.CAUTION, Effect.WIDENS_U,
+            "The relief under the fan fixes the scale only to {percent:.2g} %: {error_mm:.2g} mm on a height of "
+            "{height_mm:.0f} mm; {advice}."),
+    Finding("scan.scale_unknown", Weight.CAUTION, Effect.WIDENS_U,
+            "The fan meets no relief, so nothing fixes the scale of heights; {advice}. Its own points and flat "
+            "faces are right all the same."),
+    # Light that is left out
+    Finding("scan.second_bounces", Weight.CAUTION, Effect.NONE,
+            "Second bounces: {n} piece of the hand-held laser's stripe is left out. Shiny sides mirror its light "
+            "onto table or part: spray the part matt, or lay it on something dark.",
+            "Second bounces: {n} pieces of the hand-held laser's stripe are left out, in {frames} frames. Shiny "
+            "sides mirror its light onto table or part: spray the part matt, or lay it on something dark."),
+    Finding("scan.fan_light_unused", Weight.CAUTION, Effect.NONE,
+            "Not used of the fan's light: {n} stretch ({reason}).",
+            "Not used of the fan's light: {n} stretches ({reason})."),
+)  # fmt: skip
