@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, open_set
 from core.image.targets import Checkerboard, CircleGrid, Target, detect
 from core.model.arrays import Array
@@ -65,7 +66,7 @@ def targets_row(recording_set: RecordingSet, kind: str, target: Target, paths: S
     """How often each detector finds `target` in the pictures, at full size / halved."""
     counts = np.zeros((len(DETECTORS), 2), int)
     for path in paths:
-        full = _eight_bit(recording_set.read_target(path))
+        full = _eight_bit(PictureReader(recording_set).read_target(path))
         half = np.asarray(cv2.resize(full, None, fx=0.5, fy=0.5, interpolation=cv2.INTER_AREA), np.uint8)
         counts += np.array([[detector(target, size) for size in (full, half)] for detector in DETECTORS])
     return f"| {recording_set.name}, {kind} | {len(paths)} | " + " | ".join(f"{a} / {b}" for a, b in counts) + " |"
@@ -73,7 +74,7 @@ def targets_row(recording_set: RecordingSet, kind: str, target: Target, paths: S
 
 def camera_row(recording_set: RecordingSet) -> tuple[CameraCalibration, str]:
     """The camera, its standard deviations, and the halves."""
-    seen, rng = see_views(recording_set), np.random.default_rng(SEED)
+    seen, rng = see_views(PictureReader(recording_set)), np.random.default_rng(SEED)
     whole = solve_camera(seen, tolerance=recording_set.rig.camera_board)
     apart = []
     for _ in range(CAMERA_HALVES):
@@ -90,7 +91,7 @@ def camera_row(recording_set: RecordingSet) -> tuple[CameraCalibration, str]:
 def planes_row(recording_set: RecordingSet, calibration: CameraCalibration) -> str:
     """The light planes, how they foretell each pose, and the halves."""
     camera, rng = calibration.camera, np.random.default_rng(SEED)
-    poses = measure_poses(recording_set, camera)
+    poses = measure_poses(PictureReader(recording_set), camera)
     usable = [pose for pose in poses if pose.reason is None]
 
     def solve(names: Iterable[str] = ()) -> FanCalibration:

@@ -13,6 +13,7 @@ from core.errors import InputError, WrongValue
 from core.files.complaints import checked
 from core.files.exchange.imported import imported_camera
 from core.files.pictures import write_picture
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_log import LOG
 from core.files.recording.recording_set import open_set
 from core.files.study.study_file import read_study, write_study
@@ -71,14 +72,14 @@ def recorded(tmp_path):
 
 
 def test_a_damaged_picture_of_the_camera_target(recorded):
-    (view,) = see_views(open_set(recorded)).views
+    (view,) = see_views(PictureReader(open_set(recorded))).views
     assert str(view.reason) == "the picture ends early"
     assert strange("ends early") in pseudo(view.reason)
 
 
 def test_a_damaged_picture_of_the_plane_target(recorded):
     recording_set = open_set(recorded)
-    (pose,) = measure_poses(recording_set, Camera((40, 30), [[50, 0, 20], [0, 50, 15], [0, 0, 1]]))
+    (pose,) = measure_poses(PictureReader(recording_set), Camera((40, 30), [[50, 0, 20], [0, 50, 15], [0, 0, 1]]))
     assert str(pose.reason) == f"{recorded / 'planes' / 'p.png'}: the picture ends early"
     assert strange("ends early") in pseudo(pose.reason)
 

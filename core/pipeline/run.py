@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
@@ -11,6 +11,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
 from core.files.results.folder_results import read_results
 from core.files.step_graph import READJUST
@@ -94,7 +95,11 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
     seen = _looking(recording_set, options, progress, beside)
     camera = camera_step(work, options, progress)
     fan = planes_step(work, options, progress, beside)
-    check = measure_check(recording_set, camera.camera, options, progress, beside) if recording_set.check else None
+    check = (
+        measure_check(PictureReader(recording_set), camera.camera, options, progress, beside)
+        if recording_set.check
+        else None
+    )
     if check is not None and not check_step(work, options, progress, poses=check).passed and recording_set.rig.readjust:
         fan = _readjusted(work, fan, options, progress, check)
     if beside is not None:
@@ -137,5 +142,5 @@ def _looking(
     """Have the pictures of the scan looked at while camera and planes are calibrated."""
     if beside is None:
         return None
-    seen = beside.submit(look_at_scan, (replace(recording_set, hashes={}, chosen={}), options), progress)
+    seen = beside.submit(look_at_scan, (recording_set, options), progress)
     return lambda: beside.wait(seen, progress, "frames")

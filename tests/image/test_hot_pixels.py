@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 import pytest
 
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.image.hot_pixels import hot_pixels, standing_out
 from core.pipeline.steps.camera_step import see_views, solve_camera
@@ -55,7 +56,7 @@ def test_a_camera_with_hot_pixels_is_told_and_one_without_is_not(simulated, tmp_
     scene = replace(SMALL, camera_views=6, plane_poses=0, frames=0)
     simulate_set(replace(scene, sensor=replace(scene.sensor, hot_share=0.002)), tmp_path / "hot")
     for place, share, told in ((simulated, 0.0, 0), (tmp_path / "hot", 0.002, 1)):
-        seen = see_views(open_set(place))
+        seen = see_views(PictureReader(open_set(place)))
         notes = [note for note in solve_camera(seen).notes if note.code == "camera.hot_pixels"]
         assert len(notes) == told
         size = seen.size[0] * seen.size[1]

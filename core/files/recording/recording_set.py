@@ -19,18 +19,14 @@ from __future__ import annotations
 
 import contextlib
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
-from core.acquire.folder import read_ahead
-from core.acquire.grey import Channel, is_difference, to_grey
+from core.acquire.grey import Channel
 from core.errors import InputError
-from core.files.pictures import Picture, decode_colours
-from core.files.reading import file_hash, read_bytes, resolved
-from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
+from core.files.reading import file_hash, resolved
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
     PlanePair,
@@ -40,9 +36,7 @@ from core.files.recording.set_listing import (
     plane_pairs,
     scan_frames,
 )
-from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
 from core.messages import Message
-from core.stage_times import StageTimes, stage
 
 PARTS = ("camera", "planes", "scan")
 """The parts of a set, each a folder of pictures."""
@@ -52,13 +46,10 @@ RIG = "rig.toml"
 _BRACKETED = ("planes", "scan", CHECK)
 """Folders whose pictures may have further exposures."""
 
-_LOOKED_AT = 3
-"""Pictures that decide on the channel of a part."""
-
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecordingSet:
-    """The files of one recording set, in the order of their names, and the readers for them.
+    """The files of one recording set, in the order of their names; a `PictureReader` reads them.
 
     Parameters
     ----------
@@ -68,10 +59,8 @@ class RecordingSet:
         By part: the folder it lies in, whatever that is called. A part that is not there may have none.
     further
         The further exposures, by their number (2, 3), of each picture that has any.
-    hashes
-        Fills up with the SHA-256 of every file as it is read, by its name within the set.
-    chosen
-        Fills up with the channel that shows the laser best, by part, as pictures are read whose channel is not stated.
+    rig_hash
+        SHA-256 of rig.toml.
     """
 
     name: str
@@ -83,8 +72,7 @@ class RecordingSet:
     frames: tuple[Path, ...]
     check: tuple[PlanePair, ...] = ()
     further: Mapping[Path, Mapping[int, Path]] = field(default_factory=dict)
-    hashes: dict[str, str] = field(default_factory=dict)
-    chosen: dict[str, LaserChannel] = field(default_factory=dict)
+    rig_hash: str = ""
 
     def name_of(self, path: Path) -> str:
         """The name of a picture within the set, as "camera/view00.png", wherever it lies."""
@@ -114,11 +102,6 @@ class RecordingSet:
         """All pictures of some poses: the fan on and off, and their further exposures."""
         return self.with_further(path for pair in pairs for path in (pair.on, pair.off) if path is not None)
 
-    def read_further(self, path: Path, number: int) -> Picture | None:
-        """As `read` the further exposure of this number of a picture; None if there is none."""
-        other = self.further.get(path, {}).get(number)
-        return None if other is None else self.read(other)
-
     def where(self, part: str) -> Path | str:
         """The folder of a part, or its name if it has none: what a complaint about it begins with."""
         return self.folders.get(part, part)
@@ -133,48 +116,6 @@ class RecordingSet:
         own = {resolved(path) for place in self.folders.values() for path in (place, place.parent)}
         return resolved(folder) in own
 
-    def read(self, path: Path) -> Picture:
-        """Read one picture of the set as the rig wants it, and take its hash.
-
-        Raises
-        ------
-        InputError
-            If it is damaged or unreadable; names the file.
-        """
-        data = read_bytes(path)
-        self.hashes[self.name_of(path)] = hashlib.sha256(data).hexdigest()
-        part = self.part_of(path)
-        if part == "camera":
-            return self._decoded_target(data, path, self.rig.channel_of("camera"))
-        return to_grey(decode_colours(data, path, self.rig.mosaic), self.laser_channel(part).channel)
-
-    def read_target(self, path: Path) -> Picture:
-        """Read one picture of the set in the channel in which a target is looked for, else as `read`.
-
-        That is the laser's, unless targets cannot be seen in it; then it is the camera's. In a raw picture all sites
-        show it.
-        """
-        laser = self.laser_channel(self.part_of(path)).channel
-        seen = self.rig.channel_of("camera") if is_difference(laser) else laser
-        return self._decoded_target(read_bytes(path), path, seen)
-
-    def read_board(self, path: Path) -> Picture:
-        """Read a picture of targets alone, wherever it lies, as those of the camera's target."""
-        return self._decoded_target(read_bytes(path), path, self.rig.channel_of("camera"))
-
-    def _decoded_target(self, data: bytes, path: Path, channel: Channel | None) -> Picture:
-        picture = decode_colours(data, path)
-        if self.rig.mosaic is not None and picture.ndim == 2:
-            return even_grey(picture)
-        return to_grey(picture, channel)
-
-    def sites(self, part: str) -> Sites:
-        """The sites that see the laser: all, unless pictures are raw and looked at in one colour."""
-        channel = self.laser_channel(part).channel
-        if self.rig.mosaic is None or channel is None or is_difference(channel):
-            return ALL_SITES
-        return sites_of(self.rig.mosaic, channel)
-
     def seen_in(self, channel: Channel | None) -> RecordingSet:
         """The set with this channel for the laser, in all parts; as it is for None."""
         if channel is None:
@@ -182,95 +123,11 @@ class RecordingSet:
         rig = self.rig
         for part in ("planes", "scan"):
             rig = rig.with_channel(part, channel)
-        return replace(self, rig=rig, chosen={})
+        return replace(self, rig=rig)
 
     def part_of(self, path: Path) -> str:
         """The part that a picture belongs to, as "camera"."""
         return self.name_of(path).partition("/")[0]
-
-    def laser_channel(self, part: str) -> LaserChannel:
-        """The channel in which the pictures of a part are looked at.
-
-        Where none is stated, it is the one that shows the laser best; the camera's target is looked at in grey then.
-        """
-        stated = self.rig.channel_of(part)
-        if stated is not None or part == "camera":
-            return LaserChannel(stated)
-        if part not in self.chosen:
-            self.chosen[part] = self._best_channel(part)
-        return self.chosen[part]
-
-    def _best_channel(self, part: str) -> LaserChannel:
-        """By three pictures of a part; grey where the first one is grey, or they cannot be read."""
-        if part == "scan":
-            pairs = [(frame, self.reference) for frame in self.frames]
-        else:
-            pairs = [(pair.on, pair.off) for pair in (self.planes or self.check)]
-        pictures = []
-        for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
-            try:
-                data = read_bytes(on)
-                lit = decode_colours(data, on, self.rig.mosaic)
-                dark = None if off is None else decode_colours(read_bytes(off), off, self.rig.mosaic)
-            except InputError:
-                continue  # told when it is measured
-            if lit.ndim < 3 or lit.shape[2] < 3:
-                return LaserChannel()
-            same = dark is not None and dark.shape == lit.shape
-            pictures.append(LitPicture(lit, dark if same else None, data))
-        return laser_channel(pictures, raw=self.rig.mosaic is not None)
-
-    def id_of(self, paths: Iterable[Path]) -> str:
-        """Twelve hex digits that name some pictures by what is in them; those not read yet are hashed, too."""
-        named = {self.name_of(path): path for path in paths}
-        for name, path in named.items():
-            if name not in self.hashes:
-                with suppress(InputError):  # told where it is looked at
-                    self.hashes[name] = file_hash(path)
-        text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
-        return hashlib.sha256(text.encode()).hexdigest()[:12]
-
-    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:
-        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
-
-        `times` learns what decoding costs.
-
-        Raises
-        ------
-        InputError
-            If a picture's depth (8 or 16 bit) is not that of the first one.
-        """
-
-        def attempt(path: Path) -> Picture | Message:
-            try:
-                with stage(times, "decoding"):
-                    return self.read(path)
-            except InputError as error:
-                return error.what
-
-        first: tuple[str, Picture] | None = None
-        if paths:
-            self.laser_channel(self.part_of(paths[0]))  # chosen once, before several threads ask for it
-        for path, result in read_ahead(paths, attempt):
-            name = self.name_of(path)
-            if not isinstance(result, Message):
-                first = first or (name, result)
-                self._check_depth(path, result, *first)
-            yield name, result
-
-    def _check_depth(self, path: Path, picture: Picture, first_name: str, first: Picture) -> None:
-        if picture.dtype != first.dtype:
-            raise InputError(
-                Message(
-                    "set.depth_differs",
-                    "the picture has {itemsize} bit, but {first_name} has {itemsize2}",
-                    itemsize=picture.dtype.itemsize * 8,
-                    first_name=first_name,
-                    itemsize2=first.dtype.itemsize * 8,
-                ),
-                where=path,
-                todo=Message("advice.record_with_one_depth", "record all pictures with one depth"),
-            )
 
 
 def require_folder(folder: Path) -> None:
@@ -395,7 +252,7 @@ def _listed(name: str, rig: Rig, folders: Mapping[str, Path], rig_hash: str) -> 
     reference, frames = scan_frames(folders.get("scan"))
     check = plane_pairs(folders.get(CHECK))
     further = {first: others for part in _BRACKETED for first, others in further_exposures(folders.get(part)).items()}
-    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, {RIG: rig_hash})
+    return RecordingSet(name, rig, folders, camera, planes, reference, frames, check, further, rig_hash)
 
 
 def _paths(recording_set: RecordingSet, part: str) -> list[Path]:

@@ -12,6 +12,7 @@ from core.errors import InputError
 from core.files.project.calibration_store import keep_camera, keep_fan, read_stored_camera
 from core.files.project.data import Project
 from core.files.reading import file_hash
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.results.fan_file import fan_id
 from core.messages import Message
@@ -43,15 +44,15 @@ def find_views(folder: Path, project: Project, progress: Progress = silent) -> S
 
     What is found is kept in the project.
     """
-    recording_set = project_set(folder, project)
-    seen = see_views(recording_set, progress)
-    keep_views(folder, project, recording_set, seen)
+    pictures = PictureReader(project_set(folder, project))
+    seen = see_views(pictures, progress)
+    keep_views(folder, project, pictures, seen)
     return seen
 
 
 def found_views(folder: Path, project: Project, progress: Progress = silent) -> SeenViews | None:
     """What `find_views` found in these very pictures the last time, if nothing else has been looked at since."""
-    return kept_views(folder, project, project_set(folder, project), progress)
+    return kept_views(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
@@ -79,17 +80,17 @@ def find_poses(folder: Path, project: Project, progress: Progress = silent) -> t
 
     What is found is kept in the project.
     """
-    recording_set, camera = project_set(folder, project), accepted_camera(folder, project)
-    require_planes(recording_set)
+    pictures, camera = PictureReader(project_set(folder, project)), accepted_camera(folder, project)
+    require_planes(pictures.recording_set)
     compile_ahead(progress)
-    poses = measure_poses(recording_set, camera, progress, project.options.plane_stripe)
-    keep_poses(folder, project, recording_set, poses)
+    poses = measure_poses(pictures, camera, progress, project.options.plane_stripe)
+    keep_poses(folder, project, pictures, poses)
     return poses
 
 
 def found_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
     """What `find_poses` found in these very pictures the last time, seen by the accepted camera; else nothing."""
-    return kept_poses(folder, project, project_set(folder, project), progress)
+    return kept_poses(folder, project, PictureReader(project_set(folder, project)), progress)
 
 
 def solve_poses(

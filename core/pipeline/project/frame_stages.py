@@ -10,6 +10,7 @@ import numpy as np
 
 from core.errors import InputError
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
 from core.image.mosaic import Sites
@@ -71,8 +72,9 @@ def frame_stages(
     if path not in recording_set.frames:
         raise InputError(Message("project.no_such_frame", "there is no such frame in the recording"), where=name)
     index = recording_set.frames.index(path)
-    common = _common(_Recording.of(recording_set, options, settled, progress))
-    picture = recording_set.read(path)
+    pictures = PictureReader(recording_set)
+    common = _common(_Recording.of(pictures, options, settled, progress))
+    picture = pictures.read(path)
     base, sites = common.shown.base, common.sites
     if picture.shape != base.shape:
         raise InputError(
@@ -137,14 +139,15 @@ class _Recording:
     sites: Sites
     stripe: StripeSettings | None
     settled: SettledScan | None
-    found: RecordingSet = field(compare=False)
+    pictures: PictureReader = field(compare=False)
     options: Options = field(compare=False)
     progress: Progress = field(compare=False)
 
     @classmethod
     def of(
-        cls, recording_set: RecordingSet, options: Options, settled: SettledScan | None, progress: Progress
+        cls, pictures: PictureReader, options: Options, settled: SettledScan | None, progress: Progress
     ) -> _Recording:
+        recording_set = pictures.recording_set
         reference = recording_set.reference
         written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
         taken = tuple(taken_frames(recording_set, options)) or recording_set.frames
@@ -153,11 +156,11 @@ class _Recording:
             reference,
             written,
             seen,
-            recording_set.laser_channel("scan").channel,
-            recording_set.sites("scan"),
+            pictures.laser_channel("scan").channel,
+            pictures.sites("scan"),
             options.stripe,
             settled,
-            recording_set,
+            pictures,
             options,
             progress,
         )
@@ -165,10 +168,10 @@ class _Recording:
 
 @lru_cache(maxsize=2)
 def _common(recording: _Recording) -> _Common:
-    found, options, settled, sites = recording.found, recording.options, recording.settled, recording.sites
+    pictures, options, settled, sites = recording.pictures, recording.options, recording.settled, recording.sites
     told = StepProgress(recording.progress)
     told("reference", 0, 2)
-    picture, _ = reference_picture(found, None, options, told.within_step)
+    picture, _ = reference_picture(pictures, None, options, told.within_step)
     looking = feature_options(options)
     if settled:
         looking = feature_options(Options(stripe=settled.fan_stripe))
@@ -176,7 +179,7 @@ def _common(recording: _Recording) -> _Common:
     told("reference", 1, 2)
     stripe = sites.stripe_of(settled.sweep_stripe if settled else options.stripe)
     if stripe is None:
-        stream = found.stream(recording.taken[:LOOK_AHEAD])
+        stream = pictures.stream(recording.taken[:LOOK_AHEAD])
         ahead = [(name, sites.of(picture)) for name, picture in stream if not isinstance(picture, Message)]
         stripe = choose_sweep_stripe(ahead, reference, told.within_step)
     told("reference", 2, 2)

@@ -18,6 +18,7 @@ from core.files.project.calibration_store import (
 )
 from core.files.project.data import Project
 from core.files.project.folder import results_folder, source_folder
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import scan_frames, taken_at
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.inspection_file import read_inspection
@@ -122,7 +123,8 @@ def propose_project_readjustment(folder: Path, project: Project, progress: Progr
     InputError
         As `core.pipeline.steps.readjust_step.propose_readjustment`, or if no calibration is accepted.
     """
-    return propose_readjustment(project_set(folder, project), _accepted(folder, project), project.options, progress)
+    pictures = PictureReader(project_set(folder, project))
+    return propose_readjustment(pictures, _accepted(folder, project), project.options, progress)
 
 
 def accept_readjustment(

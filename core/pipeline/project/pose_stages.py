@@ -8,6 +8,7 @@ from core.calibrate.fan.poses.located_pose import locate
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages, numbered_stripes
 from core.errors import InputError
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.image.display import in_8_bit, white_level
 from core.image.stripes.stripe import StripeSettings
@@ -38,10 +39,11 @@ def pose_stages(
         raise InputError(
             Message("project.no_such_pose", "there is no such pose in the set"), where=f"planes/{pose.name}"
         )
-    picture = recording_set.read(pair.on)
+    pictures = PictureReader(recording_set)
+    picture = pictures.read(pair.on)
     corners = np.zeros((0, 2)) if pose.view is None else pose.view.uv
     stripes = numbered_stripes(pose, camera, fan)
-    ridge = ridge_of(recording_set, pose, camera, stripe)
+    ridge = ridge_of(pictures, pose, camera, stripe)
     progress("pose", 1, 1)
     shown = in_8_bit(picture, white_level(picture))
     return PoseStages(pose.name, shown, corners, stripes, locate(pose, camera).reason, pose.notes, ridge)

@@ -9,6 +9,7 @@ from core.files.project.audit import read_trail
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.report_template import read_report_template
+from core.files.recording.picture_reader import PictureReader
 from core.files.study.study_file import study_path
 from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
@@ -41,7 +42,8 @@ def report_bytes(folder: Path, project: Project, progress: Progress = silent) ->
 def project_content(folder: Path, project: Project, progress: Progress = silent) -> ReportContent:
     """All that is reported and handed over of a project; InputError if there is no scan among the results."""
     work = Workspace(project_set(folder, project), results_folder(folder), part_name(project))  # only read from
-    return report_content(work, progress, lambda content: with_words(content, folder, project))
+    pictures = PictureReader(work.recording_set)
+    return report_content(work, pictures, progress, lambda content: with_words(content, folder, project))
 
 
 def with_words(content: ReportContent, folder: Path, project: Project) -> ReportContent:

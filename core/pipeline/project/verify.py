@@ -188,7 +188,7 @@ def _inputs(inputs: Iterable[tuple[str, str]], recording_set: RecordingSet, prog
     listed = list(inputs)
     for name, digest in steps(listed, progress, "comparing", len(listed)):
         try:
-            now = recording_set.hashes[RIG] if name == RIG else file_hash(recording_set.path_of(name))
+            now = recording_set.rig_hash if name == RIG else file_hash(recording_set.path_of(name))
         except InputError:
             problems.append(Message("verify.missing", "{name} is missing", name=name))
             continue

@@ -17,7 +17,8 @@ from core.calibrate.results import CameraCalibration, ViewQuality
 from core.errors import InputError
 from core.files.pictures import Picture
 from core.files.recording.options import Options
-from core.files.recording.recording_set import RecordingSet, require_camera
+from core.files.recording.picture_reader import PictureReader
+from core.files.recording.recording_set import require_camera
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
 from core.image.hot_pixels import hot_pixels, standing_out
@@ -48,7 +49,7 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     with work.step("camera") as log:
         log.settings.update(options.camera_settings)
         calibration = solve_camera(
-            see_views(work.recording_set, progress), options, progress, work.recording_set.rig.camera_board
+            see_views(log.pictures, progress), options, progress, work.recording_set.rig.camera_board
         )
         log.settings.update(solved_for(calibration))
         log.notes.extend(calibration.notes)
@@ -62,7 +63,7 @@ def solved_for(calibration: CameraCalibration) -> dict[str, bool]:
     return {"skew": bool(found[SKEW]), "k3": bool(found[K3])}  # a skew left at 0 is uncertain all the same
 
 
-def see_views(recording_set: RecordingSet, progress: Progress = silent) -> SeenViews:
+def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews:
     """Look for the target in every view, a few pictures at a time.
 
     Raises
@@ -70,6 +71,7 @@ def see_views(recording_set: RecordingSet, progress: Progress = silent) -> SeenV
     InputError
         If there are no pictures of it, or they differ in depth.
     """
+    recording_set = pictures.recording_set
     require_camera(recording_set)
 
     def look(item: tuple[str, Picture | Message]) -> tuple[SeenView, NDArray[np.int64] | None]:
@@ -90,7 +92,7 @@ def see_views(recording_set: RecordingSet, progress: Progress = silent) -> SeenV
     total = len(recording_set.camera)
     progress("camera views", 0, total)
     looked = ordered_map(
-        look, recording_set.stream(recording_set.camera), idle=lambda: progress("camera views", len(seen), total)
+        look, pictures.stream(recording_set.camera), idle=lambda: progress("camera views", len(seen), total)
     )
     for one, places in looked:
         seen.append(one)

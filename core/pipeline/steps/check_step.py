@@ -32,6 +32,7 @@ from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
 from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
@@ -105,7 +106,9 @@ def check_step(
             todo=Message("advice.record_check_anew", "record one to three new pictures"),
         )
     with work.step("check") as log:
-        deviations, evidence, checked, change = judged(recording_set, calibration, options, progress, poses=poses)
+        pictures = log.pictures.of(recording_set)
+        seen = measure_check(pictures, camera, options, progress) if poses is None else poses
+        deviations, evidence, checked, change = judged(recording_set, calibration, seen)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and not any(pose.misses_fan for pose in checked):
             raise InputError(
@@ -116,7 +119,7 @@ def check_step(
         nominal = None if recording_set.rig.gauge is None else recording_set.rig.gauge.nominal_mm
         paths = check_paths(recording_set)
         check = InterimCheck(
-            calibration.id, recording_set.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
+            calibration.id, pictures.id_of(paths), taken_at(paths), change.p, tuple(map(_told, checked)),
             nominal or STEP_MM,
         )  # fmt: skip
         celsius = recording_set.rig.air.checked
@@ -206,32 +209,25 @@ def _kept(recording_set: RecordingSet, past: PastCheck) -> tuple[Message, ...]:
 def since_calibration(
     recording_set: RecordingSet,
     calibration: Calibration,
-    options: Options,
-    progress: Progress = silent,
+    check: Sequence[PoseFeatures],
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
-    poses: Sequence[PoseFeatures] | None = None,
 ) -> Change:
     """What may have changed since the calibration, as far as no picture excludes it.
 
     Parameters
     ----------
-    found, calibration, options, progress
-        The pictures, with those of an interim check if there are any, and how they are looked at.
+    recording_set, calibration
+        The set that is measured.
+    check
+        The poses of its interim check, as `check_of_the_day` gives them; those of another day say nothing.
     of_measured
         What the pictures that are measured say of deviations; None: nothing.
-    poses
-        Those of the check, if they have been measured.
-
-    Raises
-    ------
-    InputError
-        If the check's pictures have another size than the camera's.
     """
     recording_set = fresh_check(recording_set, calibration.fan)
     apart = _days_apart(recording_set)
     if apart <= SAME_DAY:
-        return judged(recording_set, calibration, options, progress, of_measured, poses, at_scan=True).change
-    change = judged(replace(recording_set, check=()), calibration, options, progress, of_measured, at_scan=True).change
+        return judged(recording_set, calibration, check, of_measured, at_scan=True).change
+    change = judged(replace(recording_set, check=()), calibration, (), of_measured, at_scan=True).change
     other_day = note_of("check.another_day", days=apart)
     return replace(change, left_out=(other_day,))
 
@@ -301,14 +297,12 @@ class Judged(NamedTuple):
 def judged(
     recording_set: RecordingSet,
     calibration: Calibration,
-    options: Options,
-    progress: Progress,
+    check: Sequence[PoseFeatures],
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
-    poses: Sequence[PoseFeatures] | None = None,
     *,
     at_scan: bool = False,
 ) -> Judged:
-    """What the pictures of a set, and those of its interim check if there are any, prove of the rig.
+    """What the pictures of a set, and the poses of its interim `check` if it has one, prove of the rig.
 
     When its check was taken, or `at_scan`.
     """
@@ -319,8 +313,7 @@ def judged(
     agree = _readjusted_on_the_day(recording_set, calibration.fan)
     if recording_set.check:
         names = {pair.name for pair in recording_set.check}
-        seen = measure_check(recording_set, camera, options, progress) if poses is None else poses
-        seen = tuple(pose for pose in seen if pose.name in names)
+        seen = tuple(pose for pose in check if pose.name in names)
         checked, of_check = check_poses(seen, camera, fan, deviations)
         agree = agrees(deviations, of_check)
         if at_scan:
@@ -366,8 +359,24 @@ def _charted(spread: RigSpread, recording_set: RecordingSet) -> Message:
     )
 
 
+def check_of_the_day(
+    pictures: PictureReader, calibration: Calibration, options: Options, progress: Progress = silent
+) -> tuple[PoseFeatures, ...]:
+    """Target and stripes of the poses of the interim check, () where it says nothing of the day of the scan.
+
+    Raises
+    ------
+    InputError
+        If their pictures have another size than the camera's.
+    """
+    fresh = fresh_check(pictures.recording_set, calibration.fan)
+    if not fresh.check or _days_apart(fresh) > SAME_DAY:
+        return ()
+    return measure_check(pictures.of(fresh), calibration.camera.camera, options, progress)
+
+
 def measure_check(
-    recording_set: RecordingSet,
+    pictures: PictureReader,
     camera: Camera,
     options: Options,
     progress: Progress = silent,
@@ -380,9 +389,8 @@ def measure_check(
     InputError
         If their pictures have another size than the camera's.
     """
-    return measure_poses(
-        replace(recording_set, planes=recording_set.check), camera, progress, options.plane_stripe, beside
-    )
+    checked = replace(pictures.recording_set, planes=pictures.recording_set.check)
+    return measure_poses(pictures.of(checked), camera, progress, options.plane_stripe, beside)
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

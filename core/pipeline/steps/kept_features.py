@@ -20,14 +20,14 @@ from core.errors import InputError
 from core.files.atomic import make_inner_folder
 from core.files.project.calibration_store import FOLDER
 from core.files.project.data import Project
-from core.files.reading import file_hash
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import rig_tables, without_warmth
 from core.files.results.scan_file import read_scan
 from core.model import Camera
-from core.progress import Progress, silent, steps
+from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
 from core.sources import text_hash
 
@@ -36,7 +36,7 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 
 
 def kept_features(
-    scan: Path, recording_set: RecordingSet, options: Options, camera: Camera, progress: Progress = silent
+    scan: Path, pictures: PictureReader, options: Options, camera: Camera, progress: Progress = silent
 ) -> ScanFeatures | None:
     """The features that `scan`, an earlier scan.npz, holds, if they are those of these pictures, settings and camera.
 
@@ -50,36 +50,26 @@ def kept_features(
         return None  # damaged: it will be replaced
     if not earlier.features_key:
         return None
-    take_hashes(recording_set, _pictures(recording_set, options), progress)
-    return earlier.features if earlier.features_key == features_key(recording_set, options, camera) else None
+    pictures.take_hashes(_pictures(pictures.recording_set, options), progress)
+    return earlier.features if earlier.features_key == features_key(pictures, options, camera) else None
 
 
-def features_key(recording_set: RecordingSet, options: Options, camera: Camera) -> str:
+def features_key(pictures: PictureReader, options: Options, camera: Camera) -> str:
     """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
 
     The camera's distortion is one of it: centrelines are crossed without it.
     """
-    pictures = [
-        (recording_set.name_of(path), recording_set.hashes.get(recording_set.name_of(path), ""))
-        for path in _pictures(recording_set, options)
-    ]
+    recording_set = pictures.recording_set
     rests_on = {
         "program": text_hash(_SCAN_ROOMS),
-        "channel": recording_set.laser_channel("scan").channel,
+        "channel": pictures.laser_channel("scan").channel,
         "mosaic": recording_set.rig.mosaic,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
         "stripe": asdict(options.stripe) if options.stripe else None,
         "frames": [recording_set.name_of(path) for path in recording_set.frames],
-        "pictures": pictures,
+        "pictures": pictures.named_hashes(_pictures(recording_set, options)),
     }
     return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
-
-
-def take_hashes(recording_set: RecordingSet, pictures: Sequence[Path], progress: Progress = silent) -> None:
-    """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
-    for path in steps(pictures, progress, "comparing the pictures", len(pictures)):
-        with suppress(InputError):
-            recording_set.hashes[recording_set.name_of(path)] = file_hash(path)
 
 
 def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
@@ -92,40 +82,36 @@ _CALIBRATION_ROOMS = ("acquire", "calibrate", "image", "model")
 """The rooms that read the pictures for a calibration and make features of them."""
 
 
-def keep_views(project_folder: Path, project: Project, recording_set: RecordingSet, seen: SeenViews) -> None:
+def keep_views(project_folder: Path, project: Project, pictures: PictureReader, seen: SeenViews) -> None:
     """Keep what the pictures of the camera's target showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
-        write_views(_path(project_folder, "camera"), _views_key(project, recording_set), seen)
+        write_views(_path(project_folder, "camera"), _views_key(project, pictures), seen)
 
 
-def kept_views(
-    project_folder: Path, project: Project, recording_set: RecordingSet, progress: Progress
-) -> SeenViews | None:
+def kept_views(project_folder: Path, project: Project, pictures: PictureReader, progress: Progress) -> SeenViews | None:
     """What was kept, if it is of these very pictures and this target."""
-    take_hashes(recording_set, recording_set.camera, progress)
+    pictures.take_hashes(pictures.recording_set.camera, progress)
     try:
-        return read_views(_path(project_folder, "camera"), _views_key(project, recording_set))
+        return read_views(_path(project_folder, "camera"), _views_key(project, pictures))
     except InputError:
         return None  # damaged: the pictures are still there
 
 
-def keep_poses(
-    project_folder: Path, project: Project, recording_set: RecordingSet, poses: Sequence[PoseFeatures]
-) -> None:
+def keep_poses(project_folder: Path, project: Project, pictures: PictureReader, poses: Sequence[PoseFeatures]) -> None:
     """Keep what the pictures of the plate showed; in a folder that cannot be written to, it is not kept."""
     with suppress(InputError):
         make_inner_folder(project_folder, FOLDER)
-        write_poses(_path(project_folder, "planes"), _poses_key(project, recording_set), poses)
+        write_poses(_path(project_folder, "planes"), _poses_key(project, pictures), poses)
 
 
 def kept_poses(
-    project_folder: Path, project: Project, recording_set: RecordingSet, progress: Progress
+    project_folder: Path, project: Project, pictures: PictureReader, progress: Progress
 ) -> tuple[PoseFeatures, ...]:
     """What was kept, if it is of these very pictures, this plate and this camera; else nothing."""
-    take_hashes(recording_set, _pose_pictures(recording_set), progress)
+    pictures.take_hashes(_pose_pictures(pictures.recording_set), progress)
     try:
-        return read_poses(_path(project_folder, "planes"), _poses_key(project, recording_set))
+        return read_poses(_path(project_folder, "planes"), _poses_key(project, pictures))
     except InputError:
         return ()
 
@@ -134,29 +120,26 @@ def _path(project_folder: Path, step: str) -> Path:
     return project_folder / FOLDER / f"{step}-found.npz"
 
 
-def _views_key(project: Project, recording_set: RecordingSet) -> str:
-    return _key(project, "camera", recording_set, recording_set.camera)
+def _views_key(project: Project, pictures: PictureReader) -> str:
+    return _key(project, "camera", pictures, pictures.recording_set.camera)
 
 
-def _poses_key(project: Project, recording_set: RecordingSet) -> str:
-    return _key(project, "planes", recording_set, _pose_pictures(recording_set), project.accepted.camera)
+def _poses_key(project: Project, pictures: PictureReader) -> str:
+    return _key(project, "planes", pictures, _pose_pictures(pictures.recording_set), project.accepted.camera)
 
 
 def _pose_pictures(recording_set: RecordingSet) -> list[Path]:
     return recording_set.pictures_of(recording_set.planes)
 
 
-def _key(project: Project, step: str, recording_set: RecordingSet, pictures: Sequence[Path], camera: str = "") -> str:
+def _key(project: Project, step: str, pictures: PictureReader, paths: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
         "program": text_hash(_CALIBRATION_ROOMS),
         "target": without_warmth(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
-        "channel": recording_set.laser_channel(step).channel,
-        "mosaic": recording_set.rig.mosaic,
+        "channel": pictures.laser_channel(step).channel,
+        "mosaic": pictures.recording_set.rig.mosaic,
         "camera": camera,
-        "pictures": [
-            (recording_set.name_of(path), recording_set.hashes.get(recording_set.name_of(path), ""))
-            for path in pictures
-        ],
+        "pictures": pictures.named_hashes(paths),
     }
     stripe = project.options.plane_stripe
     if step == "planes" and stripe is not None:

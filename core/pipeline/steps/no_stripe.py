@@ -11,7 +11,7 @@ from core.calibrate.fan.poses.located_pose import shows_no_stripe
 from core.calibrate.fan.poses.plane_pose import stripe_strength
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.picture_reader import PictureReader
 from core.image.display import in_8_bit
 from core.image.stripes.stripe import USUAL_STRIPE, StripeSettings
 from core.messages import Message
@@ -20,7 +20,7 @@ from core.pipeline.steps.workspace import RIDGES, Workspace
 
 
 def ridge_of(
-    recording_set: RecordingSet, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
+    pictures: PictureReader, pose: PoseFeatures, camera: Camera, stripe: StripeSettings | None = None
 ) -> NDArray[np.uint8] | None:
     """How strongly each pixel (H, W) of a pose without a straight stripe looks like `stripe`, the strongest white.
 
@@ -31,16 +31,20 @@ def ridge_of(
     InputError
         If a picture cannot be read.
     """
-    pair = next((pair for pair in recording_set.planes if pair.name == pose.name), None)
+    pair = next((pair for pair in pictures.recording_set.planes if pair.name == pose.name), None)
     if pair is None or not shows_no_stripe(pose, camera):
         return None
-    off = None if pair.off is None else recording_set.read(pair.off)
-    strength = stripe_strength(recording_set.read(pair.on), off, stripe or USUAL_STRIPE)
+    off = None if pair.off is None else pictures.read(pair.off)
+    strength = stripe_strength(pictures.read(pair.on), off, stripe or USUAL_STRIPE)
     return in_8_bit(strength, float(strength.max()))
 
 
 def write_ridges(
-    work: Workspace, poses: Sequence[PoseFeatures], camera: Camera, stripe: StripeSettings | None
+    work: Workspace,
+    pictures: PictureReader,
+    poses: Sequence[PoseFeatures],
+    camera: Camera,
+    stripe: StripeSettings | None,
 ) -> Message | None:
     """Write these pictures into the folder RIDGES of the results, in place of older ones; a note that tells of them.
 
@@ -49,7 +53,7 @@ def write_ridges(
     InputError
         If nothing can be written there.
     """
-    ridges = {pose.name: ridge_of(work.recording_set, pose, camera, stripe) for pose in poses}
+    ridges = {pose.name: ridge_of(pictures, pose, camera, stripe) for pose in poses}
     shown = {name: ridge for name, ridge in ridges.items() if ridge is not None}
     work.put_ridges(shown)
     if not shown:

@@ -15,7 +15,9 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
+from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
@@ -58,15 +60,15 @@ def planes_step(
     camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_settings(work.recording_set.rig, options))
-        log.settings.update(work.recording_set.laser_channel("planes").settings)
-        poses = measure_poses(work.recording_set, camera, progress, options.plane_stripe, beside)
-        ridges = write_ridges(work, poses, camera, options.plane_stripe)
+        log.settings.update(log.pictures.laser_channel("planes").settings)
+        poses = measure_poses(log.pictures, camera, progress, options.plane_stripe, beside)
+        ridges = write_ridges(work, log.pictures, poses, camera, options.plane_stripe)
         try:
             calibration = solve_planes(poses, camera, work.recording_set.rig, options, progress, given)
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, options.accept_few_poses)
-        calibration, sizes = with_compared_sizes(calibration, work.recording_set, camera)
+        calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend(calibration.notes)
@@ -91,7 +93,7 @@ def check_agreement(calibration: FanCalibration, decided: bool) -> None:
 
 
 def measure_poses(
-    recording_set: RecordingSet,
+    pictures: PictureReader,
     camera: Camera,
     progress: Progress = silent,
     stripe: StripeSettings | None = None,
@@ -106,10 +108,11 @@ def measure_poses(
     InputError
         If there are no poses, or their pictures have another size than the camera's.
     """
+    recording_set = pictures.recording_set
     require_planes(recording_set)
     part = recording_set.part_of(recording_set.planes[0].on)  # an interim check has its pictures in a folder of its own
-    chosen = recording_set.laser_channel(part)
-    measure = partial(_measure, replace(recording_set, hashes={}), camera, stripe)
+    chosen = pictures.laser_channel(part)
+    measure = partial(_measure, recording_set, pictures.channels, camera, stripe)
     features: list[PoseFeatures] = []
     total = len(recording_set.planes)
     progress("plane poses", 0, total)
@@ -117,7 +120,7 @@ def measure_poses(
         measure, recording_set.planes, beside, lambda: progress("plane poses", len(features), total), progress
     )
     for pose, hashes in poses:
-        recording_set.hashes.update(hashes)
+        pictures.learn(hashes, {})
         features.append(pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
@@ -127,6 +130,7 @@ def measure_poses(
 
 def _measure(
     recording_set: RecordingSet,
+    channels: Mapping[str, LaserChannel],
     camera: Camera,
     stripe: StripeSettings | None,
     pair: PlanePair,
@@ -135,42 +139,43 @@ def _measure(
     progress: Progress,
 ) -> tuple[PoseFeatures, Mapping[str, str]]:
     """Target and stripes of one pose, and the hashes of its pictures."""
-    recording_set = replace(recording_set, hashes={})
-    return _pose_features(recording_set, camera, stripe, pair, progress), recording_set.hashes
+    pictures = PictureReader(recording_set, channels)
+    return _pose_features(pictures, camera, stripe, pair, progress), pictures.hashes
 
 
 def _pose_features(
-    recording_set: RecordingSet, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
+    pictures: PictureReader, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
 ) -> PoseFeatures:
     try:
         with stage(progress, "decoding"):
-            on = recording_set.read(pair.on)
-            off = recording_set.read(pair.off) if pair.off is not None else None
-            beside = _beside(recording_set, pair)
+            on = pictures.read(pair.on)
+            off = pictures.read(pair.off) if pair.off is not None else None
+            beside = _beside(pictures, pair)
     except InputError as error:
         return PoseFeatures(pair.name, None, (), error.reason)
     check_size(pair.on, on.shape, camera)
     if off is not None and off.dtype != on.dtype:
         reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")
         return PoseFeatures(pair.name, None, (), reason)
-    rig = recording_set.rig
+    rig = pictures.recording_set.rig
     with stage(progress, "plane poses"):
         return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, beside)
 
 
-def _beside(recording_set: RecordingSet, pair: PlanePair) -> Beside:
+def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
     """What there is of a pose beside its two pictures."""
-    channel = recording_set.laser_channel(recording_set.part_of(pair.on)).channel
+    part = pictures.recording_set.part_of(pair.on)
+    channel = pictures.laser_channel(part).channel
     compression, further = compression_of(pair.on, channel), list[tuple[Picture, Picture | None]]()
     for number in FURTHER:
-        on = recording_set.read_further(pair.on, number)
+        on = pictures.read_further(pair.on, number)
         if on is not None:
-            further.append((on, None if pair.off is None else recording_set.read_further(pair.off, number)))
-    sites = recording_set.sites(recording_set.part_of(pair.on))
+            further.append((on, None if pair.off is None else pictures.read_further(pair.off, number)))
+    sites = pictures.sites(part)
     if not is_difference(channel) and sites == ALL_SITES:
         return Beside(None, compression, further)
-    unlit = recording_set.read_target(pair.off) if pair.off is not None else None
-    return Beside((recording_set.read_target(pair.on), unlit), compression, further, sites)
+    unlit = pictures.read_target(pair.off) if pair.off is not None else None
+    return Beside((pictures.read_target(pair.on), unlit), compression, further, sites)
 
 
 def solve_planes(

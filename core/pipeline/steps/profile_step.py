@@ -24,7 +24,7 @@ from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, profile_axes, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
-from core.pipeline.steps.check_step import assumed_stability, since_calibration
+from core.pipeline.steps.check_step import assumed_stability, check_of_the_day, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
 from core.pipeline.steps.scan.judgement import SectionChange, facts_of, section_change
 from core.pipeline.steps.scan.pictures import feature_options, taken_frames
@@ -92,15 +92,16 @@ def profile_step(
         )
     part = found.rig.part
     with work.step("profile") as log:
-        channel = found.laser_channel("scan")
+        channel = log.pictures.laser_channel("scan")
         log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
-        change = since_calibration(found, calibration, options, progress)
+        check = check_of_the_day(log.pictures, calibration, options, progress)
+        change = since_calibration(found, calibration, check)
         common = CommonErrors.of_fan(camera, fan, change.deviations)
         section: SectionChange | None = None
         seen: list[Profiles] = []
         steps, pictures = [], []
-        stream = found.stream(paths)
+        stream = log.pictures.stream(paths)
         for index, (name, picture) in enumerate(stream):
             progress("profiles", index, len(paths))
             if isinstance(picture, Message):

@@ -17,6 +17,7 @@ from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.reading import file_hash, read_bytes
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import read_camera
@@ -31,7 +32,7 @@ from core.progress import Progress, silent
 
 
 def propose_readjustment(
-    recording_set: RecordingSet,
+    pictures: PictureReader,
     calibration: Calibration,
     options: Options,
     progress: Progress = silent,
@@ -46,7 +47,8 @@ def propose_readjustment(
     InputError
         If there is no check that was not used for it already, or `core.calibrate.readjustment.readjusted` refuses.
     """
-    recording_set = fresh_check(recording_set, calibration.fan)
+    recording_set = fresh_check(pictures.recording_set, calibration.fan)
+    pictures = pictures.of(recording_set)
     if not recording_set.check:
         raise InputError(
             Message("readjust.no_check", "a re-adjustment needs the pictures of a check"),
@@ -54,21 +56,21 @@ def propose_readjustment(
             todo=Message("advice.record_check", "hold the plane target into the fan and record one to three pictures"),
         )
     camera, fan = calibration.camera, calibration.fan
-    seen = measure_check(recording_set, camera.camera, options, progress) if poses is None else poses
-    deviations, evidence, checked, change = judged(recording_set, calibration, options, progress, poses=seen)
+    seen = measure_check(pictures, camera.camera, options, progress) if poses is None else poses
+    deviations, evidence, checked, change = judged(recording_set, calibration, seen)
     if (refused := nothing_changed(change.p)) is not None:
         raise refused
     paths = check_paths(recording_set)
-    pictures = CheckPictures(
+    seen_by = CheckPictures(
         squares=sum(pose.squares for pose in checked),
         freedom=sum(pose.freedom for pose in checked),
         poses=sum(pose.located.used for pose in checked),
         taken_at=taken_at(paths),
-        pictures_id=recording_set.id_of(paths),
+        pictures_id=pictures.id_of(paths),
         hashes={recording_set.name_of(path): file_hash(path) for path in paths},
     )
-    stability = _prior(recording_set, calibration, pictures.taken_at)
-    moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, pictures, stability))
+    stability = _prior(recording_set, calibration, seen_by.taken_at)
+    moved = Calibration(*readjusted((camera, fan, calibration.id), deviations, evidence, seen_by, stability))
     there = moved.camera.camera
     left = calibration_deviations(moved.camera, moved.fan)
     again, _ = check_poses(seen, there, moved.fan, left)
@@ -115,8 +117,8 @@ def readjust_step(
     InputError
         As `propose_readjustment`; then nothing has changed.
     """
-    proposed = propose_readjustment(work.recording_set, work.calibration(), options or Options(), progress, poses)
     with work.step(READJUST) as log:
+        proposed = propose_readjustment(log.pictures, work.calibration(), options or Options(), progress, poses)
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))
         write_fan(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)

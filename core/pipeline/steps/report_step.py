@@ -18,7 +18,8 @@ from core.files.arrays_file import read_arrays
 from core.files.atomic import write_bytes
 from core.files.project.calibration_store import IMPORTED
 from core.files.reading import file_hash, read_json
-from core.files.recording.recording_set import RIG, RecordingSet
+from core.files.recording.picture_reader import PictureReader
+from core.files.recording.recording_set import RIG
 from core.files.recording.rig import Rig, rig_to_toml
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import camera_id
@@ -87,7 +88,7 @@ def report_step(
         If a result is missing, damaged, or was measured with another calibration.
     """
     with work.step("report", measures=False) as log:
-        content = report_content(work, progress, said)
+        content = report_content(work, log.pictures, progress, said)
         if beside is None:
             data = draw_report(content, progress=progress)
         else:
@@ -110,7 +111,9 @@ def draw_report(content: ReportContent, /, *, progress: Progress = silent) -> by
     return build_report(content, progress)
 
 
-def report_content(work: Workspace, progress: Progress = silent, said: Said | None = None) -> ReportContent:
+def report_content(
+    work: Workspace, pictures: PictureReader, progress: Progress = silent, said: Said | None = None
+) -> ReportContent:
     """What the report says; InputError as `report_step`."""
     progress("report", 0, 1)
     content = results_content(work.out, work.part, work.record())
@@ -119,7 +122,7 @@ def report_content(work: Workspace, progress: Progress = silent, said: Said | No
     content = replace(
         content,
         rig_id=content.rig_id or hashlib.sha256(rig_to_toml(rig).encode()).hexdigest()[:RIG_ID],
-        overlay=_overlay(work.recording_set, scan, content.cloud) if scan else None,
+        overlay=_overlay(pictures, scan, content.cloud) if scan else None,
         attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
         artefacts=_artefacts(work),
     )
@@ -277,13 +280,13 @@ def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Mes
     return words
 
 
-def _overlay(recording_set: RecordingSet, scan: ScanFile, cloud: Cloud) -> Overlay | None:
+def _overlay(pictures: PictureReader, scan: ScanFile, cloud: Cloud) -> Overlay | None:
     """The frame to show with what was found in it, or None if it is there no more."""
     if scan.shown is None:
         return None
     shown = scan.features.frames[scan.shown]
     try:
-        picture = recording_set.read(recording_set.path_of(shown.name))
+        picture = pictures.read(pictures.recording_set.path_of(shown.name))
     except InputError:
         return None  # calibrations and clouds can be reported without the pictures they were made from
     lines = range(max(scan.fan_line, default=-1) + 1)

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.recording.options import Options
-from core.pipeline.steps.check_step import since_calibration
+from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
 from core.pipeline.steps.scan.judgement import judged_scan, section_change, solved_scan
 from core.pipeline.steps.scan.notes import notes_on_scan
@@ -61,12 +61,13 @@ def scan_step(
     require_frames(recording_set, options)
     calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
-        features = scan_features(recording_set, calibration, options, progress, watch, earlier, seen)
-        log.settings.update({**options.scan_settings, **recording_set.laser_channel("scan").settings})
+        features = scan_features(log.pictures, calibration, options, progress, watch, earlier, seen)
+        log.settings.update({**options.scan_settings, **log.pictures.laser_channel("scan").settings})
         solving = ReconstructOptions(options.method, options.sigma_cut_mm, recording_set.rig.row_time_us)
         solved = solved_scan(features, calibration, solving, progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
-        change_by = partial(since_calibration, recording_set, calibration, options, progress, poses=check)
+        checked = check_of_the_day(log.pictures, calibration, options, progress) if check is None else check
+        change_by = partial(since_calibration, recording_set, calibration, checked)
         section = section_change(work, calibration, features.fan)
         facts = facts_of_the_day(work, calibration)
         judgement = judged_scan(solved, change_by, facts, section, options.method, progress)
@@ -77,6 +78,6 @@ def scan_step(
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
         measured = Measured(scan, mesh)
-        file = scan_file(features, scan, judgement, calibration, recording_set, options)
+        file = scan_file(features, scan, judgement, calibration, log.pictures, options)
         write_measured(log, measured, file, progress)
     return measured

@@ -12,7 +12,7 @@ from core.calibrate.board_shape import LARGEST_SCALE_SD, size_assumed
 from core.calibrate.results import FanCalibration
 from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
 from core.files.reading import file_hash
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import pictures_in
 from core.findings.table import note_of
 from core.image.targets import BlackSquare, Target, TargetNotFound, detect
@@ -35,7 +35,7 @@ _CAMERAS, _REFERENCE = (
 """What the plane target is seen beside."""
 
 
-def compare_targets(recording_set: RecordingSet, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
+def compare_targets(pictures: PictureReader, camera: Camera) -> tuple[TargetRatio | None, tuple[Message, ...]]:
     """The ratio of the targets' sizes over the one stated, None where no picture shows both; notes on the others.
 
     The other one is the reference target if rig.toml states one, else the camera's. None as well where it does not say
@@ -46,8 +46,8 @@ def compare_targets(recording_set: RecordingSet, camera: Camera) -> tuple[Target
     InputError
         If a picture is damaged, or of another size than the camera's.
     """
-    rig = recording_set.rig
-    paths = pictures_in(recording_set.rig_file.parent / TARGETS)
+    rig = pictures.recording_set.rig
+    paths = pictures_in(pictures.recording_set.rig_file.parent / TARGETS)
     other = None if rig.reference is None else rig.reference.target
     if other is None and not rig.one_target and "camera_target" not in rig.unstated:
         other = rig.camera_target
@@ -56,8 +56,8 @@ def compare_targets(recording_set: RecordingSet, camera: Camera) -> tuple[Target
     shown: list[tuple[TargetView, TargetView]] = []
     notes: list[Message] = []
     for path in paths:
-        picture = recording_set.read_board(path)
-        recording_set.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
+        picture = pictures.read_board(path)
+        pictures.hashes[f"{TARGETS}/{path.name}"] = file_hash(path)
         check_size(path, picture.shape, camera)
         name = f"{TARGETS}/{path.stem}"
         try:
@@ -98,7 +98,7 @@ def _without(seen: TargetView, picture: Picture) -> Picture:
 
 
 def with_compared_sizes(
-    fan: FanCalibration, recording_set: RecordingSet, camera: Camera
+    fan: FanCalibration, pictures: PictureReader, camera: Camera
 ) -> tuple[FanCalibration, tuple[Message, ...]]:
     """The fan, its scale uncertain by all that the sizes of the targets disagree, and what is to be said of it.
 
@@ -110,12 +110,13 @@ def with_compared_sizes(
     InputError
         As `compare_targets`.
     """
-    ratio, notes = compare_targets(recording_set, camera)
+    ratio, notes = compare_targets(pictures, camera)
     if ratio is None:
         return fan, notes
-    reference = recording_set.rig.reference
-    board = recording_set.rig.camera_board if reference is None else reference.board
-    stated = math.hypot(board.size_sd, recording_set.rig.plane_board.size_sd)
+    rig = pictures.recording_set.rig
+    reference = rig.reference
+    board = rig.camera_board if reference is None else reference.board
+    stated = math.hypot(board.size_sd, rig.plane_board.size_sd)
     said = (*notes, ratio.note(stated, _CAMERAS if reference is None else _REFERENCE))
     if ratio.fit_p < NOT_FIXED:
         return fan, said

@@ -19,7 +19,8 @@ from core.files.atomic import cannot_write, make_folder
 from core.files.folder_lock import NEW_FOLDER
 from core.files.pictures import write_picture
 from core.files.reading import file_hash
-from core.files.recording.recording_set import RecordingSet, require_outside
+from core.files.recording.picture_reader import PictureReader
+from core.files.recording.recording_set import RIG, RecordingSet, require_outside
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.run_file import RunRecord, read_run, write_run
@@ -83,6 +84,8 @@ class StepLog:
     """What a step leaves for run.json, and where it puts its results until all of them are there."""
 
     beside: Path
+    pictures: PictureReader
+    """Reads the pictures of the set: what it has read are inputs of the step."""
     gone: set[str] = field(default_factory=set)
     """Results of another step that these take the place of."""
     settings: dict[str, Any] = field(default_factory=dict)
@@ -166,11 +169,12 @@ class Workspace:
         begun, started = _now(), time.perf_counter()
         self.record()  # a damaged run.json is told before the work, not after it
         with made_beside(self.out) as beside:
-            log = StepLog(beside)
+            log = StepLog(beside, PictureReader(self.recording_set))
             yield log
             seconds = time.perf_counter() - started
             renew(self.out, beside, name, log.gone)
-            record = self.record().with_step(name, seconds, self.recording_set.hashes, log.settings, log.notes)
+            inputs = {RIG: self.recording_set.rig_hash, **log.pictures.hashes}
+            record = self.record().with_step(name, seconds, inputs, log.settings, log.notes)
             if self.part:
                 record = replace(record, part=self.part)
             if measures:

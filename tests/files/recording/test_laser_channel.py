@@ -9,6 +9,7 @@ import pytest
 from core.acquire.grey import saturated_in, to_grey
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import default_rig, rig_to_toml
 from core.pipeline.steps.kept_features import features_key
@@ -83,20 +84,23 @@ def test_a_difference_shows_nothing_where_a_channel_is_saturated():
 
 def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path):
     recording_set = colour_set(tmp_path / "set", 'channel = "green"\n').seen_in("red-green")
-    assert [recording_set.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + [
+    pictures = PictureReader(recording_set)
+    assert [pictures.laser_channel(part).channel for part in ("camera", "planes", "scan")] == ["green"] + [
         "red-green"
     ] * 2
     colours = cv2.imread(str(recording_set.planes[0].on))
-    assert (recording_set.read(recording_set.planes[0].on) == to_grey(colours, "red-green")).all()
-    assert (recording_set.read_target(recording_set.planes[0].on) == colours[:, :, 1]).all()
+    assert (pictures.read(recording_set.planes[0].on) == to_grey(colours, "red-green")).all()
+    assert (pictures.read_target(recording_set.planes[0].on) == colours[:, :, 1]).all()
 
 
 def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):
     found, camera = colour_set(tmp_path / "set"), paper.HALF
-    chosen = features_key(found, Options(), camera)
-    assert chosen == features_key(found.seen_in("red"), Options(), camera)
-    assert chosen != features_key(found.seen_in("red-green"), Options(), camera)
-    assert chosen != features_key(replace(found, rig=replace(found.rig, mosaic="RGGB")), Options(), camera)
+    chosen = features_key(PictureReader(found), Options(), camera)
+    assert chosen == features_key(PictureReader(found.seen_in("red")), Options(), camera)
+    assert chosen != features_key(PictureReader(found.seen_in("red-green")), Options(), camera)
+    assert chosen != features_key(
+        PictureReader(replace(found, rig=replace(found.rig, mosaic="RGGB"))), Options(), camera
+    )
 
 
 def test_of_raw_pictures_the_channel_that_shows_the_laser_best_is_looked_at_in_any_case():
@@ -123,22 +127,25 @@ def colour_set(folder, head="", colour=RED):
 
 def test_a_set_looks_at_each_part_in_its_best_channel_and_at_the_target_in_grey(tmp_path):
     found = colour_set(tmp_path / "set")
+    pictures = PictureReader(found)
     red = cv2.imread(str(found.planes[0].on))[:, :, 2]
-    assert (found.read(found.planes[0].on) == red).all()
-    assert found.laser_channel("scan").channel == "red"
+    assert (pictures.read(found.planes[0].on) == red).all()
+    assert pictures.laser_channel("scan").channel == "red"
     grey = cv2.imread(str(found.camera[0]), cv2.IMREAD_GRAYSCALE)
-    assert np.abs(found.read(found.camera[0]).astype(int) - grey).max() <= 1
+    assert np.abs(pictures.read(found.camera[0]).astype(int) - grey).max() <= 1
 
 
 def test_what_rig_toml_states_is_taken_without_a_word(tmp_path):
     found = colour_set(tmp_path / "set", 'channel = "green"\n')
-    assert found.laser_channel("planes") == LaserChannel("green")
-    assert found.laser_channel("planes").notes("planes") == ()
-    assert (found.read(found.frames[0]) == cv2.imread(str(found.frames[0]))[:, :, 1]).all()
+    pictures = PictureReader(found)
+    assert pictures.laser_channel("planes") == LaserChannel("green")
+    assert pictures.laser_channel("planes").notes("planes") == ()
+    assert (pictures.read(found.frames[0]) == cv2.imread(str(found.frames[0]))[:, :, 1]).all()
 
 
 def test_grey_pictures_have_no_channel(tmp_path):
     found = colour_set(tmp_path / "set")
+    pictures = PictureReader(found)
     for path in (found.planes[0].on, found.planes[0].off):
         cv2.imwrite(str(path), cv2.imread(str(path), cv2.IMREAD_GRAYSCALE))
-    assert found.laser_channel("planes") == LaserChannel()
+    assert pictures.laser_channel("planes") == LaserChannel()

@@ -7,6 +7,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import write_picture
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.files.recording.rig import Channels, default_rig, rig_to_toml
 from core.image.mosaic import ALL_SITES, Sites
@@ -44,32 +45,31 @@ def test_lists_everything_in_the_order_of_names(folder):
 
 def test_frames_stream_in_order_with_hashes(folder):
     recording_set = open_set(folder)
-    stream = list(recording_set.stream(recording_set.frames))
+    stream = list((pictures := PictureReader(recording_set)).stream(recording_set.frames))
     assert [name for name, _ in stream] == [f"scan/frame_{i:03d}.png" for i in range(6)]
     assert [int(p[0, 0]) for _, p in stream] == list(range(6))
     data = (folder / "scan" / "frame_003.png").read_bytes()
-    assert recording_set.hashes["scan/frame_003.png"] == hashlib.sha256(data).hexdigest()
+    assert pictures.hashes["scan/frame_003.png"] == hashlib.sha256(data).hexdigest()
 
 
 def test_truncated_frame_among_good_ones_is_told_and_the_rest_go_on(folder):
     path = folder / "scan" / "frame_002.png"
     path.write_bytes(path.read_bytes()[:-20])
     recording_set = open_set(folder)
-    stream = list(recording_set.stream(recording_set.frames))
+    stream = list(PictureReader(recording_set).stream(recording_set.frames))
     assert [isinstance(picture, Message) for _, picture in stream] == [False, False, True, False, False, False]
     assert (stream[2][0], str(stream[2][1])) == ("scan/frame_002.png", "the picture ends early")
     assert stream[2][1].code
 
 
 def test_streaming_reads_only_a_few_frames_ahead(folder, monkeypatch):
-    recording_set = open_set(folder)
     for frame in range(6, 40):
         write_picture(folder / "scan" / f"frame_{frame:03d}.png", picture(frame))
-    recording_set = open_set(folder)
-    stream = recording_set.stream(recording_set.frames)
+    pictures = PictureReader(open_set(folder))
+    stream = pictures.stream(pictures.recording_set.frames)
     next(stream)
     stream.close()
-    assert len(recording_set.hashes) <= 9
+    assert len(pictures.hashes) <= 9
 
 
 def test_missing_folder_file_and_empty_set(tmp_path):
@@ -123,7 +123,7 @@ def test_mixed_depths_name_the_odd_picture(folder):
     write_picture(folder / "scan" / "frame_003.png", picture(dtype=np.uint16))
     recording_set = open_set(folder)
     with pytest.raises(InputError, match=r"frame_003\.png: the picture has 16 bit"):
-        list(recording_set.stream(recording_set.frames))
+        list(PictureReader(recording_set).stream(recording_set.frames))
 
 
 def test_off_picture_without_partner(folder):
@@ -145,7 +145,8 @@ def test_pictures_are_read_in_the_channel_of_their_step(tmp_path):
         cv2.imwrite(str(tmp_path / part / "a.png"), bgr)
     (tmp_path / "rig.toml").write_text('channel = "green"\n[channels]\ncamera = "blue"\nscan = "red"\n', "utf-8")
     recording_set = open_set(tmp_path)
-    assert [int(recording_set.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [
+    pictures = PictureReader(recording_set)
+    assert [int(pictures.read(tmp_path / part / "a.png")[0, 0]) for part in ("camera", "planes", "scan")] == [
         10,
         20,
         30,
@@ -179,10 +180,11 @@ def test_further_exposures_are_no_frames_views_or_poses(folder):
 def test_a_further_exposure_is_read_and_hashed_beside_the_first(folder):
     write_picture(folder / "scan" / "frame_002@2.png", picture(9))
     recording_set = open_set(folder)
-    assert int(recording_set.read_further(recording_set.frames[2], 2)[0, 0]) == 9
-    assert recording_set.read_further(recording_set.frames[2], 3) is None
-    assert recording_set.read_further(recording_set.frames[1], 2) is None
-    assert list(recording_set.hashes) == ["rig.toml", "scan/frame_002@2.png"]
+    pictures = PictureReader(recording_set)
+    assert int(pictures.read_further(recording_set.frames[2], 2)[0, 0]) == 9
+    assert pictures.read_further(recording_set.frames[2], 3) is None
+    assert pictures.read_further(recording_set.frames[1], 2) is None
+    assert list(pictures.hashes) == ["scan/frame_002@2.png"]
     both = [recording_set.frames[1], recording_set.frames[2], folder / "scan" / "frame_002@2.png"]
     assert recording_set.with_further(recording_set.frames[1:3]) == both
 
@@ -218,15 +220,14 @@ def raw_set(folder, **rig):
 
 def test_a_laser_in_raw_pictures_is_measured_at_the_sites_that_see_it(folder):
     recording_set = raw_set(folder, mosaic="RGGB")
+    pictures = PictureReader(recording_set)
     for part in ("planes", "scan"):
-        assert recording_set.sites(part) == Sites(0, 0)
-        assert recording_set.laser_channel(part).channel == "red"
+        assert pictures.sites(part) == Sites(0, 0)
+        assert pictures.laser_channel(part).channel == "red"
     frame = recording_set.frames[0]
     raw = cv2.imread(str(frame), cv2.IMREAD_UNCHANGED)
-    assert recording_set.read(frame).shape == raw.shape
-    assert np.array_equal(
-        recording_set.sites("scan").of(recording_set.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1]
-    )
+    assert pictures.read(frame).shape == raw.shape
+    assert np.array_equal(pictures.sites("scan").of(pictures.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
 
 
 def test_colours_interpolated_from_a_mosaic_that_is_stated_are_measured_where_they_were(folder):
@@ -236,34 +237,34 @@ def test_colours_interpolated_from_a_mosaic_that_is_stated_are_measured_where_th
     for path in (frame, *(path for pair in recording_set.planes for path in (pair.on, pair.off) if path)):
         cv2.imwrite(str(path), cv2.cvtColor(cv2.imread(str(path), cv2.IMREAD_UNCHANGED), cv2.COLOR_BayerRGGB2BGR))
     recording_set = open_set(folder)
-    assert recording_set.sites("planes") == Sites(0, 0)
-    assert np.array_equal(
-        recording_set.sites("planes").of(recording_set.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1]
-    )
-    assert recording_set.read_target(recording_set.planes[0].on).shape == raw.shape
+    pictures = PictureReader(recording_set)
+    assert pictures.sites("planes") == Sites(0, 0)
+    assert np.array_equal(pictures.sites("planes").of(pictures.read(frame))[1:-1, 1:-1], raw[::2, ::2][1:-1, 1:-1])
+    assert pictures.read_target(recording_set.planes[0].on).shape == raw.shape
 
 
 def test_the_stated_colour_of_a_laser_chooses_the_sites(folder):
-    assert raw_set(folder, mosaic="GBRG", channel="red").sites("scan") == Sites(0, 1)
-    assert raw_set(folder, mosaic="RGGB", channel="red-green").sites("scan") == ALL_SITES
+    assert PictureReader(raw_set(folder, mosaic="GBRG", channel="red")).sites("scan") == Sites(0, 1)
+    assert PictureReader(raw_set(folder, mosaic="RGGB", channel="red-green")).sites("scan") == ALL_SITES
 
 
 def test_pictures_of_no_mosaic_are_looked_at_whole(folder):
     recording_set = raw_set(folder)
-    assert recording_set.sites("scan") == ALL_SITES
-    assert recording_set.read(recording_set.frames[0]).dtype == np.uint8
+    pictures = PictureReader(recording_set)
+    assert pictures.sites("scan") == ALL_SITES
+    assert pictures.read(recording_set.frames[0]).dtype == np.uint8
 
 
 def test_a_target_is_looked_for_in_all_sites_of_a_raw_picture(folder):
     recording_set = raw_set(folder, mosaic="RGGB")
-    for board in (recording_set.read(recording_set.camera[0]), recording_set.read_board(recording_set.camera[0])):
+    pictures = PictureReader(recording_set)
+    for board in (pictures.read(recording_set.camera[0]), pictures.read_board(recording_set.camera[0])):
         assert board.shape == (60, 80)
         assert board.dtype == np.uint16
-    assert recording_set.read_target(recording_set.planes[0].on).dtype == np.uint16
+    assert pictures.read_target(recording_set.planes[0].on).dtype == np.uint16
 
 
 def test_a_set_of_grey_pictures_whose_targets_are_stated_in_red_reads_them_as_they_are(folder):
     recording_set = raw_set(folder, channels=Channels(camera="red"))
-    assert np.array_equal(
-        recording_set.read_target(recording_set.planes[0].on), recording_set.read(recording_set.planes[0].on)
-    )
+    pictures = PictureReader(recording_set)
+    assert np.array_equal(pictures.read_target(recording_set.planes[0].on), pictures.read(recording_set.planes[0].on))

@@ -34,6 +34,7 @@ scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), Option
 LIVE = """
 import numpy as np
 from core.acquire.source import Frame
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.options import Options
 from core.pipeline.live.preview import ScanPreviewer
 from core.pipeline.live.warm_up import get_ready_for_live
@@ -44,10 +45,11 @@ calibration = Workspace.open(found, Path(sys.argv[2])).calibration()
 get_ready_for_live(np.uint8)
 before = compiled()
 previewer = ScanPreviewer(calibration.camera.camera, calibration.fan.fan, Options())
-previewer.read_reference(found.read(found.reference))
+pictures = PictureReader(found)
+previewer.read_reference(pictures.read(found.reference))
 located = 0
 for number, path in enumerate(found.frames):
-    looked = previewer.look(number, path.name, Frame(found.read(path), number, 0.0, 0))
+    looked = previewer.look(number, path.name, Frame(pictures.read(path), number, 0.0, 0))
     located += len(looked.preview.points)
     while previewer.has_more:
         previewer.go_on()

@@ -30,7 +30,7 @@ def project(tmp_path: Path) -> Path:
     create_project(folder, ProjectFile(made))
     inputs = {
         "scan/frame0.png": hashlib.sha256(b"a picture").hexdigest(),
-        RIG: project_set(folder, made).hashes[RIG],
+        RIG: project_set(folder, made).rig_hash,
     }
     results = folder / "results"
     results.mkdir()

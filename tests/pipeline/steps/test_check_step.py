@@ -16,6 +16,7 @@ from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, STABLE, dis
 from core.errors import InputError
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
 from core.files.recording.set_listing import taken_at
@@ -33,7 +34,7 @@ from core.pipeline.steps import artefact_step as artefact_module
 from core.pipeline.steps import planes_step as planes_step_module
 from core.pipeline.steps.artefact_step import artefact_step
 from core.pipeline.steps.camera_step import camera_step
-from core.pipeline.steps.check_step import check_step, measure_check, since_calibration
+from core.pipeline.steps.check_step import check_of_the_day, check_step, measure_check, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import propose_readjustment, readjust_step, undo_readjustment
@@ -95,7 +96,8 @@ def work_in(folder, tmp_path, *, with_check: bool = True) -> Workspace:
 def check_seen_in(folder):
     """What the pictures of a prepared check show, and which they are, looked at once for all tests here."""
     work = Workspace.open(open_set(folder / "set"), folder / "out")
-    return measure_check(work.recording_set, work.calibration().camera.camera, Options()), work.recording_set.hashes
+    pictures = PictureReader(work.recording_set)
+    return measure_check(pictures, work.calibration().camera.camera, Options()), pictures.hashes
 
 
 @cache
@@ -105,24 +107,25 @@ def scan_seen_in(folder):
 
 
 def check_of(folder, work: Workspace):
-    poses, hashes = check_seen_in(folder)
-    work.recording_set.hashes.update(hashes)
+    poses, _ = check_seen_in(folder)
     return check_step(work, poses=poses)
 
 
 def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged, tmp_path):
     poses, hashes = check_seen_in(unchanged)
-    read = work_in(unchanged, tmp_path / "read")
-    read.recording_set.hashes.update(hashes)
-    not_read = work_in(unchanged, tmp_path / "not read")
-    ids = [check_step(work, poses=poses).pictures_id for work in (read, not_read)]
-    assert ids[0] == ids[1]
-    assert {name: not_read.record().inputs.get(name) for name in hashes} == hashes, "and stand among the inputs"
+    here, before = work_in(unchanged, tmp_path / "here"), work_in(unchanged, tmp_path / "before")
+    assert check_step(here).pictures_id == check_step(before, poses=poses).pictures_id
+    for work in (here, before):
+        assert {name: work.record().inputs.get(name) for name in hashes} == hashes, "and stand among the inputs"
+
+
+def changed_since(recording_set, calibration):
+    check = check_of_the_day(PictureReader(recording_set), calibration, Options())
+    return since_calibration(recording_set, calibration, check)
 
 
 def scan_of(folder, work: Workspace) -> Measured:
-    poses, hashes = check_seen_in(folder)
-    work.recording_set.hashes.update(hashes)
+    poses, _ = check_seen_in(folder)
     return scan_step(work, COARSE, check=poses if work.recording_set.check else None, seen=lambda: scan_seen_in(folder))
 
 
@@ -176,7 +179,7 @@ def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_
     for one in (work, as_opened):
         with pytest.raises(InputError, match="these very pictures"):
             check_step(one)
-    change = since_calibration(as_opened.recording_set, as_opened.calibration(), Options())
+    change = changed_since(as_opened.recording_set, as_opened.calibration())
     assert change.p == 1.0, "they are not counted twice"
     undo_readjustment(work)
     assert work.path("planes").read_bytes() == before
@@ -211,9 +214,9 @@ def test_on_another_day_a_readjustment_counts_no_more_than_a_calibration(turned,
         os.utime(copy, (0, 0))
         frames.append(copy)
     later = replace(work.recording_set, frames=tuple(frames))
-    sources = {one.source for one in since_calibration(later, work.calibration(), Options()).deviations}
+    sources = {one.source for one in changed_since(later, work.calibration()).deviations}
     assert {"readjusted", "assumed change"} <= sources
-    same_day = since_calibration(work.recording_set, work.calibration(), Options())
+    same_day = changed_since(work.recording_set, work.calibration())
     assert "assumed change" not in {one.source for one in same_day.deviations}
 
 
@@ -343,7 +346,7 @@ def test_a_fan_that_is_not_found_again_is_no_passed_check(unchanged, tmp_path):
     known = work.calibration()
     elsewhere = displaced_fan(known.fan.fan, np.array([0.0, 0.0, 0.3]), np.array([48.0, 81.0, 312.0]))
     moved = replace(known, fan=replace(known.fan, fan=elsewhere))
-    change = since_calibration(work.recording_set, moved, Options())
+    change = changed_since(work.recording_set, moved)
     assert change.p < PROVES_NOTHING
     assert change.notes[0].code == "scan.fan_is_elsewhere"
 
@@ -351,7 +354,7 @@ def test_a_fan_that_is_not_found_again_is_no_passed_check(unchanged, tmp_path):
 def test_a_picture_of_the_check_that_shows_no_target_is_told(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     pairs = [replace(pair, on=work.recording_set.frames[0], off=None) for pair in work.recording_set.check]
-    change = since_calibration(replace(work.recording_set, check=tuple(pairs)), work.calibration(), Options())
+    change = changed_since(replace(work.recording_set, check=tuple(pairs)), work.calibration())
     assert {note.code for note in change.notes} == {"check.pose_left_out"}
 
 
@@ -378,8 +381,8 @@ def test_a_check_of_another_day_says_nothing_of_this_scan(unchanged, tmp_path):
         path.write_bytes(pair.on.read_bytes())
         os.utime(path, (0, 0))
         pictures.append(replace(pair, on=path, off=None))
-    change = since_calibration(replace(work.recording_set, check=tuple(pictures)), work.calibration(), Options())
-    without = since_calibration(replace(work.recording_set, check=()), work.calibration(), Options())
+    change = changed_since(replace(work.recording_set, check=tuple(pictures)), work.calibration())
+    without = changed_since(replace(work.recording_set, check=()), work.calibration())
     assert {note.code for note in change.notes} == {"check.another_day"}
     assert change.p == without.p
 
@@ -432,7 +435,7 @@ def charted(checked, work, tmp_path, days=8, last=1):
     for day in range(days):
         at = when - timedelta(days=last + day)
         keep_check(name, replace(one, calibration_id=name, pictures_id=f"day {day}", taken_at=at))
-    change = since_calibration(work.recording_set, work.calibration(), Options())
+    change = changed_since(work.recording_set, work.calibration())
     of_change = [one for one in change.deviations if "change" in one.source]
     (source,) = {one.source for one in of_change}
     here = work.calibration().fan.fan.pis
@@ -507,7 +510,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     work = work_in(turned, tmp_path)
     alone = check_of(turned, work)
     (kept,) = read_history(work.calibration().id).checks
-    proposed = propose_readjustment(work.recording_set, work.calibration(), Options()).record
+    proposed = propose_readjustment(PictureReader(work.recording_set), work.calibration(), Options()).record
     charted(turned, work, tmp_path / "earlier")
     after = check_of(turned, work)
     assert after.p == alone.p
@@ -515,7 +518,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     assert after.unseen_mm > alone.unseen_mm
     assert read_history(work.calibration().id).checks[-1] == kept, "or a history would feed on itself"
     assert "scan.stability_charted" in [note.code for note in work.record().notes["check"]]
-    wider = propose_readjustment(work.recording_set, work.calibration(), Options()).record
+    wider = propose_readjustment(PictureReader(work.recording_set), work.calibration(), Options()).record
     assert np.linalg.norm(wider.sd) > np.linalg.norm(proposed.sd)
 
 

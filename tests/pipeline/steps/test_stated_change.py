@@ -10,9 +10,10 @@ from core.calibrate.drift import Air, Drift
 from core.files.project.data import new_project
 from core.files.project.keys import rests_on
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import taken_at
 from core.pipeline.project.workspace import rig_in_its_air
-from core.pipeline.steps.check_step import assumed_stability, since_calibration
+from core.pipeline.steps.check_step import assumed_stability, check_of_the_day, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from tests.pipeline.steps.test_check_step import check_of, check_seen_in, scan_of, unchanged, work_in
 
@@ -27,7 +28,9 @@ def stating(work, **stated):
 
 
 def change_of(work, poses=None):
-    return since_calibration(work.recording_set, work.calibration(), Options(), poses=poses)
+    if poses is None:
+        poses = check_of_the_day(PictureReader(work.recording_set), work.calibration(), Options())
+    return since_calibration(work.recording_set, work.calibration(), poses)
 
 
 def codes(work, poses=None):

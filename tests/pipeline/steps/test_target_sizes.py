@@ -8,6 +8,7 @@ import pytest
 from core.calibrate.board_shape import TRUE, BoardTolerance
 from core.calibrate.results import FanCalibration
 from core.files.pictures import write_picture
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import ReferenceTarget
 from core.image.targets import BlackSquare, Checkerboard
@@ -101,10 +102,10 @@ def test_two_squares_in_one_picture_tell_the_size_of_the_one_by_the_other(
     )  # fmt: skip
     found = replace(found, rig=rig)
     assert found.rig.one_target
-    ratio, notes = compare_targets(found, camera)
+    ratio, notes = compare_targets(PictureReader(found), camera)
     assert notes == () and ratio.pictures == 3 and ratio.fit_p > 0.01
     assert abs(ratio.ratio - plane_mm / stated_mm) < 3 * ratio.u < 0.006
-    fan, said = with_compared_sizes(UNSTATED, found, camera)
+    fan, said = with_compared_sizes(UNSTATED, PictureReader(found), camera)
     assert not fan.scale_assumed
     assert fan.scale_sd == pytest.approx(np.hypot(1e-4, np.hypot(ratio.u, ratio.ratio - 1)))
     assert "the reference target" in str(said[-1])
@@ -117,7 +118,7 @@ def test_a_reference_target_counts_in_place_of_the_cameras(tmp_path, simulated, 
         found.rig, camera_target=Checkerboard(17, 12, 10.0), camera_board=BoardTolerance(),
         reference=ReferenceTarget(BOARD, BoardTolerance(scale_sd=1e-4)), plane_board=BoardTolerance(),
     )  # fmt: skip
-    fan, said = with_compared_sizes(UNSTATED, replace(found, rig=rig), camera)
+    fan, said = with_compared_sizes(UNSTATED, PictureReader(replace(found, rig=rig)), camera)
     assert not fan.scale_assumed and said[-1].code == "target.sizes_agree"
 
 
@@ -137,17 +138,17 @@ def opened(tmp_path, simulated, shown, side_mm):
 
 def test_sizes_that_are_stated_truly_agree(tmp_path, simulated, pictures):
     camera, shown = pictures
-    ratio, notes = compare_targets(opened(tmp_path, simulated, shown, 60.0), camera)
+    ratio, notes = compare_targets(PictureReader(opened(tmp_path, simulated, shown, 60.0)), camera)
     assert ratio.pictures == 3 and notes == () and ratio.fit_p > 0.01
     assert abs(ratio.ratio - 1) < 3 * ratio.u < 0.01
-    fan, said = with_compared_sizes(FAN, opened(tmp_path / "again", simulated, shown, 60.0), camera)
+    fan, said = with_compared_sizes(FAN, PictureReader(opened(tmp_path / "again", simulated, shown, 60.0)), camera)
     assert fan.scale_sd == FAN.scale_sd and {note.code for note in said} == {"target.sizes_agree"}
 
 
 def test_a_square_stated_as_61_mm_in_place_of_60_is_found_out_and_in_u(tmp_path, simulated, pictures):
     """Alone in the set nothing knew: a thickness of 50 mm came out 0.79 mm too large at U = 0.05 mm."""
     camera, shown = pictures
-    fan, said = with_compared_sizes(FAN, opened(tmp_path, simulated, shown, 61.0), camera)
+    fan, said = with_compared_sizes(FAN, PictureReader(opened(tmp_path, simulated, shown, 61.0)), camera)
     assert {note.code for note in said} == {"target.sizes_disagree"}
     assert 2 * fan.scale_sd * 50 > 0.79, "U of a thickness of 50 mm holds it"
     assert fan.scale_sd == pytest.approx(1 / 61, rel=0.3)
@@ -162,8 +163,8 @@ def test_a_camera_target_of_a_stated_size_confirms_the_plane_target(tmp_path, si
     found = opened(tmp_path, simulated, shown, side_mm)
     stated = BoardTolerance(scale_sd=3e-4)
     found = replace(found, rig=replace(found.rig, camera_board=stated, plane_board=BoardTolerance()))
-    ratio, _ = compare_targets(found, camera)
-    fan, _ = with_compared_sizes(UNSTATED, found, camera)
+    ratio, _ = compare_targets(PictureReader(found), camera)
+    fan, _ = with_compared_sizes(UNSTATED, PictureReader(found), camera)
     assert not fan.scale_assumed
     assert fan.scale_sd == pytest.approx(np.hypot(3e-4, np.hypot(ratio.u, ratio.ratio - 1)))
     assert abs(ratio.ratio - 1 - off) < 3 * ratio.u
@@ -173,7 +174,7 @@ def test_a_camera_target_of_which_nothing_is_stated_confirms_nothing(tmp_path, s
     camera, shown = pictures
     found = opened(tmp_path, simulated, shown, 60.0)
     found = replace(found, rig=replace(found.rig, camera_board=BoardTolerance(), plane_board=BoardTolerance()))
-    assert with_compared_sizes(UNSTATED, found, camera)[0].scale_assumed
+    assert with_compared_sizes(UNSTATED, PictureReader(found), camera)[0].scale_assumed
 
 
 def test_a_camera_target_that_rig_toml_does_not_name_is_not_looked_for(tmp_path, simulated, pictures):
@@ -182,8 +183,8 @@ def test_a_camera_target_that_rig_toml_does_not_name_is_not_looked_for(tmp_path,
     opened(tmp_path, simulated, shown, 60.0)
     (tmp_path / "set" / "rig.toml").write_text('[plane_target]\nkind = "black_square"\nside_mm = 60.0\n')
     recording_set = open_set(tmp_path / "set")
-    assert compare_targets(recording_set, camera) == (None, ())
-    assert with_compared_sizes(UNSTATED, recording_set, camera) == (UNSTATED, ())
+    assert compare_targets(PictureReader(recording_set), camera) == (None, ())
+    assert with_compared_sizes(UNSTATED, PictureReader(recording_set), camera) == (UNSTATED, ())
 
 
 def test_targets_that_are_not_fixed_to_each_other_say_nothing(tmp_path, simulated, pictures):
@@ -192,17 +193,17 @@ def test_targets_that_are_not_fixed_to_each_other_say_nothing(tmp_path, simulate
     moved = shown[1].copy()
     moved[:, :half] = np.roll(moved[:, :half], 12, axis=0)
     found = opened(tmp_path, simulated, (shown[0], moved, shown[2]), 61.0)
-    fan, said = with_compared_sizes(FAN, found, camera)
+    fan, said = with_compared_sizes(FAN, PictureReader(found), camera)
     assert {note.code for note in said} == {"target.not_fixed"} and fan.scale_sd == FAN.scale_sd
 
 
 def test_without_such_pictures_nothing_is_said(tmp_path, simulated, pictures):
     found = opened(tmp_path, simulated, (), 61.0)
-    assert with_compared_sizes(FAN, found, pictures[0]) == (FAN, ())
+    assert with_compared_sizes(FAN, PictureReader(found), pictures[0]) == (FAN, ())
 
 
 def test_a_picture_that_shows_one_of_them_is_told(tmp_path, simulated, pictures):
     camera, shown = pictures
     grey = np.full_like(shown[0], 90)
-    ratio, notes = compare_targets(opened(tmp_path, simulated, (grey,), 60.0), camera)
+    ratio, notes = compare_targets(PictureReader(opened(tmp_path, simulated, (grey,), 60.0)), camera)
     assert ratio is None and [note.code for note in notes] == ["target.not_both"]

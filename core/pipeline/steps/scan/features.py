@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.files.recording.options import Options
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.picture_reader import PictureReader
 from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
@@ -19,7 +19,7 @@ from core.scan.preview.shown import FramePreview
 
 
 def scan_features(
-    recording_set: RecordingSet,
+    pictures: PictureReader,
     calibration: Calibration,
     options: Options,
     progress: Progress,
@@ -31,9 +31,8 @@ def scan_features(
 
     Parameters
     ----------
-    recording_set, calibration, options, progress
-        What is looked at, how, and who is told. The set learns the hashes of the pictures and the channel they are
-        seen in.
+    pictures, calibration, options, progress
+        What is looked at, how, and who is told.
     watch
         Shown each frame with what it would give by itself, if the pictures are looked at now.
     earlier
@@ -47,18 +46,17 @@ def scan_features(
         If the reference shows no line of the fan, no frame a sweep, or a picture has another size than the camera's.
     """
     camera = calibration.camera.camera
-    kept = kept_features(earlier, recording_set, options, camera, progress) if earlier is not None else None
+    kept = kept_features(earlier, pictures, options, camera, progress) if earlier is not None else None
     if kept is not None and kept.image_size == camera.image_size:
         return kept
     if seen is None:
         watching = None if watch is None else _watching(watch, camera, calibration.fan.fan)
-        looked = look_at_scan((recording_set, options), progress=progress, camera=camera, watching=watching)
+        looked = look_at_scan((pictures.recording_set, options), progress=progress, camera=camera, watching=watching)
     else:
         looked = seen()
     width, height = looked.lines.image_size
     check_size(looked.reference, (height, width), camera)
-    recording_set.hashes.update(looked.hashes)
-    recording_set.chosen.update(looked.chosen)
+    pictures.learn(looked.hashes, looked.channels)
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
     return replace(features, notes=(*looked.notes, *features.notes))
 

@@ -13,6 +13,7 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.options import Options
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
 from core.findings.table import note_of
@@ -48,7 +49,7 @@ FEWEST_FOR_QUANTILE = 3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenScan:
-    """What the pictures of a scan show, and what reading them leaves in the recording set.
+    """What the pictures of a scan show, and what its reader has found: a `PictureReader` learns it.
 
     `averaged` are the same `lines`, averaged along themselves; `reference` is the picture that shows the fan alone, or
     the first of those it was made from.
@@ -59,7 +60,7 @@ class SeenScan:
     notes: tuple[Message, ...]
     reference: Path
     hashes: Mapping[str, str]
-    chosen: Mapping[str, LaserChannel]
+    channels: Mapping[str, LaserChannel]
 
 
 def look_at_scan(
@@ -89,22 +90,23 @@ def look_at_scan(
         If the reference shows no line of the fan, or no frame a sweep.
     """
     found, options = job
+    pictures = PictureReader(found)
     times = progress if isinstance(progress, StageTimes) else None
-    channel = found.laser_channel("scan")
+    channel = pictures.laser_channel("scan")
     looking = replace(feature_options(options), compression=compression_of(found.frames[0], channel.channel))
     progress("reference", 0, 1)
-    picture, note = reference_picture(found, camera, options, progress)
-    sites = found.sites("scan")
+    picture, note = reference_picture(pictures, camera, options, progress)
+    sites = pictures.sites("scan")
     looking = at_sites(looking, sites)
     reference = read_reference(sites.of(picture), looking)
-    further = _further_exposures(found, options, looking, reference)
+    further = _further_exposures(pictures, options, looking, reference)
     factor = 1.0
     if further:
         fan, exposures = fused(_fan_seen(reference), [_fan_seen(each.reference) for each in further.values()])
         reference = replace(reference, fan=fan)
         factor = float(np.nanmax([1.0, *(each.factor for each in exposures)]))
     progress("reference", 1, 1)
-    frames, total = stream_frames(found, options, times), len(found.frames)
+    frames, total = stream_frames(pictures, options, times), len(found.frames)
     shown = of_whole(reference, sites, picture)
     show = watching(shown) if watching else None
     watch = None if show is None else lambda features: show(features.brought_back(sites))
@@ -116,7 +118,7 @@ def look_at_scan(
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
     path = found.reference or taken_frames(found, options)[0]
-    return SeenScan(lines, averaged, notes, path, found.hashes, found.chosen)
+    return SeenScan(lines, averaged, notes, path, pictures.hashes, pictures.channels)
 
 
 def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
@@ -145,39 +147,40 @@ def _fan_seen(reference: ReferenceFeatures) -> Exposure:
 
 
 def _further_exposures(
-    recording_set: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures
+    pictures: PictureReader, options: Options, looking: FeatureOptions, first: ReferenceFeatures
 ) -> dict[int, FurtherExposures]:
     """The further exposures of the frames by their number, those with a picture of the fan alone to go with them.
 
     That one is made of them where it is not there, as the first one's would be.
     """
-    of_number = {number: _exposures(recording_set, options, looking, first, number) for number in FURTHER}
+    of_number = {number: _exposures(pictures, options, looking, first, number) for number in FURTHER}
     return {number: each for number, each in of_number.items() if each is not None}
 
 
 def _exposures(
-    recording_set: RecordingSet, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
+    pictures: PictureReader, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
 ) -> FurtherExposures | None:
     """Those of one number; None if there are none, or no picture of the fan alone."""
+    recording_set = pictures.recording_set
     shots = {recording_set.name_of(path): path for path in taken_frames(recording_set, options)}
     shots = {name: path for name, path in shots.items() if number in recording_set.further.get(path, {})}
     if not shots:
         return None
     again = [recording_set.further[path][number] for path in shots.values()]
-    sample = list(recording_set.stream([again[i] for i in sample_indices(len(again))]))
-    pictures = [picture for _, picture in sample if not isinstance(picture, Message)]
-    base = None if recording_set.reference is None else recording_set.read_further(recording_set.reference, number)
+    sample = list(pictures.stream([again[i] for i in sample_indices(len(again))]))
+    readable = [picture for _, picture in sample if not isinstance(picture, Message)]
+    base = None if recording_set.reference is None else pictures.read_further(recording_set.reference, number)
     if base is None:
-        if len(pictures) < FEWEST_FOR_QUANTILE:
+        if len(readable) < FEWEST_FOR_QUANTILE:
             return None
-        base = quantile_reference(pictures)
-    sites = recording_set.sites("scan")
+        base = quantile_reference(readable)
+    sites = pictures.sites("scan")
     reference = read_reference(sites.of(base), replace(looking, fan_stripe=None), first)
     stripe = choose_sweep_stripe(list(_seen_at(sites, sample[:LOOK_AHEAD])), reference)
 
     def read(name: str) -> Picture | None:
         try:
-            picture = recording_set.read_further(shots[name], number) if name in shots else None
+            picture = pictures.read_further(shots[name], number) if name in shots else None
         except InputError:
             return None  # damaged: the first exposure is there
         return None if picture is None else sites.of(picture)
@@ -190,15 +193,16 @@ def feature_options(options: Options) -> FeatureOptions:
     return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
 
 
-def stream_frames(recording_set: RecordingSet, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
+def stream_frames(pictures: PictureReader, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
     """Every frame in the order of the recording; those left out by hand are not read."""
-    pictures = recording_set.stream(taken_frames(recording_set, options), times)
+    recording_set = pictures.recording_set
+    taken = pictures.stream(taken_frames(recording_set, options), times)
     for path in recording_set.frames:
         name = recording_set.name_of(path)
         if name in options.excluded:
             yield name, LEFT_OUT
             continue
-        _, picture = next(pictures)
+        _, picture = next(taken)
         yield name, picture
 
 
@@ -221,7 +225,7 @@ def taken_frames(recording_set: RecordingSet, options: Options) -> list[Path]:
 
 
 def reference_picture(
-    recording_set: RecordingSet, camera: Camera | None, options: Options, progress: Progress = silent
+    pictures: PictureReader, camera: Camera | None, options: Options, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 
@@ -230,26 +234,27 @@ def reference_picture(
     InputError
         If there is none and the frames are too few to make one from, or it has another size than the camera's.
     """
+    recording_set = pictures.recording_set
     if recording_set.reference is not None:
-        reference = recording_set.read(recording_set.reference)
+        reference = pictures.read(recording_set.reference)
         if camera is not None:
             check_size(recording_set.reference, reference.shape, camera)
         return reference, []
     taken = taken_frames(recording_set, options)
     sample = [taken[index] for index in sample_indices(len(taken))]
-    stream = steps(recording_set.stream(sample), progress, "reference", len(sample))
-    pictures = [picture for _, picture in stream if not isinstance(picture, Message)]
-    if len(pictures) < FEWEST_FOR_QUANTILE:
+    stream = steps(pictures.stream(sample), progress, "reference", len(sample))
+    readable = [picture for _, picture in stream if not isinstance(picture, Message)]
+    if len(readable) < FEWEST_FOR_QUANTILE:
         raise InputError(
             Message(
                 "scan.too_few_frames_for_reference",
                 "there is no reference.png, and {pictures} readable frames are too few to make one from",
-                pictures=len(pictures),
+                pictures=len(readable),
             ),
             where=recording_set.where("scan"),
             todo=Message("advice.record_reference", "record reference.png with the fan alone, or more frames"),
         )
     if camera is not None:
-        check_size(sample[0], pictures[0].shape, camera)
-    note = note_of("scan.no_reference", n=len(pictures))
-    return quantile_reference(pictures), [note]
+        check_size(sample[0], readable[0].shape, camera)
+    note = note_of("scan.no_reference", n=len(readable))
+    return quantile_reference(readable), [note]

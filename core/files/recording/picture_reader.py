@@ -1,0 +1,200 @@
+"""Reading the pictures of a recording set, in the channel that shows the laser, with a hash of each for run.json."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from pathlib import Path
+
+from core.acquire.folder import read_ahead
+from core.acquire.grey import Channel, is_difference, to_grey
+from core.errors import InputError
+from core.files.pictures import Picture, decode_colours
+from core.files.reading import file_hash, read_bytes
+from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
+from core.files.recording.recording_set import RecordingSet
+from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
+from core.messages import Message
+from core.progress import Progress, silent, steps
+from core.stage_times import StageTimes, stage
+
+_LOOKED_AT = 3
+"""Pictures that decide on the channel of a part."""
+
+
+class PictureReader:
+    """Reads the pictures of one set for one step, and knows afterwards which it has read.
+
+    Parameters
+    ----------
+    recording_set
+        The set.
+    channels
+        By part: the channel in which its pictures are looked at, if it has been found already.
+
+    Attributes
+    ----------
+    hashes
+        SHA-256 of every picture read, by its name within the set.
+    channels
+        Those that were given, and those found since.
+    """
+
+    def __init__(self, recording_set: RecordingSet, channels: Mapping[str, LaserChannel] | None = None) -> None:
+        self.recording_set = recording_set
+        self.hashes: dict[str, str] = {}
+        self.channels: dict[str, LaserChannel] = dict(channels or {})
+
+    def of(self, recording_set: RecordingSet) -> PictureReader:
+        """A reader for another choice of the same pictures; what either has read, both know."""
+        other = PictureReader(recording_set)
+        other.hashes, other.channels = self.hashes, self.channels
+        return other
+
+    def learn(self, hashes: Mapping[str, str], channels: Mapping[str, LaserChannel]) -> None:
+        """Take over what another reader has read of the same set, perhaps in another process."""
+        self.hashes.update(hashes)
+        self.channels.update(channels)
+
+    def read(self, path: Path) -> Picture:
+        """Read one picture of the set as the rig wants it, and take its hash.
+
+        Raises
+        ------
+        InputError
+            If it is damaged or unreadable; names the file.
+        """
+        data = read_bytes(path)
+        self.hashes[self.recording_set.name_of(path)] = hashlib.sha256(data).hexdigest()
+        part, rig = self.recording_set.part_of(path), self.recording_set.rig
+        if part == "camera":
+            return self._decoded_target(data, path, rig.channel_of("camera"))
+        return to_grey(decode_colours(data, path, rig.mosaic), self.laser_channel(part).channel)
+
+    def read_further(self, path: Path, number: int) -> Picture | None:
+        """As `read` the further exposure of this number of a picture; None if there is none."""
+        other = self.recording_set.further.get(path, {}).get(number)
+        return None if other is None else self.read(other)
+
+    def read_target(self, path: Path) -> Picture:
+        """Read one picture of the set in the channel in which a target is looked for, else as `read`.
+
+        That is the laser's, unless targets cannot be seen in it; then it is the camera's. In a raw picture all sites
+        show it.
+        """
+        laser = self.laser_channel(self.recording_set.part_of(path)).channel
+        seen = self.recording_set.rig.channel_of("camera") if is_difference(laser) else laser
+        return self._decoded_target(read_bytes(path), path, seen)
+
+    def read_board(self, path: Path) -> Picture:
+        """Read a picture of targets alone, wherever it lies, as those of the camera's target."""
+        return self._decoded_target(read_bytes(path), path, self.recording_set.rig.channel_of("camera"))
+
+    def _decoded_target(self, data: bytes, path: Path, channel: Channel | None) -> Picture:
+        picture = decode_colours(data, path)
+        if self.recording_set.rig.mosaic is not None and picture.ndim == 2:
+            return even_grey(picture)
+        return to_grey(picture, channel)
+
+    def sites(self, part: str) -> Sites:
+        """The sites that see the laser: all, unless pictures are raw and looked at in one colour."""
+        channel, mosaic = self.laser_channel(part).channel, self.recording_set.rig.mosaic
+        if mosaic is None or channel is None or is_difference(channel):
+            return ALL_SITES
+        return sites_of(mosaic, channel)
+
+    def laser_channel(self, part: str) -> LaserChannel:
+        """The channel in which the pictures of a part are looked at.
+
+        Where none is stated, it is the one that shows the laser best; the camera's target is looked at in grey then.
+        """
+        stated = self.recording_set.rig.channel_of(part)
+        if stated is not None or part == "camera":
+            return LaserChannel(stated)
+        if part not in self.channels:
+            self.channels[part] = _best_channel(self.recording_set, part)
+        return self.channels[part]
+
+    def take_hashes(self, paths: Sequence[Path], progress: Progress = silent) -> None:
+        """The hashes of pictures, as reading them would take them; one that cannot be read has none."""
+        for path in steps(paths, progress, "comparing the pictures", len(paths)):
+            with suppress(InputError):  # told where it is looked at
+                self.hashes[self.recording_set.name_of(path)] = file_hash(path)
+
+    def named_hashes(self, paths: Iterable[Path]) -> list[tuple[str, str]]:
+        """Name and hash of pictures; "" for those of which none was taken."""
+        names = map(self.recording_set.name_of, paths)
+        return [(name, self.hashes.get(name, "")) for name in names]
+
+    def id_of(self, paths: Iterable[Path]) -> str:
+        """Twelve hex digits that name some pictures by what is in them; those not read yet are hashed, too."""
+        named = {self.recording_set.name_of(path): path for path in paths}
+        self.take_hashes([path for name, path in named.items() if name not in self.hashes])
+        text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
+        return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:
+        """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
+
+        `times` learns what decoding costs.
+
+        Raises
+        ------
+        InputError
+            If a picture's depth (8 or 16 bit) is not that of the first one.
+        """
+
+        def attempt(path: Path) -> Picture | Message:
+            try:
+                with stage(times, "decoding"):
+                    return self.read(path)
+            except InputError as error:
+                return error.what
+
+        first: tuple[str, Picture] | None = None
+        if paths:
+            self.laser_channel(self.recording_set.part_of(paths[0]))  # once, before several threads ask for it
+        for path, result in read_ahead(paths, attempt):
+            name = self.recording_set.name_of(path)
+            if not isinstance(result, Message):
+                first = first or (name, result)
+                _check_depth(path, result, *first)
+            yield name, result
+
+
+def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:
+    """By three pictures of a part; grey where the first one is grey, or they cannot be read."""
+    mosaic = recording_set.rig.mosaic
+    if part == "scan":
+        pairs = [(frame, recording_set.reference) for frame in recording_set.frames]
+    else:
+        pairs = [(pair.on, pair.off) for pair in (recording_set.planes or recording_set.check)]
+    pictures = []
+    for on, off in pairs[:: max(1, len(pairs) // _LOOKED_AT)][:_LOOKED_AT]:
+        try:
+            data = read_bytes(on)
+            lit = decode_colours(data, on, mosaic)
+            dark = None if off is None else decode_colours(read_bytes(off), off, mosaic)
+        except InputError:
+            continue  # told when it is measured
+        if lit.ndim < 3 or lit.shape[2] < 3:
+            return LaserChannel()
+        same = dark is not None and dark.shape == lit.shape
+        pictures.append(LitPicture(lit, dark if same else None, data))
+    return laser_channel(pictures, raw=mosaic is not None)
+
+
+def _check_depth(path: Path, picture: Picture, first_name: str, first: Picture) -> None:
+    if picture.dtype != first.dtype:
+        raise InputError(
+            Message(
+                "set.depth_differs",
+                "the picture has {itemsize} bit, but {first_name} has {itemsize2}",
+                itemsize=picture.dtype.itemsize * 8,
+                first_name=first_name,
+                itemsize2=first.dtype.itemsize * 8,
+            ),
+            where=path,
+            todo=Message("advice.record_with_one_depth", "record all pictures with one depth"),
+        )
