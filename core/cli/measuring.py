@@ -122,7 +122,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
 def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Camera step."""
     with alone_with(folder, out) as work:
-        calibration = camera_step(work, chosen, progress)
+        calibration = camera_step(work, chosen.for_camera, progress)
         rows, values = output.camera_rows(calibration), output.camera_json(calibration)
         return _shown(work, "camera", rows, values, "camera")
 
@@ -130,7 +130,7 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
 def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Planes step."""
     with alone_with(folder, out, channel=chosen.channel) as work:
-        calibration = planes_step(work, chosen, progress)
+        calibration = planes_step(work, chosen.for_planes, progress)
         return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
 
 
@@ -139,14 +139,14 @@ def run_check(
 ) -> tuple[InterimCheck, Shown]:
     """Check step; `celsius` is the temperature of the air."""
     with alone_with(folder, out, channel=chosen.channel) as work:
-        check = check_step(work, chosen, progress, celsius)
+        check = check_step(work, chosen.plane_stripe, progress, celsius)
         return check, _shown(work, "check", output.check_rows(check), output.check_json(check), "check")
 
 
 def run_adjusting(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Re-adjust camera and fan by the pictures of the check."""
     with alone_with(folder, out, channel=chosen.channel) as work:
-        done = readjust_step(work, chosen, progress)
+        done = readjust_step(work, chosen.plane_stripe, progress)
         rows, values = output.readjustment_rows(done), output.readjustment_json(done)
         return _shown(work, READJUST, rows, values, "planes", "calibrated")
 
@@ -181,7 +181,7 @@ def rig_history(folder: Path, out: Path) -> tuple[RigHistory, Shown]:
 def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Shown:
     """Scan step."""
     with alone_with(folder, out, channel=chosen.channel) as work:
-        measured = scan_step(work, chosen, progress)
+        measured = scan_step(work, chosen.for_scan, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
         rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
         return _shown(work, "scan", rows, values, "cloud", "mesh")
@@ -206,7 +206,7 @@ def run_profile(
         )
     tilt = StatedTilt(stage, math.radians(tilt_sd_deg) or None) if stage or tilt_sd_deg else None
     with alone_with(folder, out, chosen.part, chosen.channel) as work:
-        measured = profile_step(work, chosen, tilt, progress)
+        measured = profile_step(work, chosen.for_scan, tilt, progress)
         gauge, pictures, verdict = measured.gauge, measured.pictures, read_results(work.out).verdict
         rows = [*output.gauge_rows(gauge, verdict), *output.picture_rows(pictures)]
         values = {**output.gauge_json(gauge, verdict), **output.pictures_json(pictures)}

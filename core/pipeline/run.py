@@ -13,8 +13,10 @@ from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
+from core.files.recording.step_settings import ScanSettings
 from core.files.results.folder_results import read_results
 from core.files.step_graph import READJUST
+from core.image.stripes.stripe import StripeSettings
 from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message
@@ -92,19 +94,23 @@ def run(
 def _measured(work: Workspace, options: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
     recording_set = work.recording_set
     work.clear()
-    seen = _looking(recording_set, options, progress, beside)
-    camera = camera_step(work, options, progress)
-    fan = planes_step(work, options, progress, beside)
+    seen = _looking(recording_set, options.for_scan, progress, beside)
+    camera = camera_step(work, options.for_camera, progress)
+    fan = planes_step(work, options.for_planes, progress, beside)
     check = (
-        measure_check(PictureReader(recording_set), camera.camera, options, progress, beside)
+        measure_check(PictureReader(recording_set), camera.camera, options.plane_stripe, progress, beside)
         if recording_set.check
         else None
     )
-    if check is not None and not check_step(work, options, progress, poses=check).passed and recording_set.rig.readjust:
-        fan = _readjusted(work, fan, options, progress, check)
+    if (
+        check is not None
+        and not check_step(work, options.plane_stripe, progress, poses=check).passed
+        and recording_set.rig.readjust
+    ):
+        fan = _readjusted(work, fan, options.plane_stripe, progress, check)
     if beside is not None:
         beside.submit(prepare_report, None)
-    measured = scan_step(work, options, progress, check=check, seen=seen, beside=beside)
+    measured = scan_step(work, options.for_scan, progress, check=check, seen=seen, beside=beside)
     frames, points, triangles = measured.scan.frames, len(measured.scan.cloud), len(measured.mesh.triangles)
     del seen, measured  # all else of it lies in the files
     # a part without two parallel faces is no error when rig.toml does not ask for a thickness
@@ -125,11 +131,15 @@ def _measured(work: Workspace, options: Options, progress: Progress, beside: Sec
 
 
 def _readjusted(
-    work: Workspace, fan: FanCalibration, options: Options, progress: Progress, check: Sequence[PoseFeatures]
+    work: Workspace,
+    fan: FanCalibration,
+    stripe: StripeSettings | None,
+    progress: Progress,
+    check: Sequence[PoseFeatures],
 ) -> FanCalibration:
     """The fan re-adjusted by the check, as rig.toml wants it; as it was where that is refused, and why is said."""
     try:
-        return readjust_step(work, options, progress, check).fan
+        return readjust_step(work, stripe, progress, check).fan
     except InputError as error:
         with work.step(READJUST) as log:
             log.notes.append(error.message)
@@ -137,10 +147,10 @@ def _readjusted(
 
 
 def _looking(
-    recording_set: RecordingSet, options: Options, progress: Progress, beside: SecondProcess | None
+    recording_set: RecordingSet, settings: ScanSettings, progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], SeenScan] | None:
     """Have the pictures of the scan looked at while camera and planes are calibrated."""
     if beside is None:
         return None
-    seen = beside.submit(look_at_scan, (recording_set, options), progress)
+    seen = beside.submit(look_at_scan, (recording_set, settings), progress)
     return lambda: beside.wait(seen, progress, "frames")

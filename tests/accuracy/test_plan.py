@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
+from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
@@ -42,7 +42,7 @@ def measured(design: Design, seed: int, folder):
     work = Workspace.open(open_set(folder / "set"), folder / "out")
     camera_step(work)
     planes_step(work)
-    scan = scan_step(work, Options(sigma_cut_mm=CUT_MM)).scan
+    scan = scan_step(work, ScanSettings(sigma_cut_mm=CUT_MM)).scan
     gauge = gauge_step(work)
     return gauge.u_mm, gauge.thickness_mm - HEIGHT, float(np.median(scan.cloud.sigma))
 

@@ -11,8 +11,8 @@ from core.calibrate.fan.poses.pose_stages import NOT_SEEN
 from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
-from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
+from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_file import read_scan
 from core.pipeline.project.details import recall_poses, show_frame, show_pose
 from core.pipeline.project.frame_stages import frame_stages
@@ -43,7 +43,7 @@ def test_a_raw_frame_shows_the_centrelines_that_its_sites_of_the_lasers_colour_s
     scenario = Scenario(scale=0.25, frames=4, camera_views=1, plane_poses=1, speckle=0.0, sensor=sensor)
     simulate_set(scenario, tmp_path / "set")
     recording_set = open_set(tmp_path / "set")
-    measured = look_at_scan((recording_set, Options())).lines
+    measured = look_at_scan((recording_set, ScanSettings())).lines
     for frame in measured.frames:
         stages = frame_stages(recording_set, frame.name)
         assert stages.picture.shape == measured.image_size[::-1]
@@ -113,22 +113,24 @@ def test_what_all_frames_share_is_looked_at_once(done):
     project = done.with_options(stripe=None, excluded=frozenset({"scan/frame0019.png"}))
     found = open_set_of(done)
     for number in range(4):
-        frame_stages(found, frame(number), options=replace(project.options, sigma_cut_mm=0.2), progress=progress)
+        frame_stages(
+            found, frame(number), settings=replace(project.options.for_scan, sigma_cut_mm=0.2), progress=progress
+        )
     before = dict(told)
-    frame_stages(found, frame(6), options=project.options, progress=progress)
+    frame_stages(found, frame(6), settings=project.options.for_scan, progress=progress)
     assert told == before
 
 
 def test_the_first_look_can_be_cancelled_and_begins_anew(done):
     found = open_set_of(done)
-    options = replace(done.project.options, excluded=frozenset({frame(0), frame(1)}))
+    settings = replace(done.project.options.for_scan, excluded=frozenset({frame(0), frame(1)}))
 
     def stop(step, done, total):
         raise Cancelled
 
     with pytest.raises(Cancelled):
-        frame_stages(found, frame(5), options=options, progress=stop)
-    assert frame_stages(found, frame(5), options=options).sweep
+        frame_stages(found, frame(5), settings=settings, progress=stop)
+    assert frame_stages(found, frame(5), settings=settings).sweep
 
 
 def test_an_unknown_frame_is_named(done):

@@ -27,7 +27,6 @@ from core.files.json_text import write_json
 from core.files.project.data import Accepted
 from core.files.reading import read_bytes, read_json
 from core.files.recording.features_file import read_poses, write_poses
-from core.files.recording.options import Options
 from core.files.results.camera_file import camera_id, read_camera, write_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.files.tables import KeptMessage, OrNan, Time, kept
@@ -93,13 +92,13 @@ class StoredCalibration:
 def keep_camera(
     project_folder: Path,
     calibration: CameraCalibration,
-    options: Options,
+    settings: Mapping[str, Any],
     inputs: Mapping[str, str] | None = None,
-    imported: str = "",
 ) -> str:
     """Put a camera's calibration into the history; one that is there already becomes the newest. Returns its id.
 
-    `inputs` are the hashes of what it was made from: pictures, or the file of another program that `imported` names.
+    `settings` are what it was told, as in run.json: of another program's, the file, as IMPORTED. `inputs` are the
+    hashes of what it was made from: pictures, or that file.
 
     Raises
     ------
@@ -113,7 +112,7 @@ def keep_camera(
         **_counts([view.used for view in calibration.views]),
         "rms_px": calibration.rms_px,
         "expected_error_mm": calibration.cross_validation_mm,
-        "settings": {IMPORTED: imported} if imported else options.camera_settings,
+        "settings": settings,
         "inputs": inputs or {},
     }
     _write_about(folder, "camera", id_, about)

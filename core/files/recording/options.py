@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
 
 from core.acquire.grey import Channel
 from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
+from core.files.recording.step_settings import SIGMA_CUT_MM, CameraSettings, PlanesSettings, ScanSettings
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.scan.method import Method
@@ -52,7 +51,7 @@ class Options:
     """
 
     method: Method = Method.NETWORK
-    sigma_cut_mm: float = 0.05
+    sigma_cut_mm: float = SIGMA_CUT_MM
     camera: CameraOptions = field(default_factory=CameraOptions)
     part: str = ""
     stripe: StripeSettings | None = None
@@ -86,28 +85,27 @@ class Options:
             )
 
     @property
-    def camera_settings(self) -> Mapping[str, Any]:
-        """What the camera's calibration is told, for run.json."""
-        camera = self.camera
-        told = {"skew": camera.skew, "k3": camera.k3, "fixed": sorted(camera.fixed), "outliers": camera.outliers}
-        return {**told, **self.excluded_settings("camera")}
+    def for_camera(self) -> CameraSettings:
+        """What the camera's calibration is told of it."""
+        return CameraSettings(self.camera, frozenset(self.excluded_in("camera")))
 
     @property
-    def scan_settings(self) -> Mapping[str, Any]:
-        """What the scan is told, for run.json."""
-        stripe = self.stripe
-        chosen = "automatic" if stripe is None else {"width_px": stripe.width_px, "contrast": stripe.contrast}
-        told = {"method": self.method, "sigma_cut_mm": self.sigma_cut_mm, "stripe": chosen}
-        return {**told, **self.excluded_settings("scan")}
+    def for_planes(self) -> PlanesSettings:
+        """What the calibration of the light planes is told of it."""
+        excluded = frozenset(self.excluded_in("planes"))
+        return PlanesSettings(
+            self.plane_stripe, excluded, self.constrain_fan, self.adjust_camera, self.accept_few_poses
+        )
+
+    @property
+    def for_scan(self) -> ScanSettings:
+        """What a scan, or a profile, is told of it."""
+        excluded = frozenset(self.excluded_in("scan"))
+        return ScanSettings(self.method, self.sigma_cut_mm, self.stripe, excluded, self.plane_stripe)
 
     def excluded_in(self, part: str) -> tuple[str, ...]:
         """The pictures left out by hand of one part (camera, planes or scan), in the order of their names."""
         return tuple(sorted(name for name in self.excluded if name.startswith(part + "/")))
-
-    def excluded_settings(self, part: str) -> Mapping[str, Any]:
-        """For run.json what is left out by hand of one part; nothing if nothing is."""
-        names = self.excluded_in(part)
-        return {"excluded": names} if names else {}
 
 
 @dataclass(frozen=True, slots=True)

@@ -5,7 +5,6 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from core.acquire.source import Frame, Picture
-from core.files.recording.options import Options
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
@@ -55,8 +54,8 @@ class ScanPreviewer:
     recording.
     """
 
-    def __init__(self, camera: Camera | None, fan: Fan | None, options: Options) -> None:
-        self._camera, self._fan, self._options = camera, fan, options
+    def __init__(self, camera: Camera | None, fan: Fan | None, stripe: StripeSettings | None = None) -> None:
+        self._camera, self._fan, self._stripe = camera, fan, stripe
         self._reference: ReferenceFeatures | None = None
         self._preview: Preview | None = None
         self._seen: list[StripeSettings] = []
@@ -94,8 +93,7 @@ class ScanPreviewer:
         InputError
             If it shows no line of the fan.
         """
-        stripe = self._options.stripe
-        self._reference = read_reference(picture, FeatureOptions(fan_stripe=stripe))
+        self._reference = read_reference(picture, FeatureOptions(fan_stripe=self._stripe))
         if self._camera is not None and self._fan is not None:
             self._preview = Preview(self._reference, self._camera, self._fan)
         return picture
@@ -147,11 +145,11 @@ class ScanPreviewer:
 
     def _features(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FrameFeatures:
         """With the stripe as it is known; before it has been seen once, as if it were like the fan's."""
-        stripe = self._options.stripe
+        stripe = self._stripe
         if stripe is None and self._seen:
             stripe = sorted(self._seen, key=lambda seen: seen.contrast)[len(self._seen) // 2]
         features = FrameReader(reference, stripe or reference.stripe)((index, (name, picture)))
-        learning = self._options.stripe is None and len(self._seen) < SETTINGS_FROM
+        learning = self._stripe is None and len(self._seen) < SETTINGS_FROM
         if learning and features.reason in (None, NO_STRIPE):  # moved, dark: nothing to be learned of the stripe
             self._to_learn_from = picture
         return features

@@ -79,7 +79,7 @@ class LiveScan:
 
     def __init__(self, context: LiveContext, store: FrameStore) -> None:
         self._context, self._store, request = context, store, context.request
-        self._previewer = ScanPreviewer(request.camera, request.fan, request.options)
+        self._previewer = ScanPreviewer(request.camera, request.fan, request.options.stripe)
         self._stage: ScanStage = "reference"
         self._self_switching = False
         self._looking = self._forced = False

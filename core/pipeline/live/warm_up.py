@@ -14,7 +14,6 @@ import numpy as np
 
 from core.acquire.source import Frame, Picture
 from core.compiled import keep_complete
-from core.files.recording.options import Options
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import NoiseModel
@@ -64,7 +63,7 @@ def get_ready_for_live(levels: PixelType) -> None:
     inverse_depth = np.where((u > 110) & (u < 210), 1 / 470, 1 / 500)
     fan = Fan(tuple(LightPlane(np.array([0.0, -1.0, np.tan(angle)]) / _BESIDE_MM) for angle in _FAN_ANGLES))
     fixed = np.sum([_stripe(plane.pi, rays, inverse_depth) for plane in fan.planes], axis=0)
-    previewer = ScanPreviewer(CAMERA, fan, Options())
+    previewer = ScanPreviewer(CAMERA, fan)
     previewer.read_reference(exposed(levels, fixed))
     for number in range(_SWEEPS):
         at, tilt = 0.6 * number / (_SWEEPS - 1) - 0.3, 0.5 * (-1) ** number

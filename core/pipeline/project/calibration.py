@@ -21,7 +21,7 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_settings, solve_planes
+from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_told, solve_planes
 from core.progress import Progress, silent
 
 
@@ -57,7 +57,7 @@ def found_views(folder: Path, project: Project, progress: Progress = silent) -> 
 
 def solve_views(folder: Path, project: Project, seen: SeenViews, progress: Progress = silent) -> CameraCalibration:
     """The camera from what the pictures show, without the views left out; InputError if they do not determine it."""
-    return solve_camera(seen, project.options, progress, project.rig.camera_board)
+    return solve_camera(seen, project.options.for_camera, progress, project.rig.camera_board)
 
 
 def accept_camera(folder: Path, project: Project, calibration: CameraCalibration, progress: Progress = silent) -> str:
@@ -72,7 +72,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     recording_set = project_set(folder, project)
     names = {view.name for view in calibration.views}
     inputs = _hashes(recording_set, (path for path in recording_set.camera if recording_set.name_of(path) in names))
-    return keep_camera(folder, calibration, project.options, inputs)
+    return keep_camera(folder, calibration, project.options.for_camera.told, inputs)
 
 
 def find_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
@@ -104,7 +104,7 @@ def solve_poses(
         If no camera is accepted, or the poses do not determine the fan.
     """
     camera = _accepted(folder, project)
-    return solve_planes(poses, camera.camera, project.rig, project.options, progress, camera)
+    return solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
 
 
 def accept_fan(
@@ -138,7 +138,7 @@ def accept_fan(
     recording_set = project_set(folder, project)
     names = {pose.name for pose in poses}
     pictures = recording_set.pictures_of(pair for pair in recording_set.planes if pair.name in names)
-    settings = planes_settings(project.rig, project.options)
+    settings = planes_told(project.rig, project.options.for_planes)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True
     return keep_fan(

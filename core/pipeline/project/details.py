@@ -50,7 +50,7 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
     recording_set = project_set(folder, project)
     camera, fan = accepted_calibration(folder, project)
     settled = _settled(results_folder(folder), recording_set.path_of(name), name, project)
-    return frame_stages(recording_set, name, camera, fan, project.options, progress, settled)
+    return frame_stages(recording_set, name, camera, fan, project.options.for_scan, progress, settled)
 
 
 def accepted_calibration(
@@ -172,7 +172,7 @@ def _settled(results: Path, picture: Path, name: str, project: Project) -> Settl
         record = read_run(run)
         same = record.inputs.get(name) == file_hash(picture)
         told = record.settings.get("scan", {}).get("stripe")
-        return _read_settled(_Version.of(scan)) if same and told == project.options.scan_settings["stripe"] else None
+        return _read_settled(_Version.of(scan)) if same and told == project.options.for_scan.told["stripe"] else None
     except (InputError, OSError):
         return None  # nothing measured yet, or damaged: then the recording alone must tell
 

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 
 from core.errors import InputError
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
+from core.files.recording.step_settings import ScanSettings
 from core.image.display import in_8_bit, white_level
 from core.image.mosaic import Sites
 from core.image.stripes.ridge_picture import ridge_strength
@@ -40,7 +40,7 @@ def frame_stages(
     name: str,
     camera: Camera | None = None,
     fan: Fan | None = None,
-    options: Options | None = None,
+    settings: ScanSettings | None = None,
     progress: Progress = silent,
     settled: SettledScan | None = None,
 ) -> FrameStages:
@@ -54,7 +54,7 @@ def frame_stages(
         The frame within it, as "scan/frame0007.png".
     camera, fan
         The calibrations, if there are any: without both of them there are no line numbers and crossings.
-    options
+    settings
         Width and contrast of the stripes, and what is left out.
     progress
         Called with how far it is where the recording is looked at for the first time.
@@ -67,13 +67,13 @@ def frame_stages(
         If there is no such frame, it cannot be read or has another size than the reference, or there is no reference
         and no fan line in it.
     """
-    options = options or Options()
+    settings = settings or ScanSettings()
     path = recording_set.path_of(name)
     if path not in recording_set.frames:
         raise InputError(Message("project.no_such_frame", "there is no such frame in the recording"), where=name)
     index = recording_set.frames.index(path)
     pictures = PictureReader(recording_set)
-    common = _common(_Recording.of(pictures, options, settled, progress))
+    common = _common(_Recording.of(pictures, settings, settled, progress))
     picture = pictures.read(path)
     base, sites = common.shown.base, common.sites
     if picture.shape != base.shape:
@@ -88,7 +88,7 @@ def frame_stages(
             ),
             where=path,
         )
-    move_limit_px = at_sites(feature_options(options), sites).move_limit_px
+    move_limit_px = at_sites(feature_options(settings), sites).move_limit_px
     reader = FrameReader(common.reference, common.stripe, move_limit_px)
     features = reader((index, (name, sites.of(picture)))).brought_back(sites)
     stripe = sites.stripe_back(common.stripe or common.reference.stripe)
@@ -107,7 +107,7 @@ def frame_stages(
         fan_line=lines.line if lines else (UNASSIGNED,) * len(common.shown.fan),
         seen=Preview(common.shown, camera, fan, PreviewOptions(thin=1), lines)(features) if camera and fan else None,
         shift_px=features.shift_px,
-        left_out=name in options.excluded,
+        left_out=name in settings.excluded,
         reason=features.reason,
         bounced=tuple(piece for frame, piece in settled.second_bounces if frame == index) if settled else (),
     )
@@ -140,17 +140,17 @@ class _Recording:
     stripe: StripeSettings | None
     settled: SettledScan | None
     pictures: PictureReader = field(compare=False)
-    options: Options = field(compare=False)
+    settings: ScanSettings = field(compare=False)
     progress: Progress = field(compare=False)
 
     @classmethod
     def of(
-        cls, pictures: PictureReader, options: Options, settled: SettledScan | None, progress: Progress
+        cls, pictures: PictureReader, settings: ScanSettings, settled: SettledScan | None, progress: Progress
     ) -> _Recording:
         recording_set = pictures.recording_set
         reference = recording_set.reference
         written = reference.stat().st_mtime_ns if reference is not None and reference.exists() else 0
-        taken = tuple(taken_frames(recording_set, options)) or recording_set.frames
+        taken = tuple(taken_frames(recording_set, settings)) or recording_set.frames
         seen = taken if reference is None else taken[:LOOK_AHEAD]
         return cls(
             reference,
@@ -158,26 +158,26 @@ class _Recording:
             seen,
             pictures.laser_channel("scan").channel,
             pictures.sites("scan"),
-            options.stripe,
+            settings.stripe,
             settled,
             pictures,
-            options,
+            settings,
             progress,
         )
 
 
 @lru_cache(maxsize=2)
 def _common(recording: _Recording) -> _Common:
-    pictures, options, settled, sites = recording.pictures, recording.options, recording.settled, recording.sites
+    pictures, settings, settled, sites = recording.pictures, recording.settings, recording.settled, recording.sites
     told = StepProgress(recording.progress)
     told("reference", 0, 2)
-    picture, _ = reference_picture(pictures, None, options, told.within_step)
-    looking = feature_options(options)
+    picture, _ = reference_picture(pictures, None, settings, told.within_step)
+    looking = feature_options(settings)
     if settled:
-        looking = feature_options(Options(stripe=settled.fan_stripe))
+        looking = feature_options(ScanSettings(stripe=settled.fan_stripe))
     reference = read_reference(sites.of(picture), at_sites(looking, sites))
     told("reference", 1, 2)
-    stripe = sites.stripe_of(settled.sweep_stripe if settled else options.stripe)
+    stripe = sites.stripe_of(settled.sweep_stripe if settled else settings.stripe)
     if stripe is None:
         stream = pictures.stream(recording.taken[:LOOK_AHEAD])
         ahead = [(name, sites.of(picture)) for name, picture in stream if not isinstance(picture, Message)]

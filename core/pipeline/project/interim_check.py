@@ -52,7 +52,7 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(project_set(folder, project), beside, part_name(project))
         air = project.info.air_celsius if project.rig.air.checked is None else None
-        return check_step(work, project.options, progress, air)
+        return check_step(work, project.options.plane_stripe, progress, air)
 
 
 def show_check(folder: Path) -> InterimCheck | None:
@@ -124,7 +124,7 @@ def propose_project_readjustment(folder: Path, project: Project, progress: Progr
         As `core.pipeline.steps.readjust_step.propose_readjustment`, or if no calibration is accepted.
     """
     pictures = PictureReader(project_set(folder, project))
-    return propose_readjustment(pictures, _accepted(folder, project), project.options, progress)
+    return propose_readjustment(pictures, _accepted(folder, project), project.options.plane_stripe, progress)
 
 
 def accept_readjustment(

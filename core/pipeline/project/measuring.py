@@ -67,7 +67,9 @@ def measure_scan(
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(recording_set, beside, part_name(project))
         record_calibrations(work, folder, project)
-        measured = scan_step(work, project.options, progress, watch, earlier=_earlier(recording_set, results, project))
+        measured = scan_step(
+            work, project.options.for_scan, progress, watch, earlier=_earlier(recording_set, results, project)
+        )
         gauge, no_gauge = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(
@@ -101,7 +103,7 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
         settings, calibration = before.record().settings.get("scan"), before.calibration().id
     except InputError:
         return None
-    now = json.loads(to_json(dict(project.options.scan_settings)))
+    now = json.loads(to_json(dict(project.options.for_scan.told)))
     same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.fan}"
     return None if same else before.path("scan")
 

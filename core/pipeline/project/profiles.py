@@ -37,7 +37,7 @@ def measure_profiles(
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))
         record_calibrations(work, folder, project)
-        measured = profile_step(work, project.options, tilt, progress)
+        measured = profile_step(work, project.options.for_scan, tilt, progress)
         report_step(work, progress, lambda content: with_words(content, folder, project))
         notes = work.record().all_notes
     return ProfilesSummary(measured.gauge, measured.pictures, notes, results / FILES["report"])

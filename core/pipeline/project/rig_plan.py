@@ -12,9 +12,9 @@ import numpy as np
 
 from core.files.atomic import write_text
 from core.files.project.data import Project
-from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK, RIG
 from core.files.recording.rig import rig_tables
+from core.files.recording.step_settings import SIGMA_CUT_MM
 from core.files.toml_text import toml_text
 from core.inspect.results import GaugeResult
 from core.model import Camera, Fan
@@ -58,7 +58,7 @@ class ForetoldRig:
 
 
 def foretell_rig(
-    rig: Path, language: str, progress: Progress = silent, *, sigma_cut_mm: float = Options().sigma_cut_mm
+    rig: Path, language: str, progress: Progress = silent, *, sigma_cut_mm: float = SIGMA_CUT_MM
 ) -> ForetoldRig:
     """Plan the rig of a rig.toml; the same as `trisect plan RIG`.
 

@@ -16,9 +16,9 @@ from core.calibrate.camera.views import SeenView, SeenViews
 from core.calibrate.results import CameraCalibration, ViewQuality
 from core.errors import InputError
 from core.files.pictures import Picture
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import require_camera
+from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
 from core.image.hot_pixels import hot_pixels, standing_out
@@ -37,7 +37,9 @@ FEWEST_HOT_SHARE = 3e-5
 """Share of hot pixels that is told: one in thirty of the patches of 31 × 31 px around corners has one."""
 
 
-def camera_step(work: Workspace, options: Options | None = None, progress: Progress = silent) -> CameraCalibration:
+def camera_step(
+    work: Workspace, settings: CameraSettings | None = None, progress: Progress = silent
+) -> CameraCalibration:
     """Calibrate the camera of a set and write camera.json.
 
     Raises
@@ -45,11 +47,11 @@ def camera_step(work: Workspace, options: Options | None = None, progress: Progr
     InputError
         If there are too few views of the target, or they do not determine the camera.
     """
-    options = options or Options()
+    settings = settings or CameraSettings()
     with work.step("camera") as log:
-        log.settings.update(options.camera_settings)
+        log.settings.update(settings.told)
         calibration = solve_camera(
-            see_views(log.pictures, progress), options, progress, work.recording_set.rig.camera_board
+            see_views(log.pictures, progress), settings, progress, work.recording_set.rig.camera_board
         )
         log.settings.update(solved_for(calibration))
         log.notes.extend(calibration.notes)
@@ -104,7 +106,7 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
 
 def solve_camera(
     seen: SeenViews,
-    options: Options | None = None,
+    settings: CameraSettings | None = None,
     progress: Progress = silent,
     tolerance: BoardTolerance | None = None,
 ) -> CameraCalibration:
@@ -117,11 +119,11 @@ def solve_camera(
     InputError
         If there are too few views of the target, or they do not determine the camera.
     """
-    options = options or Options()
+    settings = settings or CameraSettings()
     found, size = seen.found, seen.size
     if size is None or len(found) < FEWEST_VIEWS:
         raise _too_few(seen)
-    left = sum(view.name not in options.excluded for view in found)
+    left = sum(view.name not in settings.excluded for view in found)
     if left < min(FEWEST_VIEWS, len(found)):
         raise InputError(
             Message(
@@ -134,7 +136,7 @@ def solve_camera(
             where="camera",
             todo=Message("advice.take_in_again", "take some of them in again, or record more"),
         )
-    calibration = calibrate_camera(found, size, options.camera, progress, options.excluded, tolerance)
+    calibration = calibrate_camera(found, size, settings.parameters, progress, settings.excluded, tolerance)
     return _with_hot_pixels(_with_lost(calibration, seen), seen)
 
 

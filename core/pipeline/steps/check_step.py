@@ -31,13 +31,13 @@ from core.calibrate.results import FanCalibration
 from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
 from core.errors import InputError
 from core.files.reading import file_hash
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.check_file import CheckedLine, CheckedPicture, InterimCheck, write_check
 from core.files.results.rig_history import PastCheck, keep_check
 from core.findings.table import note_of
+from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -64,22 +64,22 @@ STEP_MM = 50.0
 
 def check_step(
     work: Workspace,
-    options: Options | None = None,
+    stripe: StripeSettings | None = None,
     progress: Progress = silent,
     celsius: float | None = None,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> InterimCheck:
     """Check the calibrations in camera.json and planes.json by the pictures in SET/check, and write check.json.
 
-    The check goes into the rig's history, with the temperature of the air if it is known. `poses` are what
-    `measure_check` has found, if it was asked before.
+    The check goes into the rig's history, with the temperature of the air if it is known. `stripe` are width and
+    contrast of the stripes on the plane target, if they are stated; `poses` are what `measure_check` has found, if it
+    was asked before.
 
     Raises
     ------
     InputError
         If a calibration is missing or wrong, or no picture shows target and stripes.
     """
-    options = options or Options()
     recording_set = work.recording_set
     if not recording_set.check:
         raise InputError(
@@ -107,7 +107,7 @@ def check_step(
         )
     with work.step("check") as log:
         pictures = log.pictures.of(recording_set)
-        seen = measure_check(pictures, camera, options, progress) if poses is None else poses
+        seen = measure_check(pictures, camera, stripe, progress) if poses is None else poses
         deviations, evidence, checked, change = judged(recording_set, calibration, seen)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and not any(pose.misses_fan for pose in checked):
@@ -360,7 +360,10 @@ def _charted(spread: RigSpread, recording_set: RecordingSet) -> Message:
 
 
 def check_of_the_day(
-    pictures: PictureReader, calibration: Calibration, options: Options, progress: Progress = silent
+    pictures: PictureReader,
+    calibration: Calibration,
+    stripe: StripeSettings | None = None,
+    progress: Progress = silent,
 ) -> tuple[PoseFeatures, ...]:
     """Target and stripes of the poses of the interim check, () where it says nothing of the day of the scan.
 
@@ -372,13 +375,13 @@ def check_of_the_day(
     fresh = fresh_check(pictures.recording_set, calibration.fan)
     if not fresh.check or _days_apart(fresh) > SAME_DAY:
         return ()
-    return measure_check(pictures.of(fresh), calibration.camera.camera, options, progress)
+    return measure_check(pictures.of(fresh), calibration.camera.camera, stripe, progress)
 
 
 def measure_check(
     pictures: PictureReader,
     camera: Camera,
-    options: Options,
+    stripe: StripeSettings | None = None,
     progress: Progress = silent,
     beside: SecondProcess | None = None,
 ) -> tuple[PoseFeatures, ...]:
@@ -390,7 +393,7 @@ def measure_check(
         If their pictures have another size than the camera's.
     """
     checked = replace(pictures.recording_set, planes=pictures.recording_set.check)
-    return measure_poses(pictures.of(checked), camera, progress, options.plane_stripe, beside)
+    return measure_poses(pictures.of(checked), camera, progress, stripe, beside)
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

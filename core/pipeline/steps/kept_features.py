@@ -21,10 +21,10 @@ from core.files.atomic import make_inner_folder
 from core.files.project.calibration_store import FOLDER
 from core.files.project.data import Project
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import rig_tables, without_warmth
+from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_file import read_scan
 from core.model import Camera
 from core.progress import Progress, silent
@@ -36,7 +36,7 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 
 
 def kept_features(
-    scan: Path, pictures: PictureReader, options: Options, camera: Camera, progress: Progress = silent
+    scan: Path, pictures: PictureReader, settings: ScanSettings, camera: Camera, progress: Progress = silent
 ) -> ScanFeatures | None:
     """The features that `scan`, an earlier scan.npz, holds, if they are those of these pictures, settings and camera.
 
@@ -50,11 +50,11 @@ def kept_features(
         return None  # damaged: it will be replaced
     if not earlier.features_key:
         return None
-    pictures.take_hashes(_pictures(pictures.recording_set, options), progress)
-    return earlier.features if earlier.features_key == features_key(pictures, options, camera) else None
+    pictures.take_hashes(_pictures(pictures.recording_set, settings), progress)
+    return earlier.features if earlier.features_key == features_key(pictures, settings, camera) else None
 
 
-def features_key(pictures: PictureReader, options: Options, camera: Camera) -> str:
+def features_key(pictures: PictureReader, settings: ScanSettings, camera: Camera) -> str:
     """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
 
     The camera's distortion is one of it: centrelines are crossed without it.
@@ -65,16 +65,16 @@ def features_key(pictures: PictureReader, options: Options, camera: Camera) -> s
         "channel": pictures.laser_channel("scan").channel,
         "mosaic": recording_set.rig.mosaic,
         "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
-        "stripe": asdict(options.stripe) if options.stripe else None,
+        "stripe": asdict(settings.stripe) if settings.stripe else None,
         "frames": [recording_set.name_of(path) for path in recording_set.frames],
-        "pictures": pictures.named_hashes(_pictures(recording_set, options)),
+        "pictures": pictures.named_hashes(_pictures(recording_set, settings)),
     }
     return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
 
 
-def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
+def _pictures(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
     """The reference and the frames that are not left out by hand."""
-    frames = [path for path in recording_set.frames if recording_set.name_of(path) not in options.excluded]
+    frames = [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
     return recording_set.with_further(frames if recording_set.reference is None else [recording_set.reference, *frames])
 
 

@@ -16,11 +16,11 @@ from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.laser_channel import LaserChannel
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
+from core.files.recording.step_settings import PlanesSettings, excluded_told, stripe_told
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.mosaic import ALL_SITES
@@ -41,7 +41,7 @@ FOLDER = "planes/"
 
 def planes_step(
     work: Workspace,
-    options: Options | None = None,
+    settings: PlanesSettings | None = None,
     progress: Progress = silent,
     beside: SecondProcess | None = None,
 ) -> FanCalibration:
@@ -54,20 +54,20 @@ def planes_step(
     InputError
         If camera.json is missing or wrong, the pictures have another size, or the poses do not determine the fan.
     """
-    options = options or Options()
+    settings = settings or PlanesSettings()
     require_planes(work.recording_set)
     given = read_camera(work.path("camera"))
     camera = given.camera
     with work.step("planes") as log:
-        log.settings.update(planes_settings(work.recording_set.rig, options))
+        log.settings.update(planes_told(work.recording_set.rig, settings))
         log.settings.update(log.pictures.laser_channel("planes").settings)
-        poses = measure_poses(log.pictures, camera, progress, options.plane_stripe, beside)
-        ridges = write_ridges(work, log.pictures, poses, camera, options.plane_stripe)
+        poses = measure_poses(log.pictures, camera, progress, settings.stripe, beside)
+        ridges = write_ridges(work, log.pictures, poses, camera, settings.stripe)
         try:
-            calibration = solve_planes(poses, camera, work.recording_set.rig, options, progress, given)
+            calibration = solve_planes(poses, camera, work.recording_set.rig, settings, progress, given)
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
-        check_agreement(calibration, options.accept_few_poses)
+        check_agreement(calibration, settings.accept_few_poses)
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
@@ -182,13 +182,13 @@ def solve_planes(
     poses: Sequence[PoseFeatures],
     camera: Camera,
     rig: Rig,
-    options: Options | None = None,
+    settings: PlanesSettings | None = None,
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
 ) -> FanCalibration:
     """The fan from what the pictures of all poses show, without those left out by hand.
 
-    The camera's `calibration` is needed where the options have the camera adjusted; without it, it is not. What it
+    The camera's `calibration` is needed where the settings have the camera adjusted; without it, it is not. What it
     says of the shape of a target that both steps use holds here as well.
 
     Raises
@@ -196,28 +196,28 @@ def solve_planes(
     InputError
         If the poses do not determine the fan.
     """
-    options = options or Options()
-    excluded = {name.removeprefix(FOLDER) for name in options.excluded if name.startswith(FOLDER)}
-    adjusted = calibration.covariance if calibration is not None and options.adjust_camera else None
-    known = fan_options(rig, options)
+    settings = settings or PlanesSettings()
+    excluded = {name.removeprefix(FOLDER) for name in settings.excluded}
+    adjusted = calibration.covariance if calibration is not None and settings.adjust_camera else None
+    known = fan_options(rig, settings)
     if calibration is not None and rig.one_target:
         known = replace(known, board=calibration.board)
     return fit_fan(poses, camera, known, progress, excluded, adjusted)
 
 
-def fan_options(rig: Rig, options: Options) -> FanOptions:
+def fan_options(rig: Rig, settings: PlanesSettings) -> FanOptions:
     """What is known of the laser, and whether its planes may be held to one pencil."""
-    constrained: Constrained = "auto" if options.constrain_fan else "never"
+    constrained: Constrained = "auto" if settings.constrain else "never"
     return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
-def planes_settings(rig: Rig, options: Options) -> dict[str, object]:
+def planes_told(rig: Rig, settings: PlanesSettings) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
-    fan = fan_options(rig, options)
+    fan = fan_options(rig, settings)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}
-    if options.plane_stripe is not None:
-        told["stripe"] = {"width_px": options.plane_stripe.width_px, "contrast": options.plane_stripe.contrast}
-    if options.adjust_camera:
+    if settings.stripe is not None:
+        told["stripe"] = stripe_told(settings.stripe)
+    if settings.adjust_camera:
         told["camera"] = "adjusted"
-    return {**told, **options.excluded_settings("planes")}
+    return {**told, **excluded_told(settings.excluded)}

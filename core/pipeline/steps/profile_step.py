@@ -10,9 +10,10 @@ import numpy as np
 
 from core.errors import InputError, NoThickness
 from core.files.pictures import compression_of
-from core.files.recording.options import Options, StatedTilt
+from core.files.recording.options import StatedTilt
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import GaugeSpec, part_table
+from core.files.recording.step_settings import ScanSettings
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
@@ -55,7 +56,7 @@ class MeasuredProfiles:
 
 def profile_step(
     work: Workspace,
-    options: Options | None = None,
+    settings: ScanSettings | None = None,
     tilt: StatedTilt | None = None,
     progress: Progress = silent,
 ) -> MeasuredProfiles:
@@ -65,7 +66,7 @@ def profile_step(
 
     Parameters
     ----------
-    work, options, progress
+    work, settings, progress
         What is measured, how, and who is told.
     tilt
         Of the faces, for a fan of one line; others show it themselves.
@@ -75,8 +76,8 @@ def profile_step(
     InputError
         If a calibration is missing, a fan of one line is not told how the faces stand, or no picture gives a step.
     """
-    options, found = options or Options(), work.recording_set
-    paths = _pictures(found, options)
+    settings, found = settings or ScanSettings(), work.recording_set
+    paths = _pictures(found, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
     known, spec = _known(calibration, tilt), found.rig.gauge or GaugeSpec()
@@ -93,9 +94,9 @@ def profile_step(
     part = found.rig.part
     with work.step("profile") as log:
         channel = log.pictures.laser_channel("scan")
-        log.settings.update({**options.scan_settings, **channel.settings, **_tilt_settings(tilt)})
-        looking = replace(feature_options(options), compression=compression_of(paths[0], channel.channel))
-        check = check_of_the_day(log.pictures, calibration, options, progress)
+        log.settings.update({**settings.told, **channel.settings, **_tilt_settings(tilt)})
+        looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
+        check = check_of_the_day(log.pictures, calibration, settings.check_stripe, progress)
         change = since_calibration(found, calibration, check)
         common = CommonErrors.of_fan(camera, fan, change.deviations)
         section: SectionChange | None = None
@@ -167,10 +168,10 @@ def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:
     )
 
 
-def _pictures(recording_set: RecordingSet, options: Options) -> list[Path]:
+def _pictures(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
     if recording_set.reference is not None:
         return [recording_set.reference]
-    taken = taken_frames(recording_set, options)
+    taken = taken_frames(recording_set, settings)
     if taken:
         return taken
     raise InputError(

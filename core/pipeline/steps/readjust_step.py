@@ -16,13 +16,13 @@ from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.reading import file_hash, read_bytes
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import write_fan
 from core.files.step_graph import READJUST
+from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model.arrays import Array
 from core.pipeline.steps.check_step import STEP_MM, charted_spread, check_paths, fresh_check, judged, measure_check
@@ -34,13 +34,13 @@ from core.progress import Progress, silent
 def propose_readjustment(
     pictures: PictureReader,
     calibration: Calibration,
-    options: Options,
+    stripe: StripeSettings | None = None,
     progress: Progress = silent,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> ProposedReadjustment:
     """Work out how camera and fan would be re-adjusted by the pictures of the check; nothing is written.
 
-    `poses` are what `measure_check` has found, if it was asked before.
+    `stripe` and `poses` are as `core.pipeline.steps.check_step.check_step` has them.
 
     Raises
     ------
@@ -56,7 +56,7 @@ def propose_readjustment(
             todo=Message("advice.record_check", "hold the plane target into the fan and record one to three pictures"),
         )
     camera, fan = calibration.camera, calibration.fan
-    seen = measure_check(pictures, camera.camera, options, progress) if poses is None else poses
+    seen = measure_check(pictures, camera.camera, stripe, progress) if poses is None else poses
     deviations, evidence, checked, change = judged(recording_set, calibration, seen)
     if (refused := nothing_changed(change.p)) is not None:
         raise refused
@@ -104,7 +104,7 @@ def _prior(recording_set: RecordingSet, calibration: Calibration, when: datetime
 
 def readjust_step(
     work: Workspace,
-    options: Options | None = None,
+    stripe: StripeSettings | None = None,
     progress: Progress = silent,
     poses: Sequence[PoseFeatures] | None = None,
 ) -> ProposedReadjustment:
@@ -118,7 +118,7 @@ def readjust_step(
         As `propose_readjustment`; then nothing has changed.
     """
     with work.step(READJUST) as log:
-        proposed = propose_readjustment(log.pictures, work.calibration(), options or Options(), progress, poses)
+        proposed = propose_readjustment(log.pictures, work.calibration(), stripe, progress, poses)
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))
         write_fan(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)

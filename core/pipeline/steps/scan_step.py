@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.files.recording.options import Options
+from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
 from core.pipeline.steps.scan.judgement import judged_scan, section_change, solved_scan
@@ -26,7 +26,7 @@ from core.second_process import SecondProcess
 
 def scan_step(
     work: Workspace,
-    options: Options | None = None,
+    settings: ScanSettings | None = None,
     progress: Progress = silent,
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,
@@ -38,7 +38,7 @@ def scan_step(
 
     Parameters
     ----------
-    work, options, progress
+    work, settings, progress
         What is measured, how, and who is told; a StageTimes learns what the stages cost on all threads.
     watch
         Shown each frame with what it would give by itself, in the order of the recording, on this thread.
@@ -57,20 +57,22 @@ def scan_step(
     InputError
         If a calibration is missing or wrong, there are no usable frames, or no sweep can be located.
     """
-    options, recording_set = options or Options(), work.recording_set
-    require_frames(recording_set, options)
+    settings, recording_set = settings or ScanSettings(), work.recording_set
+    require_frames(recording_set, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
-        features = scan_features(log.pictures, calibration, options, progress, watch, earlier, seen)
-        log.settings.update({**options.scan_settings, **log.pictures.laser_channel("scan").settings})
-        solving = ReconstructOptions(options.method, options.sigma_cut_mm, recording_set.rig.row_time_us)
+        features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
+        log.settings.update({**settings.told, **log.pictures.laser_channel("scan").settings})
+        solving = ReconstructOptions(settings.method, settings.sigma_cut_mm, recording_set.rig.row_time_us)
         solved = solved_scan(features, calibration, solving, progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
-        checked = check_of_the_day(log.pictures, calibration, options, progress) if check is None else check
+        checked = (
+            check_of_the_day(log.pictures, calibration, settings.check_stripe, progress) if check is None else check
+        )
         change_by = partial(since_calibration, recording_set, calibration, checked)
         section = section_change(work, calibration, features.fan)
         facts = facts_of_the_day(work, calibration)
-        judgement = judged_scan(solved, change_by, facts, section, options.method, progress)
+        judgement = judged_scan(solved, change_by, facts, section, settings.method, progress)
         cloud, mesh = shaped()
         cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
         notes = notes_on_scan(work, calibration, features.fan, solved.scan, judgement)
@@ -78,6 +80,6 @@ def scan_step(
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
         measured = Measured(scan, mesh)
-        file = scan_file(features, scan, judgement, calibration, log.pictures, options)
+        file = scan_file(features, scan, judgement, calibration, log.pictures, settings)
         write_measured(log, measured, file, progress)
     return measured

@@ -22,7 +22,7 @@ from core.files.project.calibration_store import (
 )
 from core.files.project.data import Accepted
 from core.files.recording.features_file import read_poses
-from core.files.recording.options import Options
+from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import camera_id, read_camera, write_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.targets.target_view import TargetView
@@ -51,7 +51,7 @@ def names_in(folder):
 
 
 def test_a_kept_camera_comes_back_by_its_id(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options())
+    kept = keep_camera(tmp_path, camera, CameraSettings().told)
     assert kept == camera_id(camera.camera)
     assert camera_id(read_stored_camera(tmp_path, kept).camera) == kept
     write_camera(tmp_path / "camera.json", camera)
@@ -72,9 +72,13 @@ def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
 def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, other_camera, fan):
     assert history(tmp_path) == ()
     begun = datetime.now(UTC)
-    one = keep_camera(tmp_path, camera, Options())
+    one = keep_camera(tmp_path, camera, CameraSettings().told)
     lines = keep_fan(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
-    other = keep_camera(tmp_path, replace(other_camera, cross_validation_mm=0.02), Options(excluded={"camera/b.png"}))
+    other = keep_camera(
+        tmp_path,
+        replace(other_camera, cross_validation_mm=0.02),
+        CameraSettings(excluded=frozenset({"camera/b.png"})).told,
+    )
     newest, middle, oldest = history(tmp_path)
     assert [(entry.kind, entry.id) for entry in (newest, middle, oldest)] == [
         ("camera", other), ("fan", lines), ("camera", one),
@@ -91,15 +95,15 @@ def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, othe
 
 
 def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
-    one = keep_camera(tmp_path, camera, Options())
-    other = keep_camera(tmp_path, other_camera, Options())
+    one = keep_camera(tmp_path, camera, CameraSettings().told)
+    other = keep_camera(tmp_path, other_camera, CameraSettings().told)
     assert one != other
-    assert keep_camera(tmp_path, camera, Options()) == one
+    assert keep_camera(tmp_path, camera, CameraSettings().told) == one
     assert [entry.id for entry in history(tmp_path)] == [one, other]
 
 
 def test_a_calibration_that_was_taken_away_is_not_in_the_history(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options())
+    kept = keep_camera(tmp_path, camera, CameraSettings().told)
     (tmp_path / "calibrations" / f"camera-{kept}.json").unlink()
     assert history(tmp_path) == ()
     with pytest.raises(InputError, match=f"the calibration {kept} is not in the project; calibrate again"):
@@ -120,12 +124,12 @@ def test_a_calibration_half_kept_is_none(tmp_path, camera, monkeypatch):
 
     monkeypatch.setattr(Path, "replace", full)
     with pytest.raises(InputError, match="the disk is full"):
-        keep_camera(tmp_path, camera, Options())
+        keep_camera(tmp_path, camera, CameraSettings().told)
     assert history(tmp_path) == ()
 
 
 def test_a_damaged_entry_is_named(tmp_path, camera):
-    kept = keep_camera(tmp_path, camera, Options())
+    kept = keep_camera(tmp_path, camera, CameraSettings().told)
     about = tmp_path / "calibrations" / f"camera-{kept}.kept.json"
     tables = json.loads(about.read_text())
     about.write_text(json.dumps({**tables, "kept_at": "long ago"}))
@@ -137,7 +141,7 @@ def test_a_damaged_entry_is_named(tmp_path, camera):
 
 
 def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
-    kept, lines = keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES)
+    kept, lines = keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES)
     for name, key in ((f"camera-{kept}.json", "matrix"), (f"planes-{lines}.json", "planes")):
         path = tmp_path / "calibrations" / name
         tables = json.loads(path.read_text())
@@ -154,9 +158,10 @@ def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
 
 def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other_camera, fan, other_fan):
     results = tmp_path / "results"
-    one = Accepted(keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES))
+    one = Accepted(keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES))
     other = Accepted(
-        keep_camera(tmp_path, other_camera, Options()), keep_fan(tmp_path, other_fan, other_camera.camera, POSES[:1])
+        keep_camera(tmp_path, other_camera, CameraSettings().told),
+        keep_fan(tmp_path, other_fan, other_camera.camera, POSES[:1]),
     )
     for accepted, calibration, lines in ((one, camera, fan), (other, other_camera, other_fan), (one, camera, fan)):
         put_in_place(tmp_path, accepted, results)
@@ -172,7 +177,9 @@ def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other
 
 
 def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
-    accepted = Accepted(keep_camera(tmp_path, camera, Options()), keep_fan(tmp_path, fan, camera.camera, POSES))
+    accepted = Accepted(
+        keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES)
+    )
     put_in_place(tmp_path, accepted, tmp_path / "results")
     before = {path: path.stat().st_ino for path in (tmp_path / "results").iterdir()}
     put_in_place(tmp_path, accepted, tmp_path / "results")
@@ -186,8 +193,8 @@ def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
 def test_nothing_is_put_in_place_unless_both_are_accepted_and_belong_together(
     tmp_path, camera, other_camera, fan, other_fan
 ):
-    one = keep_camera(tmp_path, camera, Options())
-    other = keep_camera(tmp_path, other_camera, Options())
+    one = keep_camera(tmp_path, camera, CameraSettings().told)
+    other = keep_camera(tmp_path, other_camera, CameraSettings().told)
     lines = keep_fan(tmp_path, fan, camera.camera, POSES)
     results = tmp_path / "results"
     for accepted, said in (

@@ -12,7 +12,6 @@ from core.files.pictures import is_picture, read_picture, write_picture
 from core.files.project.calibration_store import READJUSTED_FROM
 from core.files.recording.features_file import write_poses
 from core.files.recording.marks import marked_frames
-from core.files.recording.options import Options
 from core.files.recording.recording_log import read_log
 from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
@@ -331,7 +330,7 @@ def test_without_calibrations_stripes_are_shown_but_no_points(monkeypatch, tmp_p
 def test_no_look_waits_until_the_stripe_s_width_is_found_and_three_frames_tell_it(monkeypatch, stage):
     searched, search = [], live_preview.choose_sweep_stripe
     monkeypatch.setattr(live_preview, "choose_sweep_stripe", lambda *a: (searched.append(a), search(*a))[1])
-    previewer = live_preview.ScanPreviewer(stage.camera, stage.fan, Options())
+    previewer = live_preview.ScanPreviewer(stage.camera, stage.fan)
     previewer.read_reference(stage.reference)
     found = []
     for number, picture in enumerate([stage.dark, stage.reference, *stage.frames[:6]]):
@@ -341,7 +340,7 @@ def test_no_look_waits_until_the_stripe_s_width_is_found_and_three_frames_tell_i
         found.append(sum(map(len, preview.centrelines)))
         while previewer.has_more:
             previewer.go_on()
-    again = live_preview.ScanPreviewer(stage.camera, stage.fan, Options(stripe=previewer._seen[0]))
+    again = live_preview.ScanPreviewer(stage.camera, stage.fan, previewer._seen[0])
     again.read_reference(stage.reference)
     known = again.look(0, "", Frame(stage.frames[0], 0, 0.0, 0)).preview
     assert found[:2] == [0, 0]

@@ -20,7 +20,7 @@ def compiled():
 """
 
 SCAN = """
-from core.files.recording.options import Options
+from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.pipeline.live.warm_up import stages
@@ -28,14 +28,14 @@ from core.pipeline.live.warm_up import stages
 for stage in stages():
     stage()
 before = compiled()
-scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), Options(sigma_cut_mm=0.3))
+scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), ScanSettings(sigma_cut_mm=0.3))
 """
 
 LIVE = """
 import numpy as np
 from core.acquire.source import Frame
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.options import Options
+from core.files.recording.step_settings import ScanSettings
 from core.pipeline.live.preview import ScanPreviewer
 from core.pipeline.live.warm_up import get_ready_for_live
 from core.pipeline.steps.workspace import Workspace
@@ -44,7 +44,7 @@ found = open_set(Path(sys.argv[1]))
 calibration = Workspace.open(found, Path(sys.argv[2])).calibration()
 get_ready_for_live(np.uint8)
 before = compiled()
-previewer = ScanPreviewer(calibration.camera.camera, calibration.fan.fan, Options())
+previewer = ScanPreviewer(calibration.camera.camera, calibration.fan.fan)
 pictures = PictureReader(found)
 previewer.read_reference(pictures.read(found.reference))
 located = 0

@@ -9,7 +9,7 @@ from core.errors import Cancelled, InputError
 from core.files.project.calibration_store import history, keep_camera, keep_fan
 from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
-from core.files.recording.options import Options
+from core.files.recording.step_settings import CameraSettings
 from core.files.results.check_file import read_check
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
@@ -44,7 +44,7 @@ def turned(tmp_path_factory):
 def opened(made, folder):
     """A project on that set with its calibrations accepted."""
     known = read_calibration(made / "out")
-    camera = keep_camera(folder, known.camera, Options())
+    camera = keep_camera(folder, known.camera, CameraSettings().told)
     fan = keep_fan(folder, known.fan, known.camera.camera, ())
     project = project_from_set(made / "set", "Block")
     return replace(project, accepted=Accepted(camera, fan))

@@ -97,13 +97,13 @@ def check_seen_in(folder):
     """What the pictures of a prepared check show, and which they are, looked at once for all tests here."""
     work = Workspace.open(open_set(folder / "set"), folder / "out")
     pictures = PictureReader(work.recording_set)
-    return measure_check(pictures, work.calibration().camera.camera, Options()), pictures.hashes
+    return measure_check(pictures, work.calibration().camera.camera), pictures.hashes
 
 
 @cache
 def scan_seen_in(folder):
     """What the pictures of a prepared scan show, looked at once for all tests here."""
-    return look_at_scan((open_set(folder / "set"), COARSE))
+    return look_at_scan((open_set(folder / "set"), COARSE.for_scan))
 
 
 def check_of(folder, work: Workspace):
@@ -120,13 +120,15 @@ def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged
 
 
 def changed_since(recording_set, calibration):
-    check = check_of_the_day(PictureReader(recording_set), calibration, Options())
+    check = check_of_the_day(PictureReader(recording_set), calibration)
     return since_calibration(recording_set, calibration, check)
 
 
 def scan_of(folder, work: Workspace) -> Measured:
     poses, _ = check_seen_in(folder)
-    return scan_step(work, COARSE, check=poses if work.recording_set.check else None, seen=lambda: scan_seen_in(folder))
+    return scan_step(
+        work, COARSE.for_scan, check=poses if work.recording_set.check else None, seen=lambda: scan_seen_in(folder)
+    )
 
 
 def test_a_rig_that_has_not_changed_passes(unchanged, tmp_path):
@@ -147,7 +149,7 @@ def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned
     assert check.p < PROVES_NOTHING
     assert check.sentence.code == "check.failed"
     assert check.error_mm == pytest.approx(0.16, abs=0.08), "what it does to a step of 50 mm"
-    measured = scan_step(work, COARSE)
+    measured = scan_step(work, COARSE.for_scan)
     assert measured.scan.notes[0].code == "scan.fan_has_moved", "said first"
     assert read_scan(work.path("scan")).change_p < PROVES_NOTHING
     gauge = gauge_step(work)
@@ -167,7 +169,7 @@ def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_
     done = readjust_step(work)
     assert done.record.p_before < PROVES_NOTHING < done.record.p_after
     assert done.offset_px[1] < 0.3 * done.offset_px[0]
-    scan_step(work, COARSE)
+    scan_step(work, COARSE.for_scan)
     gauge = gauge_step(work)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm < 0.08
     assert gauge.verdict is Verdict.CONFORMING
@@ -198,7 +200,7 @@ def test_a_drifted_picture_and_a_turned_mount_are_made_good_together(tmp_path_fa
     done = readjust_step(work)
     assert done.offset_px[0] > 0.5 and done.offset_px[1] < 0.05
     assert abs(done.correction_mm) > 0.1
-    scan_step(work, COARSE)
+    scan_step(work, COARSE.for_scan)
     gauge = gauge_step(work)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm < 0.08
 
@@ -510,7 +512,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     work = work_in(turned, tmp_path)
     alone = check_of(turned, work)
     (kept,) = read_history(work.calibration().id).checks
-    proposed = propose_readjustment(PictureReader(work.recording_set), work.calibration(), Options()).record
+    proposed = propose_readjustment(PictureReader(work.recording_set), work.calibration()).record
     charted(turned, work, tmp_path / "earlier")
     after = check_of(turned, work)
     assert after.p == alone.p
@@ -518,7 +520,7 @@ def test_a_check_reckons_with_what_the_history_says_and_keeps_what_it_saw_itself
     assert after.unseen_mm > alone.unseen_mm
     assert read_history(work.calibration().id).checks[-1] == kept, "or a history would feed on itself"
     assert "scan.stability_charted" in [note.code for note in work.record().notes["check"]]
-    wider = propose_readjustment(PictureReader(work.recording_set), work.calibration(), Options()).record
+    wider = propose_readjustment(PictureReader(work.recording_set), work.calibration()).record
     assert np.linalg.norm(wider.sd) > np.linalg.norm(proposed.sd)
 
 

@@ -7,15 +7,15 @@ import pytest
 
 from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
-from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
+from core.files.recording.step_settings import PlanesSettings
 from core.image.stripes.stripe import StripeSettings
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.workspace import RIDGES, Workspace
 from tests.simulated import copy_of
 
-TOO_FAINT = Options(plane_stripe=StripeSettings(8.0, 1000.0))
+TOO_FAINT = PlanesSettings(StripeSettings(8.0, 1000.0))
 
 
 @pytest.fixture(scope="module")

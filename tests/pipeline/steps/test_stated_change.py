@@ -9,7 +9,6 @@ from core.calibrate.change import DEFAULT_STABILITY, STABLE, Stability
 from core.calibrate.drift import Air, Drift
 from core.files.project.data import new_project
 from core.files.project.keys import rests_on
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import taken_at
 from core.pipeline.project.workspace import rig_in_its_air
@@ -29,7 +28,7 @@ def stating(work, **stated):
 
 def change_of(work, poses=None):
     if poses is None:
-        poses = check_of_the_day(PictureReader(work.recording_set), work.calibration(), Options())
+        poses = check_of_the_day(PictureReader(work.recording_set), work.calibration())
     return since_calibration(work.recording_set, work.calibration(), poses)
 
 

@@ -73,7 +73,7 @@ def views() -> SeenViews:
 @cache
 def solved(options: Options, board: BoardTolerance) -> CameraCalibration:
     """The calibration of those views; solved once for all tests."""
-    return solve_camera(views(), options, tolerance=board)
+    return solve_camera(views(), options.for_camera, tolerance=board)
 
 
 def find(folder: Path, project: Project) -> SeenViews:
@@ -86,7 +86,7 @@ def find(folder: Path, project: Project) -> SeenViews:
 def solve(folder: Path, project: Project, found: SeenViews) -> CameraCalibration:
     """The calibration as a process would send it: another object each time."""
     if found is not views():  # what the project has kept
-        return solve_camera(found, project.options, tolerance=project.rig.camera_board)
+        return solve_camera(found, project.options.for_camera, tolerance=project.rig.camera_board)
     return replace(solved(project.options, project.rig.camera_board))
 
 

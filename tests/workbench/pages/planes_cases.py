@@ -46,7 +46,7 @@ def solved(excluded: frozenset[str], constrain: bool, lines: int, angle: float) 
     project = Project()
     rig = replace(project.rig, lines=lines, angle=angle)
     options = replace(project.options, excluded=excluded, constrain_fan=constrain)
-    return solve_planes(measured(), CAMERA, rig, options)
+    return solve_planes(measured(), CAMERA, rig, options.for_planes)
 
 
 def folder_with_poses(folder: Path) -> Path:

@@ -6,8 +6,8 @@ from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
+from core.files.recording.step_settings import ScanSettings
 from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
@@ -21,7 +21,7 @@ from core.scan.preview.shown import FramePreview
 def scan_features(
     pictures: PictureReader,
     calibration: Calibration,
-    options: Options,
+    settings: ScanSettings,
     progress: Progress,
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,
@@ -31,7 +31,7 @@ def scan_features(
 
     Parameters
     ----------
-    pictures, calibration, options, progress
+    pictures, calibration, settings, progress
         What is looked at, how, and who is told.
     watch
         Shown each frame with what it would give by itself, if the pictures are looked at now.
@@ -46,12 +46,12 @@ def scan_features(
         If the reference shows no line of the fan, no frame a sweep, or a picture has another size than the camera's.
     """
     camera = calibration.camera.camera
-    kept = kept_features(earlier, pictures, options, camera, progress) if earlier is not None else None
+    kept = kept_features(earlier, pictures, settings, camera, progress) if earlier is not None else None
     if kept is not None and kept.image_size == camera.image_size:
         return kept
     if seen is None:
         watching = None if watch is None else _watching(watch, camera, calibration.fan.fan)
-        looked = look_at_scan((pictures.recording_set, options), progress=progress, camera=camera, watching=watching)
+        looked = look_at_scan((pictures.recording_set, settings), progress=progress, camera=camera, watching=watching)
     else:
         looked = seen()
     width, height = looked.lines.image_size

@@ -12,11 +12,11 @@ from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
 from core.findings.table import note_of
+from core.files.recording.step_settings import ScanSettings
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes
@@ -64,7 +64,7 @@ class SeenScan:
 
 
 def look_at_scan(
-    job: tuple[RecordingSet, Options],
+    job: tuple[RecordingSet, ScanSettings],
     /,
     *,
     progress: Progress = silent,
@@ -89,35 +89,35 @@ def look_at_scan(
     InputError
         If the reference shows no line of the fan, or no frame a sweep.
     """
-    found, options = job
+    found, settings = job
     pictures = PictureReader(found)
     times = progress if isinstance(progress, StageTimes) else None
     channel = pictures.laser_channel("scan")
-    looking = replace(feature_options(options), compression=compression_of(found.frames[0], channel.channel))
+    looking = replace(feature_options(settings), compression=compression_of(found.frames[0], channel.channel))
     progress("reference", 0, 1)
-    picture, note = reference_picture(pictures, camera, options, progress)
+    picture, note = reference_picture(pictures, camera, settings, progress)
     sites = pictures.sites("scan")
     looking = at_sites(looking, sites)
     reference = read_reference(sites.of(picture), looking)
-    further = _further_exposures(pictures, options, looking, reference)
+    further = _further_exposures(pictures, settings, looking, reference)
     factor = 1.0
     if further:
         fan, exposures = fused(_fan_seen(reference), [_fan_seen(each.reference) for each in further.values()])
         reference = replace(reference, fan=fan)
         factor = float(np.nanmax([1.0, *(each.factor for each in exposures)]))
     progress("reference", 1, 1)
-    frames, total = stream_frames(pictures, options, times), len(found.frames)
+    frames, total = stream_frames(pictures, settings, times), len(found.frames)
     shown = of_whole(reference, sites, picture)
     show = watching(shown) if watching else None
     watch = None if show is None else lambda features: show(features.brought_back(sites))
     lines = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, further)
     lines = lines.brought_back(sites, shown.image_size)
     averaged = lines.averaged(progress, times)
-    of_width = told_width_notes(options.stripe, lines.stripes)
+    of_width = told_width_notes(settings.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
-    path = found.reference or taken_frames(found, options)[0]
+    path = found.reference or taken_frames(found, settings)[0]
     return SeenScan(lines, averaged, notes, path, pictures.hashes, pictures.channels)
 
 
@@ -147,22 +147,22 @@ def _fan_seen(reference: ReferenceFeatures) -> Exposure:
 
 
 def _further_exposures(
-    pictures: PictureReader, options: Options, looking: FeatureOptions, first: ReferenceFeatures
+    pictures: PictureReader, settings: ScanSettings, looking: FeatureOptions, first: ReferenceFeatures
 ) -> dict[int, FurtherExposures]:
     """The further exposures of the frames by their number, those with a picture of the fan alone to go with them.
 
     That one is made of them where it is not there, as the first one's would be.
     """
-    of_number = {number: _exposures(pictures, options, looking, first, number) for number in FURTHER}
+    of_number = {number: _exposures(pictures, settings, looking, first, number) for number in FURTHER}
     return {number: each for number, each in of_number.items() if each is not None}
 
 
 def _exposures(
-    pictures: PictureReader, options: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
+    pictures: PictureReader, settings: ScanSettings, looking: FeatureOptions, first: ReferenceFeatures, number: int
 ) -> FurtherExposures | None:
     """Those of one number; None if there are none, or no picture of the fan alone."""
     recording_set = pictures.recording_set
-    shots = {recording_set.name_of(path): path for path in taken_frames(recording_set, options)}
+    shots = {recording_set.name_of(path): path for path in taken_frames(recording_set, settings)}
     shots = {name: path for name, path in shots.items() if number in recording_set.further.get(path, {})}
     if not shots:
         return None
@@ -188,28 +188,28 @@ def _exposures(
     return FurtherExposures(reference, stripe, read)
 
 
-def feature_options(options: Options) -> FeatureOptions:
+def feature_options(settings: ScanSettings) -> FeatureOptions:
     """How the pictures of a scan are looked at."""
-    return FeatureOptions(sweep_stripe=options.stripe, fan_stripe=options.stripe)
+    return FeatureOptions(sweep_stripe=settings.stripe, fan_stripe=settings.stripe)
 
 
-def stream_frames(pictures: PictureReader, options: Options, times: StageTimes | None = None) -> Iterator[Frame]:
+def stream_frames(pictures: PictureReader, settings: ScanSettings, times: StageTimes | None = None) -> Iterator[Frame]:
     """Every frame in the order of the recording; those left out by hand are not read."""
     recording_set = pictures.recording_set
-    taken = pictures.stream(taken_frames(recording_set, options), times)
+    taken = pictures.stream(taken_frames(recording_set, settings), times)
     for path in recording_set.frames:
         name = recording_set.name_of(path)
-        if name in options.excluded:
+        if name in settings.excluded:
             yield name, LEFT_OUT
             continue
         _, picture = next(taken)
         yield name, picture
 
 
-def require_frames(recording_set: RecordingSet, options: Options) -> None:
+def require_frames(recording_set: RecordingSet, settings: ScanSettings) -> None:
     """InputError if there are no frames, or all are left out by hand."""
     require_scan(recording_set)
-    if not taken_frames(recording_set, options):
+    if not taken_frames(recording_set, settings):
         raise InputError(
             Message(
                 "scan.all_frames_left_out", "all {frames} frames are left out by hand", frames=len(recording_set.frames)
@@ -219,13 +219,13 @@ def require_frames(recording_set: RecordingSet, options: Options) -> None:
         )
 
 
-def taken_frames(recording_set: RecordingSet, options: Options) -> list[Path]:
+def taken_frames(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
     """The frames that are not left out by hand."""
-    return [path for path in recording_set.frames if recording_set.name_of(path) not in options.excluded]
+    return [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
 
 
 def reference_picture(
-    pictures: PictureReader, camera: Camera | None, options: Options, progress: Progress = silent
+    pictures: PictureReader, camera: Camera | None, settings: ScanSettings, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 
@@ -240,7 +240,7 @@ def reference_picture(
         if camera is not None:
             check_size(recording_set.reference, reference.shape, camera)
         return reference, []
-    taken = taken_frames(recording_set, options)
+    taken = taken_frames(recording_set, settings)
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(pictures.stream(sample), progress, "reference", len(sample))
     readable = [picture for _, picture in stream if not isinstance(picture, Message)]

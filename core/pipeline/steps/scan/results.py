@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
+from core.files.recording.step_settings import ScanSettings
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
 from core.pipeline.steps.kept_features import features_key
@@ -50,7 +50,7 @@ def scan_file(
     judgement: Judgement,
     calibration: Calibration,
     pictures: PictureReader,
-    options: Options,
+    settings: ScanSettings,
 ) -> ScanFile:
     """What scan.npz is to hold of a scan; the hashes of its pictures must have been taken."""
     shown = _shown(scan.frames)
@@ -64,7 +64,7 @@ def scan_file(
         crossings_used=np.asarray(scan.crossings.uv[mine]),
         shown=shown,
         calibration_id=calibration.id,
-        features_key=features_key(pictures, options, calibration.camera.camera),
+        features_key=features_key(pictures, settings, calibration.camera.camera),
         speckle=scan.speckle,
         second_bounces=tuple(sorted(scan.second_bounces.pieces)),
         unsure_share=scan.unsure_share,
