@@ -1,12 +1,13 @@
-"""The graph of steps: what each makes and rests on, once, for recording sets and projects, for the window and the disk.
+"""The graph of steps: what each reads, makes and rests on, once, for recording sets and projects, for window and disk.
 
-From it come the order of work, which results go when another is made anew, in which order they are put in place, which
-page of the window a step is on, and what must be there before it.
+From it come the order of work, which steps a set or a project wants, which results go when another is made anew, in
+which order they are put in place, which page of the window a step is on, and what must be there before it. What a step
+does stands where its place is known: in `core.pipeline.run` for a set, in `core.pipeline.project.whole` for a project.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
 READJUST = "readjust"
@@ -29,6 +30,10 @@ class Step:
         That of its results which is another if what rests on the step no longer holds.
     rests_on
         The steps whose results it is made of: all of those that a project has, and one of `scan` and `profile`.
+    reads
+        The parts of a recording set whose pictures it is made from: where one is missing, the step is not wanted.
+    on_request
+        It is done only where it is asked for.
     shows
         Further steps whose results it shows if they are there.
     in_project
@@ -40,23 +45,52 @@ class Step:
     makes: tuple[str, ...]
     decides: str
     rests_on: tuple[str, ...] = ()
+    reads: tuple[str, ...] = ()
+    on_request: bool = False
     shows: tuple[str, ...] = ()
     in_project: str = ""
+
+    def wanted(self, there: Collection[str], asked: Collection[str]) -> bool:
+        """Whether it is to be done where there are pictures of the parts `there`, and these steps are asked for."""
+        return all(part in there for part in self.reads) and (not self.on_request or self.name in asked)
 
 
 CALIBRATED = ("camera", "planes")
 SURFACES = ("scan", "profile")
 GRAPH = (
-    Step("camera", "camera", ("camera",), "camera", in_project="camera"),
-    Step("planes", "planes", ("poses", "planes"), "planes", ("camera",), in_project="planes"),
-    Step(READJUST, "scan", ("calibrated",), "calibrated", CALIBRATED),
-    Step("check", "scan", ("check",), "check", CALIBRATED, in_project="check"),
-    Step("scan", "scan", ("scan", "cloud", "mesh"), "cloud", CALIBRATED, in_project="scan"),
-    Step("profile", "scan", ("profiles", "profile_table", "profile"), "profiles", CALIBRATED),
-    Step("gauge", "inspect", ("faces", "gauge"), "gauge", SURFACES, in_project="inspect"),
-    Step("inspection", "inspect", ("inspected", "inspection"), "inspection", SURFACES, in_project="features"),
-    Step("comparison", "inspect", ("comparison_table", "compared", "comparison"), "comparison", SURFACES),
-    Step("report", "report", ("report",), "report", ("scan",), ("gauge",), in_project="report"),
+    Step("camera", "camera", ("camera",), "camera", reads=("camera",), in_project="camera"),
+    Step("planes", "planes", ("poses", "planes"), "planes", ("camera",), reads=("planes",), in_project="planes"),
+    Step("check", "scan", ("check",), "check", CALIBRATED, reads=("check",), in_project="check"),
+    Step(READJUST, "scan", ("calibrated",), "calibrated", CALIBRATED, reads=("check",), on_request=True),
+    Step("scan", "scan", ("scan", "cloud", "mesh"), "cloud", CALIBRATED, reads=("scan",), in_project="scan"),
+    Step(
+        "profile",
+        "scan",
+        ("profiles", "profile_table", "profile"),
+        "profiles",
+        CALIBRATED,
+        reads=("scan",),
+        on_request=True,
+    ),
+    Step("gauge", "inspect", ("faces", "gauge"), "gauge", SURFACES, on_request=True, in_project="inspect"),
+    Step(
+        "inspection",
+        "inspect",
+        ("inspected", "inspection"),
+        "inspection",
+        SURFACES,
+        on_request=True,
+        in_project="features",
+    ),
+    Step(
+        "comparison",
+        "inspect",
+        ("comparison_table", "compared", "comparison"),
+        "comparison",
+        SURFACES,
+        on_request=True,
+    ),
+    Step("report", "report", ("report",), "report", ("scan",), shows=("gauge",), in_project="report"),
 )
 """Every step, in the order of work."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -12,11 +12,18 @@ from core.errors import InputError
 from core.files.folder_lock import alone_in
 from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.recording_set import RecordingSet, open_set, require_camera, require_planes, require_scan
+from core.files.recording.recording_set import (
+    CHECK,
+    PARTS,
+    RecordingSet,
+    open_set,
+    require_camera,
+    require_planes,
+    require_scan,
+)
 from core.files.recording.step_settings import ScanSettings
 from core.files.results.folder_results import read_results
-from core.files.step_graph import READJUST
-from core.image.stripes.stripe import StripeSettings
+from core.files.step_graph import GRAPH, READJUST, Step
 from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message
@@ -88,62 +95,105 @@ def run(
     require_scan(recording_set)
     work = Workspace.open(recording_set, out_folder, options.part)
     with alone_in(work.out):
-        return _measured(work, options, progress, beside)
+        work.clear()
+        going = _Run(work, options, progress, beside)
+        for step in filter(going.wants, GRAPH):
+            going.do[step.name]()
+        return going.result()
 
 
-def _measured(work: Workspace, options: Options, progress: Progress, beside: SecondProcess | None) -> RunResult:
-    recording_set = work.recording_set
-    work.clear()
-    seen = _looking(recording_set, options.for_scan, progress, beside)
-    camera = camera_step(work, options.for_camera, progress)
-    fan = planes_step(work, options.for_planes, progress, beside)
-    check = (
-        measure_check(PictureReader(recording_set), camera.camera, options.plane_stripe, progress, beside)
-        if recording_set.check
-        else None
-    )
-    if (
-        check is not None
-        and not check_step(work, options.plane_stripe, progress, poses=check).passed
-        and recording_set.rig.readjust
-    ):
-        fan = _readjusted(work, fan, options.plane_stripe, progress, check)
-    if beside is not None:
-        beside.submit(prepare_report, None)
-    measured = scan_step(work, options.for_scan, progress, check=check, seen=seen, beside=beside)
-    frames, points, triangles = measured.scan.frames, len(measured.scan.cloud), len(measured.mesh.triangles)
-    del seen, measured  # all else of it lies in the files
-    # a part without two parallel faces is no error when rig.toml does not ask for a thickness
-    asked = recording_set.rig.gauge is not None
-    gauge = gauge_step(work, progress) if asked else gauge_if_possible(work, progress)[0]
-    report_step(work, progress, beside=beside)
-    return RunResult(
-        camera=camera,
-        fan=fan,
-        frames=frames,
-        points=points,
-        triangles=triangles,
-        gauge=gauge,
-        results=read_results(work.out),
-        notes=work.record().all_notes,
-        files=work.written(),
-    )
+class _Run:
+    """A recording set while it is measured: what each step of the graph does, and what the later ones need of it."""
 
+    camera_found: CameraCalibration
+    fan: FanCalibration
+    frames: tuple[FrameRecord, ...]
+    points: int
+    triangles: int
+    thickness: GaugeResult | None
 
-def _readjusted(
-    work: Workspace,
-    fan: FanCalibration,
-    stripe: StripeSettings | None,
-    progress: Progress,
-    check: Sequence[PoseFeatures],
-) -> FanCalibration:
-    """The fan re-adjusted by the check, as rig.toml wants it; as it was where that is refused, and why is said."""
-    try:
-        return readjust_step(work, stripe, progress, check).fan
-    except InputError as error:
-        with work.step(READJUST) as log:
-            log.notes.append(error.message)
-        return fan
+    def __init__(self, work: Workspace, options: Options, progress: Progress, beside: SecondProcess | None) -> None:
+        self._work, self._options, self._progress, self._beside = work, options, progress, beside
+        recording_set = work.recording_set
+        self._there = {*PARTS, CHECK} if recording_set.check else {*PARTS}
+        self._asked = {"gauge"}
+        self._checked: tuple[PoseFeatures, ...] | None = None
+        self._seen = _looking(recording_set, options.for_scan, progress, beside)
+        self.do: Mapping[str, Callable[[], None]] = {
+            "camera": self.camera,
+            "planes": self.planes,
+            "check": self.check,
+            READJUST: self.readjust,
+            "scan": self.scan,
+            "gauge": self.gauge,
+            "report": self.report,
+        }
+
+    def wants(self, step: Step) -> bool:
+        """Whether a step is to be done, now that those before it have been done."""
+        return step.name in self.do and step.wanted(self._there, self._asked)
+
+    def camera(self) -> None:
+        self.camera_found = camera_step(self._work, self._options.for_camera, self._progress)
+
+    def planes(self) -> None:
+        self.fan = planes_step(self._work, self._options.for_planes, self._progress, self._beside)
+
+    def check(self) -> None:
+        """The check; where it is not passed, rig.toml may ask for a re-adjustment."""
+        work, stripe = self._work, self._options.plane_stripe
+        pictures = PictureReader(work.recording_set)
+        self._checked = measure_check(pictures, self.camera_found.camera, stripe, self._progress, self._beside)
+        passed = check_step(work, stripe, self._progress, poses=self._checked).passed
+        if not passed and work.recording_set.rig.readjust:
+            self._asked.add(READJUST)
+
+    def readjust(self) -> None:
+        """The fan re-adjusted by the check; it stays as it was where that is refused, and why is said."""
+        try:
+            self.fan = readjust_step(self._work, self._options.plane_stripe, self._progress, self._checked).fan
+        except InputError as error:
+            with self._work.step(READJUST) as log:
+                log.notes.append(error.message)
+
+    def scan(self) -> None:
+        if self._beside is not None:
+            self._beside.submit(prepare_report, None)
+        measured = scan_step(
+            self._work,
+            self._options.for_scan,
+            self._progress,
+            check=self._checked,
+            seen=self._seen,
+            beside=self._beside,
+        )
+        self._seen = None  # all else of it lies in the files
+        self.frames = measured.scan.frames
+        self.points, self.triangles = len(measured.scan.cloud), len(measured.mesh.triangles)
+
+    def gauge(self) -> None:
+        """A part without two parallel faces is no error where rig.toml does not ask for a thickness."""
+        if self._work.recording_set.rig.gauge is None:
+            self.thickness, _ = gauge_if_possible(self._work, self._progress)
+        else:
+            self.thickness = gauge_step(self._work, self._progress)
+
+    def report(self) -> None:
+        report_step(self._work, self._progress, beside=self._beside)
+
+    def result(self) -> RunResult:
+        """What came of it, once all steps are done."""
+        return RunResult(
+            camera=self.camera_found,
+            fan=self.fan,
+            frames=self.frames,
+            points=self.points,
+            triangles=self.triangles,
+            gauge=self.thickness,
+            results=read_results(self._work.out),
+            notes=self._work.record().all_notes,
+            files=self._work.written(),
+        )
 
 
 def _looking(

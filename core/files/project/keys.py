@@ -74,14 +74,19 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
     the scan is not tried again.
     """
     sources, accepted = project.sources, project.accepted
-    wanted = {
-        "camera": bool(sources.camera or not accepted.camera),
-        "planes": bool(sources.planes or not accepted.fan),
-        "check": bool(sources.check),
-        "inspect": "inspect" in results,
-        "features": bool(project.inspection.features),
+    pictures = {
+        "camera": sources.camera or not accepted.camera,  # where both are missing, the step says what is wanted
+        "planes": sources.planes or not accepted.fan,
+        "check": sources.check,
+        "scan": True,
     }
-    return tuple(step for step in STEPS if wanted.get(step, True) and not up_to_date(step, project, results))
+    requests = {"gauge": "inspect" in results, "inspection": project.inspection.features}
+    there, asked = ([name for name, one in which.items() if one] for which in (pictures, requests))
+    return tuple(
+        name
+        for name, step in IN_PROJECT.items()
+        if step.wanted(there, asked) and not up_to_date(name, project, results)
+    )
 
 
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:

@@ -14,7 +14,7 @@ from core.calibrate.camera.picture_residuals import bad_fit
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile
 from core.files.project.keys import finished, left_to_do
-from core.files.step_graph import IN_PROJECT
+from core.files.step_graph import GRAPH, Step
 from core.messages import Message
 from core.pipeline.project.calibration import (
     accept_camera,
@@ -74,12 +74,9 @@ def measure_all(
         Given the project after each step that was done.
     """
     work = _Work(folder, file, progress, watch or (lambda _: None), language)
-    for name, step in IN_PROJECT.items():
-        if name not in left_to_do(work.file.project, work.file.results):
-            continue
-        do = work.steps[name]
+    for step in filter(work.wants, GRAPH):
         try:
-            stop = do()
+            stop = work.do[step.name]()
         except InputError as error:
             stop = Stop(step.page, error.message)
         if stop is not None:
@@ -94,19 +91,20 @@ class _Work:
         self.file = file
         self._language = language
         self._folder, self._progress, self._watch = folder, progress, watch
-
-    @property
-    def steps(self) -> Mapping[str, Callable[[], Stop | None]]:
-        """What does each step of a project, by its name among the results."""
-        return {
+        self.do: Mapping[str, Callable[[], Stop | None]] = {
             "camera": self.camera,
             "planes": self.planes,
             "check": self.check,
             "scan": self.scan,
-            "inspect": self.thickness,
-            "features": self.features,
+            "gauge": self.gauge,
+            "inspection": self.inspection,
             "report": self.report,
         }
+        """What does each step of the graph."""
+
+    def wants(self, step: Step) -> bool:
+        """Whether a step is left to do, now that those before it have been done."""
+        return step.in_project in left_to_do(self.file.project, self.file.results)
 
     @property
     def _project(self) -> Project:
@@ -138,12 +136,12 @@ class _Work:
             return None
         return Stop("inspect", summary.no_gauge)
 
-    def thickness(self) -> Stop | None:
+    def gauge(self) -> Stop | None:
         measure_gauge(self._folder, self._project, self._progress)
         self._done("inspect")
         return None
 
-    def features(self) -> Stop | None:
+    def inspection(self) -> Stop | None:
         shown = measure_features(self._folder, self._project, self._progress)
         self._done("features")
         for one in shown.features:
