@@ -8,7 +8,7 @@ from enum import StrEnum
 
 from core.files.project.data import Done, Project
 from core.files.project.keys import changed, rests_on
-from core.files.step_graph import PAGES, needed_by
+from core.files.step_graph import MAIN, PAGES, needed_by
 from core.messages import label
 from workbench.language import joined, time_of, tr
 
@@ -52,9 +52,9 @@ def _project_state(project: Project) -> StepState:
 
 
 def _state(step: str, project: Project, results: Mapping[str, Done], before: Mapping[str, StepState]) -> StepState:
-    done = results.get(step)
+    done = results.get(MAIN[step])
     if done is not None:
-        why = list(changed(done.rests_on, rests_on(step, project, results)))
+        why = list(changed(done.rests_on, rests_on(MAIN[step], project, results)))
         stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
             return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=joined(why)))
@@ -62,7 +62,7 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
             names = joined(tr(_NAMES[need]) for need in stale)
             return StepState(State.OUTDATED, tr("Out of date, because this is: {steps}.", steps=names))
         return StepState(State.DONE, tr("Done on {at}.", at=time_of(done.at)))
-    missing = [need for need in NEEDS[step] if need not in results]
+    missing = [need for need in NEEDS[step] if MAIN[need] not in results]
     if missing:
         return StepState(State.TODO, tr("First: {steps}.", steps=joined(tr(_NAMES[need]) for need in missing)))
     return StepState(State.READY, tr("Ready to be done."))

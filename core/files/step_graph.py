@@ -37,7 +37,7 @@ class Step:
     shows
         Further steps whose results it shows if they are there.
     in_project
-        Its name among the results of a project; "" if a project does not keep what it rests on.
+        Whether it is a step of a project, which keeps what its result rests on.
     """
 
     name: str
@@ -48,7 +48,7 @@ class Step:
     reads: tuple[str, ...] = ()
     on_request: bool = False
     shows: tuple[str, ...] = ()
-    in_project: str = ""
+    in_project: bool = False
 
     def wanted(self, there: Collection[str], asked: Collection[str]) -> bool:
         """Whether it is to be done where there are pictures of the parts `there`, and these steps are asked for."""
@@ -58,11 +58,11 @@ class Step:
 CALIBRATED = ("camera", "planes")
 SURFACES = ("scan", "profile")
 GRAPH = (
-    Step("camera", "camera", ("camera",), "camera", reads=("camera",), in_project="camera"),
-    Step("planes", "planes", ("poses", "planes"), "planes", ("camera",), reads=("planes",), in_project="planes"),
-    Step("check", "scan", ("check",), "check", CALIBRATED, reads=("check",), in_project="check"),
+    Step("camera", "camera", ("camera",), "camera", reads=("camera",), in_project=True),
+    Step("planes", "planes", ("poses", "planes"), "planes", ("camera",), reads=("planes",), in_project=True),
+    Step("check", "scan", ("check",), "check", CALIBRATED, reads=("check",), in_project=True),
     Step(READJUST, "scan", ("calibrated",), "calibrated", CALIBRATED, reads=("check",), on_request=True),
-    Step("scan", "scan", ("scan", "cloud", "mesh"), "cloud", CALIBRATED, reads=("scan",), in_project="scan"),
+    Step("scan", "scan", ("scan", "cloud", "mesh"), "cloud", CALIBRATED, reads=("scan",), in_project=True),
     Step(
         "profile",
         "scan",
@@ -72,7 +72,7 @@ GRAPH = (
         reads=("scan",),
         on_request=True,
     ),
-    Step("gauge", "inspect", ("faces", "gauge"), "gauge", SURFACES, on_request=True, in_project="inspect"),
+    Step("gauge", "inspect", ("faces", "gauge"), "gauge", SURFACES, on_request=True, in_project=True),
     Step(
         "inspection",
         "inspect",
@@ -80,7 +80,7 @@ GRAPH = (
         "inspection",
         SURFACES,
         on_request=True,
-        in_project="features",
+        in_project=True,
     ),
     Step(
         "comparison",
@@ -90,21 +90,23 @@ GRAPH = (
         SURFACES,
         on_request=True,
     ),
-    Step("report", "report", ("report",), "report", ("scan",), shows=("gauge",), in_project="report"),
+    Step("report", "report", ("report",), "report", ("scan",), shows=("gauge",), in_project=True),
 )
 """Every step, in the order of work."""
 
-IN_PROJECT = {step.in_project: step for step in GRAPH if step.in_project}
-"""The steps of a project, by their names among its results, in the order of work."""
-PAGES = tuple(dict.fromkeys(step.page for step in GRAPH))
+IN_PROJECT = tuple(step for step in GRAPH if step.in_project)
+"""The steps of a project, in the order of work."""
+MAIN = {"camera": "camera", "planes": "planes", "scan": "scan", "inspect": "gauge", "report": "report"}
+"""By page of the window, in the order of work: the step whose result tells how far the page is."""
+PAGES = tuple(MAIN)
 """The pages on which steps are done, in the order of work."""
 
 
 def needed_by(page: str, *, shown: bool = False) -> tuple[str, ...]:
-    """Pages whose results must be there before the first step of a page; and those it shows, if asked for."""
-    step = next(step for step in GRAPH if step.page == page and step.in_project)
+    """Pages whose results must be there before the main step of a page; and those it shows, if asked for."""
+    step = next(step for step in GRAPH if step.name == MAIN[page])
     names = (*step.rests_on, *(step.shows if shown else ()))
-    return tuple(dict.fromkeys(other.page for other in GRAPH if other.name in names and other.in_project))
+    return tuple(dict.fromkeys(other.page for other in IN_PROJECT if other.name in names))
 
 
 def resting_on(result: str) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ from workbench.main_window import SMALLEST, MainWindow
 from workbench.pages.project.operator import OperatorFacts, Stage, operator_buttons, stage_of
 from workbench.views import ask
 
-LEFT = (frozenset[str](), frozenset({"report"}), frozenset({"scan", "inspect", "report"}))
+LEFT = (frozenset[str](), frozenset({"report"}), frozenset({"scan", "gauge", "report"}))
 STATES = [
     OperatorFacts(pictures, left, running, busy, stopped, report, cannot, read_only)
     for pictures, left, running, busy, stopped, report, cannot, read_only in product(

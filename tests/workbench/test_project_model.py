@@ -259,7 +259,7 @@ def test_the_reason_for_limits_changed_after_a_result_is_in_the_trail_at_once_an
 
     model.ask_reason = answer
     model.edit("first nominal", with_nominal(model.project, 50.0))
-    model.record("inspect", finished("inspect", model.project, model.results))
+    model.record("gauge", finished("gauge", model.project, model.results))
     model.edit("other nominal", with_nominal(model.project, 51.0))
     assert model.project.rig.gauge == GaugeSpec(50.0, 0.1)
     model.edit("other nominal", with_nominal(model.project, 51.0))

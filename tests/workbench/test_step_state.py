@@ -7,9 +7,10 @@ import pytest
 from core.files.project.data import Done, Project, new_project
 from core.files.project.keys import finished
 from core.files.recording.rig import GaugeSpec
+from core.files.step_graph import MAIN
 from workbench.step_state import ORDER, State, step_states
 
-STEPS = ORDER[1:]
+PAGES = ORDER[1:]
 GAUGE = GaugeSpec(nominal_mm=50.0, tolerance_mm=0.2)
 
 
@@ -23,7 +24,7 @@ def project() -> Project:
 def results(project: Project) -> dict[str, Done]:
     """Every step done with the project as it is."""
     done: dict[str, Done] = {}
-    for step in STEPS:
+    for step in MAIN.values():
         done[step] = finished(step, project, done)
     return done
 
@@ -34,7 +35,7 @@ def states(project: Project, results: dict[str, Done]) -> dict[str, State]:
 
 def test_a_new_project_is_ready_for_its_camera_alone() -> None:
     now = states(new_project("Block"), {})
-    assert now == {"project": State.DONE, "camera": State.READY} | dict.fromkeys(STEPS[1:], State.TODO)
+    assert now == {"project": State.DONE, "camera": State.READY} | dict.fromkeys(PAGES[1:], State.TODO)
     assert step_states(new_project("Block"), {})["scan"].sentence.startswith("First: calibrate the camera, calibrate")
 
 
@@ -60,7 +61,7 @@ def test_a_report_prints_the_thickness_and_is_out_of_date_with_it(project: Proje
 
 
 def test_a_report_can_do_without_a_thickness(project: Project, results: dict[str, Done]) -> None:
-    done = {step: result for step, result in results.items() if step not in ("inspect", "report")}
+    done = {step: result for step, result in results.items() if step not in ("gauge", "report")}
     done["report"] = finished("report", project, done)
     assert states(project, done)["report"] is State.DONE
     assert states(project, done)["inspect"] is State.READY

@@ -95,7 +95,9 @@ class ProjectTables(Table):
     results: dict[str, Done] = Field(default_factory=dict)
 
 
-SCHEMA = 9
+_EARLIER_STEPS = {"inspect": "gauge", "features": "inspection"}
+"""Names of results up to schema 9."""
+SCHEMA = 10
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -109,8 +111,17 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
         tables
     ),  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
     8: lambda tables: tables,  # k3 of the camera, which was free or zero: it stays as the camera was calibrated
+    9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}))},
 }
 """By schema: the tables as the next schema has them, from those of this one."""
+
+
+def _renamed(results: Any) -> Any:
+    """The results by the names of the steps as they are now; what is no table is complained of later."""
+    if not isinstance(results, dict):
+        return results
+    return {_EARLIER_STEPS.get(step, step): done for step, done in results.items()}
+
 
 _TODO = Message("advice.open_backup", "open a version in backups, or make a new project")
 

@@ -19,7 +19,7 @@ from core.files.step_graph import IN_PROJECT
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
-STEPS = tuple(IN_PROJECT)
+STEPS = tuple(step.name for step in IN_PROJECT)
 """The steps that have a result, in the order of work."""
 
 Keys = Mapping[str, str]
@@ -46,10 +46,10 @@ def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[s
             return _check(project)
         case "scan":
             return _scan(project)
-        case "inspect":
-            return _inspect(project, results)
-        case "features":
-            return _features(project, results)
+        case "gauge":
+            return _gauge(project, results)
+        case "inspection":
+            return _inspection(project, results)
         case "report":
             return _report(project, results)
     raise ValueError(f"{step} is none of {', '.join(STEPS)}")
@@ -80,13 +80,10 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
         "check": sources.check,
         "scan": True,
     }
-    requests = {"gauge": "inspect" in results, "inspection": project.inspection.features}
+    requests = {"gauge": "gauge" in results, "inspection": project.inspection.features}
     there, asked = ([name for name, one in which.items() if one] for which in (pictures, requests))
-    return tuple(
-        name
-        for name, step in IN_PROJECT.items()
-        if step.wanted(there, asked) and not up_to_date(name, project, results)
-    )
+    wanted = (step.name for step in IN_PROJECT if step.wanted(there, asked))
+    return tuple(step for step in wanted if not up_to_date(step, project, results))
 
 
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
@@ -223,7 +220,7 @@ def _air(project: Project) -> dict[str, str]:
     return {label("temperature of the air"): _digest([air, project.info.air_celsius])} if matters else {}
 
 
-def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def _gauge(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     gauge = rig_tables(project.rig).get("gauge", {})
     return {
         label("scan"): _key_of("scan", results),
@@ -233,7 +230,7 @@ def _inspect(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     }
 
 
-def _features(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def _inspection(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     return {
         label("scan"): _key_of("scan", results),
         label("features"): _digest(plan_tables(project.inspection)),
@@ -249,10 +246,10 @@ def _part(project: Project) -> dict[str, str]:
 
 def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     studies = [study.id for study in project.studies if study.included]
-    inspected = {label("features"): _key_of("features", results)} if "features" in results else {}
+    inspected = {label("features"): _key_of("inspection", results)} if "inspection" in results else {}
     return {
         label("scan"): _key_of("scan", results),
-        label("thickness"): _key_of("inspect", results),
+        label("thickness"): _key_of("gauge", results),
         **inspected,
         **({label("studies"): _digest(studies)} if studies else {}),
         label("project fields"): _digest(asdict(project.info)),

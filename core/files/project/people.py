@@ -39,7 +39,7 @@ ROLE_NAMES: Mapping[str, str] = {
 SHORTEST_PIN = 4
 """Fewest characters of a PIN."""
 _SCRYPT = {"n": 1 << 14, "r": 8, "p": 1, "dklen": 32}
-_JUDGED = ("inspect", "features", "report")
+_JUDGED = ("gauge", "inspection", "report")
 _CHECKED = ConfigDict(extra="forbid", strict=True)
 
 

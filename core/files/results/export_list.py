@@ -14,7 +14,7 @@ from typing import Literal
 
 from core.messages import label
 
-Needs = Literal["camera", "scan", "inspect"]
+Needs = Literal["camera", "scan", "gauge"]
 """The step whose result something is written from."""
 
 
@@ -55,18 +55,16 @@ _ALL = (
     ExportKind("stl", label("Surface (STL)"), "mesh.stl", "scan"),
     ExportKind("obj", label("Surface (OBJ)"), "mesh.obj", "scan"),
     ExportKind("3mf", label("Surface (3MF)"), "mesh.3mf", "scan"),
-    ExportKind("table", label("Results as a table (CSV)"), "result.csv", "inspect", label("results")),
-    ExportKind("xlsx", label("Results as a workbook (XLSX)"), "result.xlsx", "inspect", label("results")),
-    ExportKind("results", label("Results with their schema (JSON)"), "result.json", "inspect", label("results")),
-    ExportKind("dfq", label("Results for statistics (Q-DAS DFQ)"), "result.dfq", "inspect", label("results")),
-    ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "inspect", label("results")),
-    ExportKind(
-        "dcc", label("Digital calibration certificate (DCC 3.3)"), "result.xml", "inspect", label("certificate")
-    ),
-    ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "inspect", label("geometry")),
+    ExportKind("table", label("Results as a table (CSV)"), "result.csv", "gauge", label("results")),
+    ExportKind("xlsx", label("Results as a workbook (XLSX)"), "result.xlsx", "gauge", label("results")),
+    ExportKind("results", label("Results with their schema (JSON)"), "result.json", "gauge", label("results")),
+    ExportKind("dfq", label("Results for statistics (Q-DAS DFQ)"), "result.dfq", "gauge", label("results")),
+    ExportKind("qif", label("Results (QIF 3.0)"), "result.qif", "gauge", label("results")),
+    ExportKind("dcc", label("Digital calibration certificate (DCC 3.3)"), "result.xml", "gauge", label("certificate")),
+    ExportKind("dxf", label("Planes, circles and sections for CAD (DXF)"), "result.dxf", "gauge", label("geometry")),
     ExportKind("compared", label("Comparison, point by point (PLY)"), "comparison.ply", "scan", label("comparison")),
     ExportKind("compared-csv", label("Comparison as a table (CSV)"), "comparison.csv", "scan", label("comparison")),
-    ExportKind("json", label("Thickness (JSON)"), "gauge.json", "inspect", label("thickness")),
+    ExportKind("json", label("Thickness (JSON)"), "gauge.json", "gauge", label("thickness")),
     ExportKind("opencv", label("Camera (OpenCV YAML)"), "camera_opencv.yml", "camera", label("camera")),
     ExportKind("opencv-json", label("Camera (OpenCV JSON)"), "camera_opencv.json", "camera", label("camera")),
     ExportKind("ros", label("Camera (ROS camera_info)"), "camera_info.yaml", "camera", label("camera")),

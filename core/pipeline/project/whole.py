@@ -104,7 +104,7 @@ class _Work:
 
     def wants(self, step: Step) -> bool:
         """Whether a step is left to do, now that those before it have been done."""
-        return step.in_project in left_to_do(self.file.project, self.file.results)
+        return step.name in left_to_do(self.file.project, self.file.results)
 
     @property
     def _project(self) -> Project:
@@ -131,19 +131,19 @@ class _Work:
 
     def scan(self) -> Stop | None:
         summary = measure_scan(self._folder, self._project, self._progress)
-        self._done("scan", *(("inspect",) if summary.gauge is not None else ()), gone=("inspect",))
+        self._done("scan", *(("gauge",) if summary.gauge is not None else ()), gone=("gauge",))
         if summary.no_gauge is None or self._project.rig.gauge is None:
             return None
         return Stop("inspect", summary.no_gauge)
 
     def gauge(self) -> Stop | None:
         measure_gauge(self._folder, self._project, self._progress)
-        self._done("inspect")
+        self._done("gauge")
         return None
 
     def inspection(self) -> Stop | None:
         shown = measure_features(self._folder, self._project, self._progress)
-        self._done("features")
+        self._done("inspection")
         for one in shown.features:
             if one.problem is not None:
                 why = Message(

@@ -77,11 +77,11 @@ def test_another_camera_calibration_makes_planes_check_and_scan_out_of_date_and_
         ),
         (
             replace(START, rig=replace(START.rig, gauge=GaugeSpec(50.0, 0.2))),
-            {"inspect": ("nominal thickness",)},
+            {"gauge": ("nominal thickness",)},
         ),
         (
             replace(START, rig=replace(START.rig, gauge=GaugeSpec(None, None, np.eye(3, 2), np.eye(3, 2)))),
-            {"inspect": ("thickness regions",)},
+            {"gauge": ("thickness regions",)},
         ),
         (
             replace(START, rig=replace(START.rig, camera_target=Checkerboard(9, 6, 10.0))),
@@ -89,7 +89,7 @@ def test_another_camera_calibration_makes_planes_check_and_scan_out_of_date_and_
         ),
         (
             replace(START, rig=replace(START.rig, part=Part(target=TargetTemperature(23.0, 0.5)))),
-            dict.fromkeys(("inspect", "features"), ("material and temperature of the part",)),
+            dict.fromkeys(("gauge", "inspection"), ("material and temperature of the part",)),
         ),
     ],
 )
@@ -106,7 +106,7 @@ def test_a_scan_measured_anew_with_other_settings_makes_thickness_and_report_out
     results = measured()
     project = with_options(sigma_cut_mm=0.1)
     results["scan"] = finished("scan", project, results)
-    assert changed(results["inspect"].rests_on, rests_on("inspect", project, results)) == ("scan",)
+    assert changed(results["gauge"].rests_on, rests_on("gauge", project, results)) == ("scan",)
     assert changed(results["report"].rests_on, rests_on("report", project, results)) == ("scan",)
 
 
@@ -134,9 +134,9 @@ def test_an_unknown_step_is_refused():
 def test_features_rest_on_the_scan_and_on_the_plan_and_the_report_on_them():
     project, results = new_project(""), {}
     results["scan"] = finished("scan", project, results)
-    results["features"] = finished("features", project, results)
+    results["inspection"] = finished("inspection", project, results)
     ball = replace(project, inspection=InspectionPlan((FeatureSpec("ball", "sphere"),)))
-    assert changed(results["features"].rests_on, rests_on("features", ball, results)) == ("features",)
+    assert changed(results["inspection"].rests_on, rests_on("inspection", ball, results)) == ("features",)
     assert "features" in rests_on("report", project, results)
 
 

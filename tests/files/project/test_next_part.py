@@ -53,7 +53,7 @@ def project(tmp_path: Path) -> Path:
         studies=(KeptStudy("a1", "repeats", plain("Repeats")),),
     )
     results: dict[str, Done] = {}
-    for step in ("camera", "planes", "scan", "inspect", "features", "report"):
+    for step in ("camera", "planes", "scan", "gauge", "inspection", "report"):
         results[step] = finished(step, made, results)
     create_project(folder, ProjectFile(made, results))
     return folder
@@ -73,7 +73,7 @@ def test_calibrations_plan_and_report_hold_and_nothing_of_the_last_part_does(pro
     assert set(file.results) == {"camera", "planes"}
     assert all(up_to_date(step, after, file.results) for step in file.results), "calibrated anew for each part"
     assert after.sources.scan == "" and Path(after.sources.camera) == project / "recordings" / "camera"
-    assert left_to_do(after, file.results) == ("scan", "features", "report")
+    assert left_to_do(after, file.results) == ("scan", "inspection", "report")
     names = {path.relative_to(to).as_posix() for path in to.rglob("*") if path.is_file()}
     assert names == {
         "project.json", "audit.jsonl", "Block 2.trisect", "calibrations/camera-c1.json", "nominal/block.stl",

@@ -321,6 +321,18 @@ def test_the_artefacts_of_a_project_from_before_they_had_a_kind_are_blocks(tmp_p
     assert read_project(tmp_path).project.artefacts == (block, block)
 
 
+def test_results_of_a_project_from_before_they_had_the_names_of_the_steps_are_known_by_these(tmp_path):
+    done = {step: Done(step) for step in ("scan", "gauge", "inspection")}
+    create_project(tmp_path, ProjectFile(new_project("x"), done))
+    tables = json.loads((tmp_path / "project.json").read_text())
+    assert tables["results"].keys() == done.keys()
+    results = tables["results"]
+    tables["schema_version"] = 9
+    tables["results"] = {"scan": results["scan"], "inspect": results["gauge"], "features": results["inspection"]}
+    (tmp_path / "project.json").write_text(json.dumps(tables))
+    assert read_project(tmp_path).results == done
+
+
 @pytest.mark.parametrize(("data", "said"), [
     (b"", "no valid JSON"),
     (b'{"schema_version": 1, "info": {', "no valid JSON"),

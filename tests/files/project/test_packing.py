@@ -23,7 +23,7 @@ from core.inspect.plan.feature_spec import Deviation, FeatureSpec
 
 def measured(project: Project) -> ProjectFile:
     results: dict[str, Done] = {}
-    for step in ("camera", "planes", "scan", "inspect", "report"):
+    for step in ("camera", "planes", "scan", "gauge", "report"):
         results[step] = finished(step, project, results)
     return ProjectFile(project, results)
 
@@ -184,7 +184,7 @@ def test_nominal_surfaces_and_the_template_with_its_logo_come_along_from_outside
         report=replace(made.report, template=str(outside / "ours.toml")),
     )
     file = measured(made)
-    results = {**file.results, "features": finished("features", made, file.results)}
+    results = {**file.results, "inspection": finished("inspection", made, file.results)}
     file = replace(file, results={**results, "report": finished("report", made, results)})
     write_project(project, file)
     packed = pack_project(project, tmp_path / "block.trisectz").path

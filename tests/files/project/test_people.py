@@ -128,7 +128,7 @@ def test_a_signature_needs_the_pin_again_and_says_who_and_what(project: Path) ->
 
 def test_a_reason_is_wanted_where_it_is_asked_for_and_limits_change_after_something_was_judged() -> None:
     before = with_gauge(new_project("Block"), 50.0)
-    judged = {"inspect": Done("k", at=datetime.now(UTC))}
+    judged = {"gauge": Done("k", at=datetime.now(UTC))}
     other, typed = with_gauge(before, 51.0), replace(before, info=replace(before.info, serial="7"))
     assert reason_wanted(Rules(reasons=True), judged, before, other)
     assert not reason_wanted(Rules(reasons=True), judged, before, typed)

@@ -27,7 +27,7 @@ def folder(done, tmp_path):
 def file(done):
     """The project with every step done."""
     results = {}
-    for step in ("camera", "planes", "scan", "inspect", "report"):
+    for step in ("camera", "planes", "scan", "gauge", "report"):
         results[step] = finished(step, done.project, results)
     return ProjectFile(done.project, results)
 
@@ -60,7 +60,7 @@ def test_it_gives_what_every_step_by_itself_gives_byte_for_byte(done, tmp_path):
     job, seen = steps_done(tmp_path / "fresh", ProjectFile(fresh))
     assert job.stop is None
     assert job.file.project == done.project
-    assert seen == ["camera", "planes", "scan", "inspect", "report"]
+    assert seen == ["camera", "planes", "scan", "gauge", "report"]
     for name in ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "gauge.json"):
         mine, theirs = results_folder(tmp_path / "fresh") / name, results_folder(done.folder) / name
         assert mine.read_bytes() == theirs.read_bytes(), name
@@ -79,7 +79,7 @@ def test_another_nominal_value_measures_the_thickness_and_makes_the_report_only(
     gauge = replace(file.project.rig.gauge, nominal_mm=50.01)
     job, seen = steps_done(folder, changed(file, rig=replace(file.project.rig, gauge=gauge)))
     assert job.stop is None
-    assert seen == ["inspect", "report"]
+    assert seen == ["gauge", "report"]
 
 
 @pytest.mark.parametrize(("step", "which"), [("camera", "camera"), ("planes", "fan")])
@@ -120,7 +120,7 @@ def test_a_feature_that_cannot_be_measured_stops_it_once_and_is_then_reported(fo
     assert job.stop.page == "inspect"
     assert job.stop.why.code == "whole.feature_not_measured"
     assert "ball" in str(job.stop.why)
-    assert seen == ["features"]
+    assert seen == ["inspection"]
     again, seen = steps_done(folder, job.file)
     assert again.stop is None
     assert seen == ["report"]
@@ -136,5 +136,5 @@ def test_what_was_done_before_it_is_cancelled_is_known(done, folder, begun, monk
 
     with pytest.raises(Cancelled):
         measure_all(folder, begun, progress=stop_in_the_report, watch=last.append)
-    assert {"scan", "inspect"} <= last[-1].results.keys()
-    assert measure_all(folder, last[-1]).file.results.keys() == {"camera", "planes", "scan", "inspect", "report"}
+    assert {"scan", "gauge"} <= last[-1].results.keys()
+    assert measure_all(folder, last[-1]).file.results.keys() == {"camera", "planes", "scan", "gauge", "report"}

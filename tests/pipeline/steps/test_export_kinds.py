@@ -47,7 +47,7 @@ def test_every_kind_has_a_name_a_title_an_ending_and_a_file_of_its_own():
     assert len({kind.file for kind in EXPORTS.values()}) == len(EXPORTS)
     assert list(WRITERS) == list(EXPORTS)
     for name, kind in EXPORTS.items():
-        assert (kind.name, kind.ending[:1], kind.needs in ("camera", "scan", "inspect")) == (name, ".", True)
+        assert (kind.name, kind.ending[:1], kind.needs in ("camera", "scan", "gauge")) == (name, ".", True)
         assert kind.title.strip()
 
 

@@ -38,7 +38,7 @@ def results(made: Project, *, inspected: bool = True) -> dict[str, Done]:
     """A finished scan, and its thickness."""
     done = {"scan": finished("scan", made, {}, AT)}
     if inspected:
-        done["inspect"] = finished("inspect", made, done, AT)
+        done["gauge"] = finished("gauge", made, done, AT)
     return done
 
 

@@ -146,7 +146,7 @@ class InspectPresenter(StepPresenter):
         def done(_: Any) -> None:
             if folder == self.model.folder:
                 self._just_measured = True
-                self.model.record("inspect", finished("inspect", project, self.model.results))
+                self.model.record("gauge", finished("gauge", project, self.model.results))
 
         def failed(problem: Any) -> None:
             if folder == self.model.folder:
@@ -186,7 +186,7 @@ class InspectPresenter(StepPresenter):
         """All results on the part; None while it is not known what the features give."""
         shown = self.features.shown
         if shown is None:
-            return None if "features" in self.model.results else ResultList.of(self.scan.gauge)
+            return None if "inspection" in self.model.results else ResultList.of(self.scan.gauge)
         rows = [row for feature in shown.features for row in feature.rows]
         return ResultList.of(self.scan.gauge, rows, unmeasured=shown.unmeasured)
 

@@ -84,7 +84,7 @@ class InspectScan(QObject):
             if self.view is not None or self._asked:
                 self.forget()
             return
-        finished = (results.get("scan"), results.get("inspect"))
+        finished = (results.get("scan"), results.get("gauge"))
         wanted = tuple((done.key, done.at) for done in finished if done is not None)
         if not seen or wanted == self._asked:
             return

@@ -165,7 +165,7 @@ class ProjectActions(QObject):
     def _open_at_result(self, folder: Path) -> None:
         """Open a project where its result is to be seen, if it has been inspected."""
         self.open_project(folder)
-        if self.model.folder == folder.resolve() and "inspect" in self.model.results:
+        if self.model.folder == folder.resolve() and "gauge" in self.model.results:
             self.go_to.emit("inspect")
 
     def try_simulated(self) -> None:

@@ -61,7 +61,7 @@ class ReportPresenter(StepPresenter):
             if any(study.included for study in self.project.studies)
             else tr("No study is ticked on the Inspect page, tab Studies."),
             "remarks": "" if self.project.info.notes else tr("There are no notes on the Project page yet."),
-            "budget": "" if "inspect" in self.model.results else tr("The thickness has not been measured yet."),
+            "budget": "" if "gauge" in self.model.results else tr("The thickness has not been measured yet."),
         }
         return nothing.get(name, "")
 
@@ -117,8 +117,8 @@ class ReportPresenter(StepPresenter):
         return Facts(
             camera="camera" in results,
             scan=self.ready(),
-            thickness="inspect" in results,
-            features="features" in results,
+            thickness="gauge" in results,
+            features="inspection" in results,
             report=state in (State.DONE, State.OUTDATED),
             outdated=state is State.OUTDATED,
             making=self._making is not None,
@@ -143,7 +143,7 @@ class ReportPresenter(StepPresenter):
                     step=title,
                     sentence=states[step].sentence,
                 )
-        if "features" in self.model.results and not up_to_date("features", self.project, self.model.results):
+        if "inspection" in self.model.results and not up_to_date("inspection", self.project, self.model.results):
             return tr(
                 "Inspect: the features or the scan have changed since the features were measured. The report prints "
                 "what was measured then."
@@ -291,8 +291,8 @@ class ReportPresenter(StepPresenter):
             project.report,
             project.options.part,
             results.get("scan"),
-            results.get("inspect"),
-            results.get("features"),
+            results.get("gauge"),
+            results.get("inspection"),
         )
 
     def _refresh_preview(self) -> None:

@@ -74,4 +74,4 @@ def why_not_export(facts: Facts, kind: str) -> WhyNot:
     if kind == "pdf" and facts.making:
         return WhyNot.MAKING
     measured = facts.thickness or (facts.features and kind != "json")
-    return WhyNot.NO_THICKNESS if needs == "inspect" and not measured else WhyNot.NOTHING
+    return WhyNot.NO_THICKNESS if needs == "gauge" and not measured else WhyNot.NOTHING

@@ -52,14 +52,14 @@ class KnownArtefacts(QObject):
     @property
     def cannot_compare(self) -> str:
         """Why nothing can be compared now, or ""."""
-        reasons = [self._why_not(step) for step in ("inspect", "features")]
+        reasons = [self._why_not(step) for step in ("gauge", "inspection")]
         return reasons[0] if all(reasons) else ""
 
     def why_not(self, artefact: Artefact, characteristic: str) -> str:
         """Why this characteristic cannot be compared with an artefact now, or ""; "" is the thickness of the part."""
         if artefact.kind == "block" and not characteristic:
-            return self._why_not("inspect")
-        return self._why_not("features") or (
+            return self._why_not("gauge")
+        return self._why_not("inspection") or (
             ""
             if characteristic
             else tr(
@@ -69,7 +69,7 @@ class KnownArtefacts(QObject):
         )
 
     def _why_not(self, step: str) -> str:
-        """Why nothing of the thickness, "inspect", or of the plan, "features", can be compared."""
+        """Why nothing of the thickness, "gauge", or of the plan, "inspection", can be compared."""
         project, results = self._model.project, self._model.results
         scan = self._model.states["scan"].state
         facts = CompareFacts(

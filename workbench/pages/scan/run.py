@@ -159,8 +159,8 @@ class ScanRun(QObject):
             return
         results = dict(self._model.results)
         results["scan"] = scan = finished("scan", project, results)
-        thickness = finished("inspect", project, results) if summary.gauge is not None else None
-        self._model.record_all({"scan": scan, "inspect": thickness})
+        thickness = finished("gauge", project, results) if summary.gauge is not None else None
+        self._model.record_all({"scan": scan, "gauge": thickness})
 
     def _not_measured(self, task: Task, project: Project, problem: str) -> None:
         if task is self._task:

@@ -162,5 +162,5 @@ class ScanWork(QObject):
 
     def _thickness_now(self) -> str:
         """Tells one measurement of the thickness from another; nothing without one."""
-        done = self._model.results.get("inspect")
+        done = self._model.results.get("gauge")
         return "" if done is None else f"{done.key}|{done.at}"

@@ -110,7 +110,7 @@ def test_what_is_taken_is_measured_even_where_nothing_was_measured_before(presen
     presenter.start_clicking("step")
     for number in (8, 10):
         click(presenter, qtbot, number)
-    assert jobs.MEASURE_FEATURES not in measuring.ran and "features" not in presenter.model.results
+    assert jobs.MEASURE_FEATURES not in measuring.ran and "inspection" not in presenter.model.results
     presenter.clicked.take()
     qtbot.waitUntil(lambda: presenter.features.result("thickness 1") is not None)
     assert measuring.ran.count(jobs.MEASURE_FEATURES) == 1 and edits(presenter) == 1

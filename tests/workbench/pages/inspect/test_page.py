@@ -589,7 +589,7 @@ def test_the_buttons_of_the_repeats_follow_the_page_from_state_to_state(page, qu
     assert series.copy.isEnabled() and stands_as(series.remove, "Choose a repeat in the table first.")
     series.table.set_current_row(0)
     assert series.remove.isEnabled()
-    p.model.record("inspect", replace(p.model.results["inspect"], at=p.model.results["inspect"].at.replace(year=2026)))
+    p.model.record("gauge", replace(p.model.results["gauge"], at=p.model.results["gauge"].at.replace(year=2026)))
     assert reason() == "The scan is being read.", "it was measured again; what is shown is the thickness before"
 
 

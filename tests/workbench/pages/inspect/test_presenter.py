@@ -136,7 +136,7 @@ def test_measuring_records_the_thickness_and_shows_it(unmeasured, measuring, qui
     told = []
     unmeasured.measured.connect(lambda: told.append(unmeasured.scan.gauge))
     measured_again(unmeasured, measuring, qtbot)
-    done = unmeasured.model.results["inspect"]
+    done = unmeasured.model.results["gauge"]
     assert done.rests_on["scan"] == unmeasured.model.results["scan"].key
     assert unmeasured.stage is Stage.MEASURED
     assert [gauge.thickness_mm for gauge in told] == [50.012]

@@ -488,7 +488,7 @@ def test_an_inspected_sample_opens_at_its_result(
     folder = made_sample(projects.bench.settings.projects_folder / "Sample")
     projects.open_project(folder)
     if inspected:
-        projects.model.record("inspect", finished("inspect", projects.model.project, {}))
+        projects.model.record("gauge", finished("gauge", projects.model.project, {}))
     projects.close_project()
     went: list[str] = []
     projects.go_to.connect(went.append)

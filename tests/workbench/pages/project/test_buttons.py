@@ -7,7 +7,7 @@ import pytest
 from workbench.pages.whole import WholeFacts, why_not_measure_all
 
 BOTH = (False, True)
-LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "inspect", "report"), ("camera", "scan", "report"))))
+LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "gauge", "report"), ("camera", "scan", "report"))))
 STATES = [WholeFacts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
 
 

@@ -124,7 +124,7 @@ def test_how_far_the_work_is_and_what_comes_next(page: ProjectPage) -> None:
     assert page.rows.text_of("Camera") == "ready"
     assert page.rows.text_of("Scan") == "to do"
     assert page.next_words.text() == "Next: Camera. Ready to be done."
-    for step in ("camera", "planes", "scan", "inspect", "report"):
+    for step in ("camera", "planes", "scan", "gauge", "report"):
         model.record(step, finished(step, model.project, model.results))
     page.refreshing.at_once()
     assert page.rows.text_of("Report") == "done"

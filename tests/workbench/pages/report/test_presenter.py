@@ -83,7 +83,7 @@ def shown(report: ReportPresenter, drawing: Drawing) -> ReportPresenter:
 
 
 def measured(report: ReportPresenter, *steps: str) -> None:
-    for step in steps or ("camera", "planes", "scan", "inspect"):
+    for step in steps or ("camera", "planes", "scan", "gauge"):
         report.model.record(step, finished(step, report.project, report.model.results))
 
 
@@ -191,7 +191,7 @@ def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None
     assert "ticked" in report.empty_section("studies")
     report.model.edit("tick", replace(report.project, studies=(replace(study, included=True),)))
     with_info(report, notes="A remark")
-    measured(report, "scan", "inspect")
+    measured(report, "scan", "gauge")
     nominal = FeatureSpec("nominal", "deviation", deviation=Deviation("part.stl", tolerance_mm=0.1))
     profile = FeatureSpec("profile", "section", section=Section(((0.0, 0.0), (9.0, 0.0))))
     plan = InspectionPlan((nominal, profile))
@@ -215,7 +215,7 @@ def test_pages_are_drawn_when_somebody_looks_and_not_again_for_nothing(
     assert (drawing.asked, report.drawing) == (0, False)
 
 
-@pytest.mark.parametrize("what", ["field", "section", "paper", "gauge", "scan", "inspect"])
+@pytest.mark.parametrize("what", ["field", "section", "paper", "lines", "scan", "gauge"])
 def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhile(
     shown: ReportPresenter, drawing: Drawing, what: str
 ) -> None:
@@ -225,7 +225,7 @@ def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhi
         shown.choose_section("frame", False)
     elif what == "paper":
         shown.choose_paper("Letter")
-    elif what == "gauge":
+    elif what == "lines":
         shown.model.edit("lines", replace(shown.project, rig=replace(shown.project.rig, lines=2)))
     else:
         measured(shown, what)  # measured again: the project is the same, the result is not
@@ -271,7 +271,7 @@ def test_why_nothing_can_be_drawn_is_told_in_place_of_the_pages(shown: ReportPre
 def test_features_that_have_changed_since_are_told(shown: ReportPresenter) -> None:
     plan = InspectionPlan((FeatureSpec("top", "plane"),))
     shown.model.edit("add", replace(shown.project, inspection=plan))
-    measured(shown, "camera", "planes", "scan", "inspect", "features")
+    measured(shown, "camera", "planes", "scan", "gauge", "inspection")
     assert not shown.warning()
     shown.model.edit("remove", replace(shown.project, inspection=InspectionPlan()))
     assert "prints what was measured then" in shown.warning()

@@ -34,7 +34,7 @@ def measured(page):
     """A thickness is measured, and up to date."""
     model = page.presenter.model
     scan = finished("scan", model.project, {})
-    model.record_all({"scan": scan, "inspect": finished("inspect", model.project, {"scan": scan})})
+    model.record_all({"scan": scan, "gauge": finished("gauge", model.project, {"scan": scan})})
     page.refresh()
     return page
 
@@ -180,7 +180,7 @@ def test_a_sphere_is_compared_with_a_diameter_of_the_features_that_can_be_chosen
     dialog = opened(measured, qtbot)
     dialog.table.set_current_row(0)
     assert dialog.compare.toolTip() == "Measure the artefact first, like a part.", "no features are measured yet"
-    model.record_all({"features": finished("features", model.project, model.results)})
+    model.record_all({"inspection": finished("inspection", model.project, model.results)})
     dialog.table.set_current_row(1)
     assert dialog.length.isHidden() and "(step, height)" in dialog.compare.toolTip()
     dialog.table.set_current_row(0)

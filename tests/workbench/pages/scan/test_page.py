@@ -124,7 +124,7 @@ def on_table(measured, scan_bench, qtbot):
     p = measured.presenter
     p.left()
     cast(HandLane, scan_bench.quick).answers[jobs.SHOW_SCAN] = lambda folder: replace(cases.look(), ground=TABLE)
-    p.model.record("inspect", replace(p.model.results["inspect"], key="another"))
+    p.model.record("gauge", replace(p.model.results["gauge"], key="another"))
     p.entered()
     qtbot.waitUntil(lambda: p.work.look.ground is not None)
     measured.refreshing.at_once()

@@ -128,17 +128,17 @@ def test_measuring_records_the_scan_and_its_thickness(recorded, measuring, qtbot
     assert recorded.blocker() == "The scan is being measured."
     measuring.finish(cases.summary())
     assert recorded.stage is Stage.MEASURED and recorded.blocker() == ""
-    assert {"scan", "inspect"} <= set(recorded.model.results)
-    inspected = recorded.model.results["inspect"]
+    assert {"scan", "gauge"} <= set(recorded.model.results)
+    inspected = recorded.model.results["gauge"]
     assert inspected.rests_on["scan"] == recorded.model.results["scan"].key
     qtbot.waitUntil(lambda: recorded.work.look is not None)
 
 
 def test_a_part_without_parallel_faces_takes_an_old_thickness_away(measured, measuring):
-    assert "inspect" in measured.model.results
+    assert "gauge" in measured.model.results
     measured.do_run()
     measuring.finish(cases.summary(gauge=None))
-    assert "inspect" not in measured.model.results
+    assert "gauge" not in measured.model.results
     assert str(measured.run.no_gauge) == "There are no two parallel faces"
     assert measured.stage is Stage.MEASURED
 

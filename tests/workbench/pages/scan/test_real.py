@@ -50,7 +50,7 @@ def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
     assert p.work.look.left_out[0][0] or p.work.look.frames_used
     assert p.record_of(p.work.names[0]).reason == LEFT_OUT
-    assert {"scan", "inspect"} <= set(p.model.results)
+    assert {"scan", "gauge"} <= set(p.model.results)
     assert [notice.text for notice in p.bench.notices.all if notice.level != "info"] == []
 
 

@@ -182,7 +182,7 @@ class InspectFeatures(QObject):
             FeaturesFacts(
                 no_scan=self._scan.buttons.measure,
                 cannot_write=self.bench.cannot_write,
-                measured="features" in self.model.results,
+                measured="inspection" in self.model.results,
                 measuring=self.measuring,
                 count=len(names),
                 place=names.index(self.chosen) if self.chosen in names else -1,
@@ -193,7 +193,7 @@ class InspectFeatures(QObject):
     @property
     def up_to_date(self) -> bool:
         """Whether what was measured is of this plan and this scan."""
-        return up_to_date("features", self.model.project, self.model.results)
+        return up_to_date("inspection", self.model.project, self.model.results)
 
     def measure(self) -> None:
         """Measure the whole plan on the scan among the results."""
@@ -205,13 +205,13 @@ class InspectFeatures(QObject):
         def done(shown: Any) -> None:
             if folder == model.folder:
                 self._shown, self._shown_for = shown, wanted
-                model.record("features", finished("features", project, results))
+                model.record("inspection", finished("inspection", project, results))
 
         self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
     def measure_first(self) -> None:
         """Measure a plan that has not been measured yet; later, every edit of it is measured by itself."""
-        if "features" not in self.model.results:
+        if "inspection" not in self.model.results:
             self.measure()
 
     def follow(self, before: InspectionPlan) -> None:
@@ -322,7 +322,7 @@ class InspectFeatures(QObject):
 
     def _measure_again(self) -> None:
         """Measure a plan that has changed since it was measured; one that failed waits for the next edit."""
-        if "features" in self.model.results and not self.up_to_date and not self.problem:
+        if "inspection" in self.model.results and not self.up_to_date and not self.problem:
             self.measure()
 
     def _wanted(self) -> tuple[InspectionPlan, object]:
