@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -19,6 +19,7 @@ from core.calibrate.results import (
     Readjustment,
 )
 from core.cli.language import spoken, told, tr
+from core.cli.talk import is_verbose
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
 from core.files.results.fan_file import fan_id
@@ -29,6 +30,7 @@ from core.findings.table import gravest_first, is_grave
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
+from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -78,6 +80,12 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
     for note in gravest_first(notes):
         style = "red" if is_grave(note) else None
         out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
+
+
+def fact_rows(facts: Iterable[Fact]) -> Rows:
+    """What an auditor reads of a result; with ``--verbose`` all that is told of it."""
+    reader = Reader.METROLOGIST if is_verbose() else Reader.AUDITOR
+    return [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:

@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
+from core.messages import capital
+from core.report.facts.fact import Fact, Reader
 from core.report.wording import Words
 from workbench.language import chosen, number
+from workbench.views.lists.value_rows import ValueRow, ValueRows
 
 
 def length(value: float, unit: str, digits: int = 3) -> str:
@@ -41,3 +45,15 @@ def count(number: int) -> str:
 def wording() -> Words:
     """The words and numbers of results in the window's language, as the report writes them."""
     return Words(chosen())
+
+
+def show_facts(rows: ValueRows, facts: Iterable[Fact]) -> None:
+    """Show the facts of a result: what a technician needs in sight, the rest folded."""
+    facts = tuple(facts)
+    in_sight = [fact_row(fact) for fact in facts if fact.level == Reader.TECHNICIAN]
+    rows.set_rows(in_sight, [fact_row(fact) for fact in facts if fact.level > Reader.TECHNICIAN])
+
+
+def fact_row(fact: Fact) -> ValueRow:
+    """One fact as a row."""
+    return capital(fact.title(wording())), fact.text(wording()), wording().known(fact.tip), fact.grade

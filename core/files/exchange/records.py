@@ -14,7 +14,9 @@ from core.files.atomic import write_text
 from core.files.csv_text import csv_text
 from core.inspect.characteristic import Characteristic
 from core.inspect.uncertainty.coverage import effective_dof
+from core.messages import Message
 from core.report.content import ReportContent
+from core.report.facts.fact import Fact
 
 Row = Mapping[str, Any]
 
@@ -47,6 +49,25 @@ BUDGET_COLUMNS = (
     "share",
 )
 FRAME_COLUMNS = ("name", "used", "reason", "points", "sigma_mm", "stripes", "fan_crossings", "sweep_crossings")
+
+FACT_COLUMNS = ("of", "name", "value", "sd", "low", "high", "unit", "level")
+"""Of what is told of results besides the characteristics; `low` and `high` are the ends of a 95 % interval."""
+
+
+def fact_row(of: str, fact: Fact) -> dict[str, Any]:
+    """One fact of the result called `of`: FACT_COLUMNS, numbers in full."""
+    low, high = (None, None) if fact.interval is None else map(finite, fact.interval)
+    value = finite(fact.value) if isinstance(fact.value, float) else fact.value
+    return {
+        "of": of,
+        "name": str(fact.label),
+        "value": str(value) if isinstance(value, Message) else value,
+        "sd": fact.sd,
+        "low": low,
+        "high": high,
+        "unit": fact.unit,
+        "level": int(fact.level),
+    }
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:

@@ -5,7 +5,7 @@ Tables have thin rules and no boxes, numbers to the right; every cell wraps, so 
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import TypeAlias
 
@@ -13,6 +13,7 @@ from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Table, TableStyle
 
+from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, ReportLook, color
 from core.report.wording import grouped
@@ -227,3 +228,20 @@ def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flow
     if left <= 0:
         return []
     return [look.say("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
+
+
+def figures(look: ReportLook, facts: Mapping[str, str]) -> Table:
+    """Values below their names, six a row."""
+    names = list(facts)
+    rows: list[list[Cell]] = []
+    for start in range(0, len(names), 6):
+        shown = names[start : start + 6]
+        padding = [look.text("")] * (6 - len(shown))
+        rows.append([*(look.text(name, "label") for name in shown), *padding])
+        rows.append([*(look.text(facts[name], "small_strong") for name in shown), *padding])
+    return plain_table(rows, [TEXT_WIDTH / 6] * 6)
+
+
+def told(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
+    """What an auditor reads of a result: value with unit by what it is called."""
+    return {fact.title(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}

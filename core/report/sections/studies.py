@@ -12,7 +12,7 @@ from reportlab.platypus import Flowable, Spacer
 
 from core.messages import from_json, label
 from core.report.content import ReportContent
-from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, heads, plain_table, ruled_table, section
+from core.report.layout.blocks import Heading, Limits, OnOnePage, Picture, figures, heads, ruled_table, section
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.wording import decimals_of, study_name
 from core.states import DECISIONS, SPREAD, VERDICT
@@ -98,13 +98,13 @@ def _parts(look: ReportLook, study: Study) -> list[Flowable]:
     verdict = {look.words(VERDICT): look.words(DECISIONS[study["verdict"]])} if study["verdict"] else {}
     match study["kind"]:
         case "repeats":
-            return [_figures(look, _repeats(look, study) | verdict)]
+            return [figures(look, _repeats(look, study) | verdict)]
         case "type1":
-            return [_figures(look, _type1(look, study) | verdict)]
+            return [figures(look, _type1(look, study) | verdict)]
         case "series":
-            return [_figures(look, _series(look, study) | verdict)]
+            return [figures(look, _series(look, study) | verdict)]
         case "grr":
-            return [_components(look, study), Spacer(0, 1 * mm), _figures(look, _grr(look, study) | verdict)]
+            return [_components(look, study), Spacer(0, 1 * mm), figures(look, _grr(look, study) | verdict)]
         case _:
             return [_quantities(look, study)]
 
@@ -218,15 +218,3 @@ def _quantities(look: ReportLook, study: Study) -> Flowable:
 
 def _lengths(look: ReportLook, lengths: Mapping[str, float | None], decimals: int, unit: str) -> dict[str, str]:
     return {name: f"{look.words.fixed(value, decimals)} {unit}" for name, value in lengths.items() if value is not None}
-
-
-def _figures(look: ReportLook, figures: Mapping[str, str]) -> Flowable:
-    """Figures below their names, six a row."""
-    names = list(figures)
-    rows: list[list[Flowable]] = []
-    for start in range(0, len(names), 6):
-        shown = names[start : start + 6]
-        padding = [look.text("")] * (6 - len(shown))
-        rows.append([*(look.text(name, "label") for name in shown), *padding])
-        rows.append([*(look.text(figures[name], "small_strong") for name in shown), *padding])
-    return plain_table(rows, [TEXT_WIDTH / 6] * 6)

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Literal
 
 from PySide6.QtCore import QEvent, QSize, Qt
-from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QWidget
+from PySide6.QtWidgets import QFrame, QGridLayout, QLabel, QToolButton, QWidget
 
 from core.messages import capital
 from core.states import DECISIONS
@@ -39,29 +39,45 @@ ValueRow = tuple[str, str, str, Level]
 class ValueRows(QWidget):
     """Label at the left, value with unit at the right, and an icon where a value is good or not.
 
-    It is at least `least_width` pixels wide, and never narrower than its values.
+    It is at least `least_width` pixels wide, and never narrower than its values. Further rows are folded.
     """
 
     def __init__(self, parent: QWidget | None = None, *, least_width: int = 0) -> None:
         super().__init__(parent)
         self._least_width = least_width
         self._rows: tuple[ValueRow, ...] = ()
+        self._in_sight = 0
         self._labels: list[tuple[QLabel, QLabel, IconLabel]] = []
-        self._grid = QGridLayout(self)
-        self._grid.setContentsMargins(0, 0, 0, 0)
+        self.more = QToolButton()
+        self.more.setCheckable(True)
+        self.more.setAutoRaise(True)
+        self.more.toggled.connect(self._fold)
+        self._grid = QGridLayout()
         self._grid.setHorizontalSpacing(8)
         self._grid.setVerticalSpacing(3)
         self._grid.setColumnStretch(0, 1)
+        column = in_column(on=self, spacing=3)
+        column.addLayout(self._grid)
+        column.addWidget(self.more, 0, Qt.AlignmentFlag.AlignLeft)
+        self._fold()
 
-    def set_rows(self, rows: Sequence[ValueRow]) -> None:
-        """(label, text with unit, tip, level) each, from the top."""
-        self._rows = tuple(rows)
+    def set_rows(self, rows: Sequence[ValueRow], more: Sequence[ValueRow] = ()) -> None:
+        """(label, text with unit, tip, level) each, from the top, and those that are folded."""
+        self._rows, self._in_sight = (*rows, *more), len(rows)
         while len(self._labels) < len(self._rows):
             self._add_row()
+        self._fold()
+        self._show()
+
+    def _fold(self) -> None:
+        """Show the further rows where they are asked for."""
+        shown = len(self._rows) if self.more.isChecked() else self._in_sight
         for place, labels in enumerate(self._labels):
             for label in labels:
-                label.setVisible(place < len(self._rows))
-        self._show()
+                label.setVisible(place < shown)
+        self.more.setVisible(len(self._rows) > self._in_sight)
+        self.more.setText(tr("Less") if self.more.isChecked() else tr("More"))
+        self.more.setToolTip(tr("What an auditor and a metrologist want to know of it as well"))
 
     def text_of(self, label: str) -> str:
         """The value shown beside a label, "" if there is none."""

@@ -1,0 +1,107 @@
+"""One thing that is told of a result: its name, value, unit and digits, what it means, and whom it is for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Literal, TypeAlias
+
+from core.messages import Message
+from core.report.wording import Words, grouped
+
+Grade: TypeAlias = Literal["", "good", "warn", "bad"]
+"""Whether a value is good, where that can be said."""
+Value: TypeAlias = float | str | Message | None
+"""A number (an `int` is counted), fixed words or a name, or a message; None: not known."""
+
+
+class Reader(IntEnum):
+    """Whom a fact is for: each reads those of the readers before as well."""
+
+    TECHNICIAN = 1
+    AUDITOR = 2
+    METROLOGIST = 3
+
+
+@dataclass(frozen=True, slots=True)
+class Fact:
+    """One thing that is told of a result.
+
+    Parameters
+    ----------
+    label
+        What it is called: fixed words, in small letters where they are no name.
+    value
+        A number in `unit`, a share in %, or words.
+    unit
+        "mm", "px", "°", "%"; "" for a pure number and for words.
+    digits
+        Decimals of a real number; None: as it was stated.
+    tip
+        What it means, and how it is made; a whole sentence without its full stop.
+    level
+        Whom it is for.
+    sd
+        Standard or expanded uncertainty in `unit`, as `label` or `tip` say.
+    interval
+        95 % confidence interval in `unit`.
+    signed
+        Whether a positive number has its sign.
+    grade
+        Whether it is good.
+    """
+
+    label: str | Message
+    value: Value
+    unit: str = ""
+    digits: int | None = None
+    tip: str | Message = ""
+    level: Reader = Reader.TECHNICIAN
+    sd: float | None = None
+    interval: tuple[float, float] | None = None
+    signed: bool = False
+    grade: Grade = ""
+
+    def title(self, words: Words) -> str:
+        """What it is called, with the coverage of its interval: 'Cg (95 %)'."""
+        label = words.known(self.label)
+        return label if self.interval is None else words("{quantity} (95 %)", quantity=label)
+
+    def text(self, words: Words) -> str:
+        r"""Value, uncertainty, unit and interval in the reader's language.
+
+        Examples
+        --------
+        >>> Fact("U", 0.0421, "mm", 3).text(Words()), Fact("Cg", 1.5, digits=2, interval=(1.2, 1.84)).text(Words())
+        ('0.042 mm', '1.50 (1.20 to 1.84)')
+        >>> Fact("scans", 1204).text(Words()), Fact("alpha", 2410.42, "px", 2, sd=0.31).text(Words())
+        ('1\xa0204', '2410.42 ± 0.31 px')
+        """
+        if self.value is None:
+            return words("not known")
+        if isinstance(self.value, (str, Message)):
+            return words.known(self.value)
+        said = self._number(self.value, words)
+        if self.sd is not None:
+            said = f"{said} ± {self._number(self.sd, words, signed=False)}"
+        if self.unit:
+            said = f"{said}°" if self.unit == "°" else f"{said} {self.unit}"
+        if self.interval is None:
+            return said
+        low, high = (self._number(end, words) for end in self.interval)
+        return words("{value} ({low} to {high})", value=said, low=low, high=high)
+
+    def _number(self, value: float, words: Words, *, signed: bool | None = None) -> str:
+        signed = self.signed if signed is None else signed
+        if isinstance(value, int):
+            return words.numeral(f"{value:+d}") if signed else grouped(value)
+        if math.isinf(value):
+            return "∞" if value > 0 else words.numeral("-∞")
+        return words.general(value) if self.digits is None else words.fixed(value, self.digits, signed=signed)
+
+
+def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:
+    """The facts that a reader is told."""
+    return tuple(fact for fact in facts if fact.level <= reader)
