@@ -31,6 +31,7 @@ from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.facts.fact import Fact, Reader, for_reader
+from core.report.facts.table import FactTable, tables_for_reader
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -82,10 +83,11 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
 
 
-def fact_rows(facts: Iterable[Fact]) -> Rows:
+def fact_rows(facts: Iterable[Fact], tables: Iterable[FactTable] = ()) -> Rows:
     """What an auditor reads of a result; with ``--verbose`` all that is told of it."""
     reader = Reader.METROLOGIST if is_verbose() else Reader.AUDITOR
-    return [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
+    rows = [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
+    return rows + [line for table in tables_for_reader(tables, reader) for line in table.lines(words())]
 
 
 def print_times(seconds: Mapping[str, float], wall_s: float) -> None:

@@ -9,25 +9,24 @@ from typing import cast
 
 import typer
 
-from core.cli.language import spoken, told, tr
+from core.cli.language import tr
 from core.cli.measuring import Shown, exit_code
-from core.cli.output import Rows, words
+from core.cli.output import Rows, fact_rows, words
 from core.errors import InputError, WrongValue
 from core.files.project.folder import results_in
 from core.files.study.input import Repeats, read_crossed, read_readings, read_repeats
-from core.files.study.study_file import Study, study_values, write_study
-from core.messages import Message, plural_message
+from core.files.study.study_file import study_values, write_study
+from core.messages import Message
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress
-from core.report.wording import decimals_of, study_name
-from core.states import DECISIONS, SPREAD, VERDICT
-from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, acceptance_check
-from core.study.budget import UncertaintyBudget, from_budgets, from_stated
-from core.study.capability import LIMIT as CAPABILITY
-from core.study.grr import ACCEPTABLE, AnovaRow, Component, GrrStudy, grr_study
+from core.report.facts.of_studies import study_facts, study_tables, study_title
+from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
+from core.study.budget import from_budgets, from_stated
+from core.study.grr import ACCEPTABLE, GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
 from core.study.series import SeriesStudy, StatedUncertainty, series_study, stated_uncertainty
-from core.study.type1 import CAPABLE, LIMIT, Type1Study, type1_study
+from core.study.study import Study
+from core.study.type1 import CAPABLE, Type1Study, type1_study
 
 GOOD = ("conforming", CAPABLE, ACCEPTABLE)
 """Verdicts that leave with exit code 0."""
@@ -248,216 +247,4 @@ def _not_negative(value: float | None, where: str) -> None:
 
 def study_rows(study: Study) -> Rows:
     """What a study found, and its verdict."""
-    match study:
-        case RepeatStudy():
-            found = _repeats(study)
-        case Type1Study():
-            found = _type1(study)
-        case GrrStudy():
-            found = _grr(study)
-        case AcceptanceCheck():
-            found = [row for one in study.quantities for row in _quantity(one)]
-        case SeriesStudy():
-            found = _series(study)
-    return [*found, (tr(VERDICT), tr(DECISIONS[study.verdict]) if study.verdict else tr("none: no limit was given"))]
-
-
-def _repeats(study: RepeatStudy) -> Rows:
-    found, unit = study.statistics, study.unit
-    digits = max(decimals_of(study.budget.U), decimals_of(found.std_mm), 3)
-
-    def shown(value: float | None, *, signed: bool = False) -> str:
-        return tr("unknown") if value is None else f"{_fixed(value, digits, signed=signed)} {unit}"
-
-    lines = [
-        (
-            study_name(study.name, words()),
-            told(
-                plural_message(
-                    "cli.repeats",
-                    "{n:,} scan, mean {mean}",
-                    "{n:,} scans, mean {mean}",
-                    n=found.n,
-                    mean=shown(found.mean_mm),
-                )
-            ),
-        ),
-        (tr(SPREAD), shown(found.std_mm)),
-    ]
-    if study.nominal is not None:
-        lines += [
-            (tr("nominal"), tr("{value:g} {unit}", value=study.nominal, unit=unit)),
-            (tr("mean error"), shown(found.error_mm, signed=True)),
-            (tr("RMSE"), shown(found.rmse_mm)),
-            (tr("largest error"), shown(found.largest_error_mm)),
-        ]
-    if study.run is not None:
-        lower, upper = shown(study.run.lower), shown(study.run.upper)
-        lines.append((tr("run chart"), tr("{lower} to {upper} (individual values)", lower=lower, upper=upper)))
-    lines += [(tr("U of the mean"), _expanded(study.budget, digits)), (tr("from"), _sources(study.budget, digits))]
-    if study.zones is not None:
-        said = tr(
-            "ISO 14253-1, deviation {lower} to {upper} {unit}, guard band {guard}",
-            lower=_fixed(study.zones.lower, 3, signed=True),
-            upper=_fixed(study.zones.upper, 3, signed=True),
-            unit=unit,
-            guard=shown(study.zones.guard_band),
-        )
-        lines.append((tr("rule"), said))
-    return lines
-
-
-def _expanded(budget: UncertaintyBudget, digits: int) -> str:
-    dof = "∞" if math.isinf(budget.dof) else spoken().number(budget.dof, ".1f")
-    U = f"{_fixed(budget.U, digits)} {budget.unit}"
-    return tr("{U} (k = {k:.2f}, ν_eff = {dof}, {coverage:.2%})", U=U, k=budget.k, dof=dof, coverage=budget.coverage)
-
-
-def _fixed(value: float, decimals: int, *, signed: bool = False) -> str:
-    return words().fixed(value, decimals, signed=signed)
-
-
-def _sources(budget: UncertaintyBudget, digits: int) -> str:
-    largest = sorted(budget.rows, key=lambda row: -row.u_mm)
-    return spoken().joined(
-        [
-            f"{told(row.source)} {_fixed(row.u_mm, digits)} {budget.unit}"
-            for row in largest
-            if row.u_mm >= 0.1 * budget.u > 0
-        ]
-    )
-
-
-def _type1(study: Type1Study) -> Rows:
-    digits, unit = max(decimals_of(study.s) + 1, 3), study.unit
-
-    def shown(value: float, *, signed: bool = False) -> str:
-        return f"{_fixed(value, digits, signed=signed)} {unit}"
-
-    low, high = (_fixed(value, digits, signed=True) for value in study.bias_interval)
-    lines = [
-        (tr("repeats"), tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s))),
-        (
-            tr("reference value"),
-            tr(
-                "{value:g} {unit}, T = {tolerance:g} {unit}",
-                value=study.reference,
-                unit=unit,
-                tolerance=study.tolerance,
-            ),
-        ),
-        (
-            tr("bias"),
-            tr(
-                "{bias} (95 %: {low} to {high}), t = {t:.2f}, p = {p:.2g}",
-                bias=shown(study.bias, signed=True),
-                low=low,
-                high=high,
-                t=study.t,
-                p=study.p,
-            ),
-        ),
-        ("Cg", _with_interval(_index(study.cg), *map(_index, study.cg_interval))),
-        ("Cgk", tr("{cgk}; both must be {limit} or more", cgk=_index(study.cgk), limit=LIMIT)),
-        (tr("smallest T"), tr("{T} for which they would be", T=shown(study.smallest_tolerance))),
-    ]
-    if study.resolution_share is not None:
-        judged = tr("suffices" if study.resolution_suffices else "does not suffice: 5 % at most")
-        said = tr(
-            "{value:g} {unit}, {share:.1%} of T: {judged}",
-            value=study.resolution, unit=unit, share=study.resolution_share, judged=judged,
-        )  # fmt: skip
-        lines.append((tr("resolution"), said))
-    return lines
-
-
-def _series(study: SeriesStudy) -> Rows:
-    digits, unit = max(decimals_of(study.s) + 1, 3), study.unit
-
-    def shown(value: float) -> str:
-        return tr("none") if math.isinf(value) else f"{_fixed(value, digits)} {unit}"
-
-    lines = [
-        (
-            study_name(study.name, words()),
-            tr("{n}, mean {mean}, s {s}", n=study.n, mean=shown(study.mean), s=shown(study.s)),
-        ),
-        (tr("limits"), tr("{lower} to {upper}", lower=shown(study.lower), upper=shown(study.upper))),
-    ]
-    if study.charts is not None:
-        names = (tr("X̄ chart"), tr("s chart")) if study.size > 1 else (tr("single values"), tr("moving range"))
-        for name, chart in zip(names, (study.charts.location, study.charts.spread), strict=True):
-            lower, centre, upper = map(shown, (chart.lower, chart.centre, chart.upper))
-            said = tr("centre {centre}, limits {lower} to {upper}", centre=centre, lower=lower, upper=upper)
-            lines.append((name, said))
-    for title, index in study.indices.items():
-        lines.append((title, _with_interval(_index(index.value), *map(_index, index.interval))))
-    if study.indices:
-        lines.append((tr("asked"), tr("Cpk and Ppk surely {limit} or more", limit=CAPABILITY)))
-    if study.share_of_u is not None:
-        low, high = map(_share, study.share_of_u)
-        lines.append((tr("measurement in s²"), tr("surely {low}, at most {high}", low=low, high=high)))
-    return lines
-
-
-def _index(value: float) -> str:
-    return "∞" if math.isinf(value) and value > 0 else _fixed(value, 2)
-
-
-def _with_interval(value: str, low: str, high: str) -> str:
-    return tr("{value} (95 %: {low} to {high})", value=value, low=low, high=high)
-
-
-def _share(value: float) -> str:
-    return spoken().number(value, ".1%")
-
-
-def _grr(study: GrrStudy) -> Rows:
-    p, o, r = study.values.shape
-    lines = [(tr("measured"), tr("parts {p} × operators {o} × repeats {r}", p=p, o=o, r=r))]
-    lines += [(f"ANOVA {told(row.source)}", _anova(row)) for row in (study.pooled_anova or study.anova)]
-    lines += [(told(one.source), _component(one, study.unit)) for one in study.components]
-    low, high = study.grr_interval
-    gauge = study.component("gauge R&R")
-    lines.append((tr("%GRR of total"), _with_interval(*map(_share, (gauge.of_total, low, high)))))
-    if study.tolerance_interval is not None and gauge.of_tolerance is not None:
-        low, high = study.tolerance_interval
-        said = _with_interval(*map(_share, (gauge.of_tolerance, low, high)))
-        said = tr("{share}, T = {tolerance:g} {unit}", share=said, tolerance=study.tolerance, unit=study.unit)
-        lines.append((tr("%GRR of T"), said))
-    low, high = study.ndc_interval
-    said = tr(
-        "{n} ({ndc}; 95 %: {low} to {high})",
-        n=str(study.categories or "∞"), ndc=_index(study.ndc), low=_index(low), high=_index(high),
-    )  # fmt: skip
-    lines.append(("ndc", said))
-    return lines
-
-
-def _anova(row: AnovaRow) -> str:
-    number = spoken().number
-    tested = "" if row.f is None or row.p is None else f", F {number(row.f, '.3g')}, p {number(row.p, '.3g')}"
-    mean = "" if math.isnan(row.ms) else f", MS {number(row.ms, '.4g')}"
-    return f"SS {number(row.ss, '.6g')}, ν {row.dof}{mean}{tested}"
-
-
-def _component(one: Component, unit: str) -> str:
-    of_tolerance = "" if one.of_tolerance is None else tr(", {share:.1%} of T", share=one.of_tolerance)
-    low, high = (math.sqrt(value) for value in one.variance_interval)
-    said = tr(
-        "σ {sigma:.4g} {unit} (95 %: {low:.3g} to {high:.3g}), {share:.1%} of total",
-        sigma=one.sigma, unit=unit, low=low, high=high, share=one.of_total,
-    )  # fmt: skip
-    return said + of_tolerance
-
-
-def _quantity(one: CheckedQuantity) -> Rows:
-    limit = tr("no limit") if one.limit is None else tr("limit {limit:g} mm", limit=one.limit)
-    positions = plural_message(
-        "cli.positions", "{n} position", "{n} positions", n=len({reading.position for reading in one.readings})
-    )
-    said = tr(
-        "{error} mm at {position}, {positions}, {limit}",
-        error=_fixed(one.largest_error, 4, signed=True), position=one.worst.position, positions=positions, limit=limit,
-    )  # fmt: skip
-    return [(told(one.title), said + (f": {tr(DECISIONS[one.verdict])}" if one.verdict else ""))]
+    return [(tr("study"), study_title(study, words())), *fact_rows(study_facts(study), study_tables(study))]

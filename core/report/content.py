@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from typing import Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +20,7 @@ from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
+from core.report.facts.of_studies import study_facts, study_tables
 from core.report.template import SECTIONS, Paper, ReportTemplate
 from core.report.wording import result_name
 from core.scan.features.frames import NO_REASON
@@ -28,6 +29,7 @@ from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.study.artefact_check import ArtefactCheck
 from core.study.repeats import RepeatStatistics, repeat_statistics
+from core.study.study import Study
 
 MOST_CALLOUTS = 10
 """On the picture of the surface; the table of results has all."""
@@ -204,7 +206,7 @@ class ReportContent:
     compared
         What a comparison with another scan or surface came to; None where none was made.
     studies
-        As study.json has them.
+        Studies of the way of measuring, and of series of parts.
     artefacts
         Known artefacts measured with these calibrations, each as nearest in time to this result.
     calibrations
@@ -267,7 +269,7 @@ class ReportContent:
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
     compared: Message | None = None
-    studies: tuple[Mapping[str, Any], ...] = ()
+    studies: tuple[Study, ...] = ()
     artefacts: tuple[ArtefactCheck, ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
@@ -364,7 +366,7 @@ class ReportContent:
         choices |= {
             "language": "" if self.language == "en" else self.language,
             "template": self.template.words,
-            "studies": self.studies,
+            "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
             "artefacts": self.artefacts,
             "compared": None if self.compared is None else str(self.compared),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import io
-import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from functools import partial
-from typing import Any
 
 import cv2
 from matplotlib.figure import Figure
@@ -24,7 +22,9 @@ from core.report.plots.charts import deviation_figure, points_figure
 from core.report.plots.overlay_plot import overlay_figure
 from core.report.plots.profile_plot import profiles_figure, section_figure
 from core.report.plots.run_chart import control_charts_figure, repeats_figure, run_chart_figure
-from core.report.sections.studies import study_charts, study_lines, study_values
+from core.report.sections.studies import control_charts, run_lines
+from core.study.repeats import RepeatStudy
+from core.study.study import InOrder
 
 SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM, CONTROL_MM, SECTION_MM = (
     104.0,
@@ -80,7 +80,7 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
     drawings |= {
         f"study-{number}": partial(_study_figure, look, study, width)
         for number, study in enumerate(content.studies)
-        if len(study_values(study)) > 1
+        if isinstance(study, InOrder) and len(study.values) > 1
     }
     section_of = {"study": "studies", "section": "sections"}
     hidden = content.hidden
@@ -91,11 +91,11 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
     }
 
 
-def _study_figure(look: ReportLook, study: Mapping[str, Any], width: float) -> Figure:
-    if charts := study_charts(study):
-        return control_charts_figure(look, charts, study["unit"], width, CONTROL_MM)
-    U = [scan["U"] if scan["U"] is not None else math.nan for scan in study.get("scans", ())]
-    return run_chart_figure(look, study_values(study), U, study_lines(study), study["unit"], width, CHART_MM)
+def _study_figure(look: ReportLook, study: InOrder, width: float) -> Figure:
+    if charts := control_charts(study):
+        return control_charts_figure(look, charts, study.unit, width, CONTROL_MM)
+    U = study.U.tolist() if isinstance(study, RepeatStudy) else ()
+    return run_chart_figure(look, study.values.tolist(), U, run_lines(study), study.unit, width, CHART_MM)
 
 
 def image(figure: Figure, *, photo: bool, decimal: str) -> ImageReader:

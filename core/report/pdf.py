@@ -17,6 +17,7 @@ from core.messages import capital
 from core.progress import Progress, StepProgress, silent
 from core.report.content import ReportContent
 from core.report.drawings import drawings, image
+from core.report.facts.of_studies import study_tables, study_title
 from core.report.layout.blocks import LEAST_SCALE, Limits
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
@@ -147,7 +148,9 @@ def _names(content: ReportContent) -> Iterator[str]:
     yield from (one.name for one in content.deviations)
     yield from (frame.name for frame in content.frames)
     yield from (*content.hashes, *content.points)
-    yield from (str(study.get("characteristic", "")) for study in content.studies)
+    for study in content.studies:
+        cells = (str(cell) for table in study_tables(study) for row in table.rows for cell in row)
+        yield from (study_title(study), *map(str, study.notes), *cells)
 
 
 def _most_pages(content: ReportContent) -> int:

@@ -214,9 +214,14 @@ class CheckedQuantity:
         return Verdict.worst(self.verdict_of(one) for one in self.readings)
 
     @property
+    def positions(self) -> int:
+        """How many there are; several readings may be of one."""
+        return len({one.position for one in self.readings})
+
+    @property
     def enough_positions(self) -> bool:
         """Whether there are as many positions as the guideline asks for."""
-        return len({one.position for one in self.readings}) >= POSITIONS[self.quantity]
+        return self.positions >= POSITIONS[self.quantity]
 
 
 @dataclass(frozen=True, slots=True)
@@ -236,8 +241,9 @@ class AcceptanceCheck:
         said = [PATTERN]
         for one in self.quantities:
             if not one.enough_positions:
-                count = len({reading.position for reading in one.readings})
-                said.append(note_of("study.few_positions", what=one.title, n=count, all=POSITIONS[one.quantity]))
+                said.append(
+                    note_of("study.few_positions", what=one.title, n=one.positions, all=POSITIONS[one.quantity])
+                )
             if one.limit is not None and not any(reading.u for reading in one.readings):
                 said.append(note_of("study.artefact_without_u", what=one.title))
         return tuple(said)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from core.messages import capital
-from core.report.facts.fact import Fact, Reader
+from core.report.facts.fact import Fact, Reader, heading
+from core.report.facts.table import FactTable
 from core.report.wording import Words
 from workbench.language import chosen, number
+from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRow, ValueRows
 
 
@@ -47,13 +48,23 @@ def wording() -> Words:
     return Words(chosen())
 
 
-def show_facts(rows: ValueRows, facts: Iterable[Fact]) -> None:
-    """Show the facts of a result: what a technician needs in sight, the rest folded."""
-    facts = tuple(facts)
+def show_facts(rows: ValueRows, facts: Iterable[Fact], tables: Iterable[FactTable] = ()) -> None:
+    """Show the facts of a result: what a technician needs in sight, the rest and each row of `tables` folded."""
+    facts, words = tuple(facts), wording()
     in_sight = [fact_row(fact) for fact in facts if fact.level == Reader.TECHNICIAN]
-    rows.set_rows(in_sight, [fact_row(fact) for fact in facts if fact.level > Reader.TECHNICIAN])
+    folded = [fact_row(fact) for fact in facts if fact.level > Reader.TECHNICIAN]
+    lines: list[ValueRow] = [(heading(name), text, "", "") for table in tables for name, text in table.lines(words)]
+    rows.set_rows(in_sight, folded + lines)
 
 
 def fact_row(fact: Fact) -> ValueRow:
     """One fact as a row."""
-    return capital(fact.title(wording())), fact.text(wording()), wording().known(fact.tip), fact.grade
+    words = wording()
+    return fact.heading(words), fact.text(words), words.known(fact.tip), fact.grade
+
+
+def show_table(shown: DataTable, table: FactTable) -> None:
+    """Show what is told in rows and columns, but for columns that a metrologist alone needs."""
+    words, table = wording(), table.for_reader(Reader.AUDITOR)
+    shown.set_headers([(heading(words.known(one.label)), one.unit, words.known(one.tip)) for one in table.columns])
+    shown.set_rows(table.texts(words))

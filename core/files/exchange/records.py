@@ -17,6 +17,7 @@ from core.inspect.uncertainty.coverage import effective_dof
 from core.messages import Message
 from core.report.content import ReportContent
 from core.report.facts.fact import Fact
+from core.report.facts.of_studies import study_facts, study_tables, study_title
 
 Row = Mapping[str, Any]
 
@@ -68,6 +69,15 @@ def fact_row(of: str, fact: Fact) -> dict[str, Any]:
         "unit": fact.unit,
         "level": int(fact.level),
     }
+
+
+def study_rows(content: ReportContent) -> list[dict[str, Any]]:
+    """All that is told of the studies, what stands in tables value by value: FACT_COLUMNS."""
+    return [
+        fact_row(study_title(study), fact)
+        for study in content.studies
+        for fact in (*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts()))
+    ]
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:

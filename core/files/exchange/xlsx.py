@@ -1,4 +1,4 @@
-"""The results as a workbook for the office: sheets result, budget, frames, settings. The same bytes every time."""
+"""The results as a workbook for the office: sheets result, budget, studies, frames, settings; always the same bytes."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from openpyxl.worksheet.worksheet import Worksheet
 from core.files.atomic import write_bytes
 from core.files.exchange.records import (
     BUDGET_COLUMNS,
+    FACT_COLUMNS,
     FRAME_COLUMNS,
     RESULT_COLUMNS,
     as_table,
@@ -25,6 +26,7 @@ from core.files.exchange.records import (
     frame_rows,
     result_row,
     setting_rows,
+    study_rows,
 )
 from core.report.content import ReportContent
 
@@ -35,7 +37,7 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_xlsx(path: Path, content: ReportContent) -> None:
-    """Write result, uncertainty budgets, frames and settings, each on a sheet of its own, numbers in full.
+    """Write result, uncertainty budgets, studies, frames and settings, each on a sheet of its own, numbers in full.
 
     Raises
     ------
@@ -48,6 +50,7 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     tables: dict[str, Sequence[Sequence[Any]]] = {
         "result": as_table(RESULT_COLUMNS, [result_row(one) for one in content.characteristics]),
         "budget": as_table(BUDGET_COLUMNS, budgets),
+        **({"studies": as_table(FACT_COLUMNS, study_rows(content))} if content.studies else {}),
         "frames": as_table(FRAME_COLUMNS, frame_rows(content)),
         "settings": [["name", "value"], *setting_rows(content)],
     }

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import asdict
 from pathlib import Path
-from typing import Annotated, Any, Literal, TypeAlias
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import Field
@@ -25,9 +25,8 @@ from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
 from core.study.series import SeriesStudy, StatedUncertainty, series_study
 from core.study.series_chart import Chart
+from core.study.study import Study, kind_of
 from core.study.type1 import Type1Study, type1_study
-
-Study: TypeAlias = RepeatStudy | Type1Study | GrrStudy | AcceptanceCheck | SeriesStudy
 
 SCHEMA = 1
 """Version of the file's layout."""
@@ -52,16 +51,16 @@ def study_values(study: Study) -> dict[str, Any]:
     """A study by the names of study.json; what is infinite or not known becomes null there."""
     match study:
         case RepeatStudy():
-            values = {"kind": "repeats", **_repeats(study)}
+            values = _repeats(study)
         case Type1Study():
-            values = {"kind": "type1", **_type1(study)}
+            values = _type1(study)
         case GrrStudy():
-            values = {"kind": "grr", **_grr(study)}
+            values = _grr(study)
         case AcceptanceCheck():
-            values = {"kind": "acceptance", "unit": "mm", "quantities": [_quantity(one) for one in study.quantities]}
+            values = {"unit": "mm", "quantities": [_quantity(one) for one in study.quantities]}
         case SeriesStudy():
-            values = {"kind": "series", **_series(study)}
-    return {**values, "verdict": study.verdict, "notes": [kept(note) for note in study.notes]}
+            values = _series(study)
+    return {"kind": kind_of(study), **values, "verdict": study.verdict, "notes": [kept(note) for note in study.notes]}
 
 
 def _repeats(study: RepeatStudy) -> dict[str, Any]:

@@ -32,7 +32,7 @@ from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
 from core.files.study.study_file import NAME as STUDY
-from core.files.study.study_file import read_study, study_values
+from core.files.study.study_file import read_study
 from core.image.display import in_8_bit
 from core.image.stripes.centreline import Centreline
 from core.inspect.plan.feature_spec import Deviation
@@ -370,7 +370,7 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
 
 def with_studies(content: ReportContent, paths: Sequence[Path]) -> ReportContent:
     """The content with the studies in `paths`, each a study.json or its folder; InputError if one cannot be read."""
-    read = tuple(study_values(read_study(path / STUDY if path.is_dir() else path)) for path in paths)
+    read = tuple(read_study(path / STUDY if path.is_dir() else path) for path in paths)
     return replace(content, studies=(*content.studies, *read)) if read else content
 
 

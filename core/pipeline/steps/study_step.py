@@ -17,7 +17,7 @@ from core.files.project.folder import is_project, read_project, results_folder
 from core.files.reading import read_bytes, read_text
 from core.files.study.input import Repeats, crossed_of, readings_of, repeats_of
 from core.files.study.results import measured_in
-from core.files.study.study_file import STUDIES, Study, read_study, study_path, study_values, write_study
+from core.files.study.study_file import STUDIES, read_study, study_path, study_values, write_study
 from core.files.study.table import separator_of, table_of
 from core.messages import Message, label
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
@@ -26,6 +26,7 @@ from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
 from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import THICKNESS
 from core.study.series import SeriesStudy, series_study, stated_uncertainty
+from core.study.study import Study, kind_of
 from core.study.type1 import Type1Study, type1_study
 
 Kind = Literal["grr", "acceptance", "series"]
@@ -205,7 +206,7 @@ def _kept(folder: Path, study: Study, table: str) -> KeptStudy:
     write_study(path.parent, study)
     head = next(line for line in table.splitlines() if line.strip() and not line.lstrip().startswith("#"))
     write_text(path.with_name(TABLE), harmless_table(table, separator_of(head)))
-    return KeptStudy(id_, str(study_values(study)["kind"]), _title(study))
+    return KeptStudy(id_, kind_of(study), _title(study))
 
 
 def _series(found: Repeats, limits: Mapping[str, float], name: str) -> SeriesStudy:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from enum import IntEnum
 from typing import Literal, TypeAlias
 
-from core.messages import Message
+from core.messages import Message, capital
 from core.report.wording import Words, grouped
 
 Grade: TypeAlias = Literal["", "good", "warn", "bad"]
@@ -34,11 +34,11 @@ class Fact:
     label
         What it is called: fixed words, in small letters where they are no name.
     value
-        A number in `unit`, a share in %, or words.
+        A number in `unit`, a share in %, or words; a name that people gave is a `plain` message, which stays as it is.
     unit
         "mm", "px", "°", "%"; "" for a pure number and for words.
     digits
-        Decimals of a real number; None: as it was stated.
+        Decimals of a real number; None: as it was stated, or `significant`.
     tip
         What it means, and how it is made; a whole sentence without its full stop.
     level
@@ -51,6 +51,8 @@ class Fact:
         Whether a positive number has its sign.
     grade
         Whether it is good.
+    significant
+        Digits of a real number whose size is not known beforehand, as of a probability.
     """
 
     label: str | Message
@@ -63,11 +65,16 @@ class Fact:
     interval: tuple[float, float] | None = None
     signed: bool = False
     grade: Grade = ""
+    significant: int | None = None
 
     def title(self, words: Words) -> str:
         """What it is called, with the coverage of its interval: 'Cg (95 %)'."""
         label = words.known(self.label)
         return label if self.interval is None else words("{quantity} (95 %)", quantity=label)
+
+    def heading(self, words: Words) -> str:
+        """The same at the head of a row."""
+        return heading(self.title(words))
 
     def text(self, words: Words) -> str:
         r"""Value, uncertainty, unit and interval in the reader's language.
@@ -82,7 +89,7 @@ class Fact:
         if self.value is None:
             return words("not known")
         if isinstance(self.value, (str, Message)):
-            return words.known(self.value)
+            return words(self.value)
         said = self._number(self.value, words)
         if self.sd is not None:
             said = f"{said} ± {self._number(self.sd, words, signed=False)}"
@@ -99,7 +106,20 @@ class Fact:
             return words.numeral(f"{value:+d}") if signed else grouped(value)
         if math.isinf(value):
             return "∞" if value > 0 else words.numeral("-∞")
+        if self.significant is not None:
+            value = float(f"{value:.{self.significant}g}")
         return words.general(value) if self.digits is None else words.fixed(value, self.digits, signed=signed)
+
+
+def heading(name: str) -> str:
+    """What a row or a column is called at its head: with a capital, but for a symbol, which is a letter alone.
+
+    Examples
+    --------
+    >>> heading("largest error"), heading("s (n − 1)")
+    ('Largest error', 's (n − 1)')
+    """
+    return name if len(name.partition(" ")[0]) == 1 else capital(name)
 
 
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:

@@ -14,6 +14,7 @@ from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Table, TableStyle
 
 from core.report.facts.fact import Fact, Reader, for_reader
+from core.report.facts.table import FactTable, tables_for_reader
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, ReportLook, color
 from core.report.wording import grouped
@@ -230,18 +231,37 @@ def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flow
     return [look.say("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
 
 
-def figures(look: ReportLook, facts: Mapping[str, str]) -> Table:
-    """Values below their names, six a row."""
-    names = list(facts)
+def figures(look: ReportLook, facts: Iterable[Fact]) -> Table:
+    """What an auditor reads of a result: values with units below their names, six a row."""
+    words, told = look.words, for_reader(facts, Reader.AUDITOR)
     rows: list[list[Cell]] = []
-    for start in range(0, len(names), 6):
-        shown = names[start : start + 6]
+    for start in range(0, len(told), 6):
+        shown = told[start : start + 6]
         padding = [look.text("")] * (6 - len(shown))
-        rows.append([*(look.text(name, "label") for name in shown), *padding])
-        rows.append([*(look.text(facts[name], "small_strong") for name in shown), *padding])
+        rows.append([*(look.text(fact.title(words), "label") for fact in shown), *padding])
+        rows.append([*(look.text(fact.text(words), "small_strong") for fact in shown), *padding])
     return plain_table(rows, [TEXT_WIDTH / 6] * 6)
 
 
-def told(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
-    """What an auditor reads of a result: value with unit by what it is called."""
-    return {fact.title(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}
+def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Table]:
+    """What an auditor reads of a result in rows and columns."""
+    return [_fact_table(look, table) for table in tables_for_reader(tables, Reader.AUDITOR)]
+
+
+def _fact_table(look: ReportLook, table: FactTable) -> Table:
+    """Numbers stand to the right, below their names with the units."""
+    words, places = look.words, range(len(table.columns))
+    numeric = [place for place in places if any(isinstance(row[place], (int, float)) for row in table.rows)]
+    names = [(words.known(column.label), column.unit) for column in table.columns]
+    head = [
+        look.text(words.in_unit(name, unit) if unit else name, "head_number" if place in numeric else "head")
+        for place, (name, unit) in enumerate(names)
+    ]
+    body = [
+        [look.text(cell, "number" if place in numeric else "small") for place, cell in enumerate(cells)]
+        for cells in table.texts(words)
+    ]
+    widths = [TEXT_WIDTH * (0.14 if place else 0.3) for place in places]
+    made = ruled_table([head, *body], widths)
+    made.setStyle([("LEFTPADDING", (place, 0), (place, -1), 6) for place in places[1:] if place not in numeric])
+    return made

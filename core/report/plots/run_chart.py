@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -15,6 +14,7 @@ from core.report.content import RepeatLine
 from core.report.layout.style import INK, MUTED, ReportLook
 from core.report.plots.figures import DPI, MM_PER_INCH, mixed, new_figure, plot_style
 from core.study.repeats import histogram
+from core.study.series_chart import Chart
 
 LEFT_MM, WORDS_MM, HISTOGRAM_MM = 15.0, 34.0, 22.0
 """Room for the axis, for the words beside the lines, and for the histogram."""
@@ -83,15 +83,15 @@ def run_chart_figure(
 
 
 def control_charts_figure(
-    look: ReportLook, charts: Mapping[str, Mapping[str, Any]], unit: str, width_mm: float, height_mm: float
+    look: ReportLook, charts: Mapping[str, Chart], unit: str, width_mm: float, height_mm: float
 ) -> Figure:
-    """Control charts one above the other, by what their points are called, each as study.json has it.
+    """Control charts one above the other, by what their points are called.
 
     A point that breaks a rule is a cross, with the rules' numbers beside it. A moving range stands at its second value.
     """
     with plot_style():
         figure = new_figure(width_mm, height_mm)
-        each, count = height_mm / len(charts), max(len(chart["points"]) for chart in charts.values())
+        each, count = height_mm / len(charts), max(len(chart.points) for chart in charts.values())
         for place, (name, chart) in enumerate(charts.items()):
             last = place == len(charts) - 1
             foot, height = (len(charts) - 1 - place) * each + (9 if last else 5), each - (11 if last else 7)
@@ -103,13 +103,13 @@ def control_charts_figure(
     return figure
 
 
-def _control_chart(look: ReportLook, axes: Axes, chart: Mapping[str, Any], count: int) -> None:
-    values = np.asarray(chart["points"])
+def _control_chart(look: ReportLook, axes: Axes, chart: Chart, count: int) -> None:
+    values = chart.points
     numbers = np.arange(count - len(values), count) + 1
     rules: dict[int, list[str]] = {}
-    for one in chart["breaks"]:
-        rules.setdefault(one["place"], []).append(str(one["rule"]))
-    steady = np.array([place not in rules for place in range(len(values))])
+    for one in chart.breaks:
+        rules.setdefault(one.place, []).append(str(one.rule))
+    steady = np.array([place not in chart.breaking for place in range(len(values))])
     axes.plot(numbers, values, "-", color=look.accent, lw=0.6)
     axes.plot(numbers[steady], values[steady], "o", color=look.accent, ms=3, zorder=4)
     axes.plot(numbers[~steady], values[~steady], "x", color=INK, ms=5, mew=1.2, zorder=5)
@@ -123,9 +123,9 @@ def _control_chart(look: ReportLook, axes: Axes, chart: Mapping[str, Any], count
     axes.yaxis.set_major_locator(MaxNLocator(4))
     axes.spines[["top", "right"]].set_visible(False)
     lines = {
-        label("mean"): chart["centre"],
-        label("upper control limit"): chart["upper"],
-        label("lower control limit"): chart["lower"],
+        label("mean"): chart.centre,
+        label("upper control limit"): chart.upper,
+        label("lower control limit"): chart.lower,
     }
     _lines(look, axes, axes, lines)
 

@@ -3,29 +3,24 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple
 
 from core.files.csv_text import harmless
 from core.files.project.data import Repeat
 from core.messages import capital
+from core.report.facts.fact import Fact
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
-from core.states import DECISIONS, SPREAD
-from core.study.repeats import RepeatStatistics
-from workbench.language import number, text_of, time_of, tr
+from workbench.language import text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
-from workbench.views.colours import Level
 from workbench.views.lists.value_rows import ValueRow, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.result_list import ResultList
     from core.inspect.results import GaugeResult
     from core.inspect.shown.view_frame import ViewFrame
-    from core.study.type1 import Type1Study
-
-CAPABLE = "capable"
-"""The verdict of `core.study.type1` on a gauge that suffices."""
 
 
 def thickness(gauge: GaugeResult) -> str:
@@ -92,58 +87,6 @@ def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
     return [*rows, (tr("u, all together"), f"{wording().fixed(gauge.u_mm, decimals)} mm", together, "")]
 
 
-def statistics_rows(statistics: RepeatStatistics, nominal_mm: float | None) -> list[ValueRow]:
-    """Mean, error, RMSE, STD and largest error of the repeats."""
-    unknown = tr("needs a nominal value")
-
-    def mm(value: float | None, *, signed: bool = False) -> str:
-        return unknown if value is None else f"{wording().fixed(value, 4, signed=signed)} mm"
-
-    std = f"{wording().fixed(statistics.std_mm, 4)} mm" if statistics.n > 1 else tr("needs two repeats")
-    rows: list[ValueRow] = [
-        (tr("Repeats"), str(statistics.n), tr("Scans in the series"), ""),
-        (tr("Mean"), f"{wording().fixed(statistics.mean_mm, 4)} mm", tr("Mean of all repeats"), ""),
-        (
-            tr("Bias"),
-            mm(statistics.error_mm, signed=True),
-            tr("Mean less the nominal value")
-            if nominal_mm is None
-            else tr("Mean less the nominal value of {nominal:g} mm", nominal=nominal_mm),
-            "",
-        ),
-        (tr("RMSE"), mm(statistics.rmse_mm), tr("Root mean square of the single errors"), ""),
-        (tr(SPREAD), std, tr("Standard deviation of one repeat about the mean (over n − 1)"), ""),
-        (tr("Largest error"), mm(statistics.largest_error_mm), tr("Largest magnitude of a single error"), ""),
-    ]
-    return rows
-
-
-def type1_rows(study: Type1Study) -> list[ValueRow]:
-    """Bias, Cg and Cgk of a type-1 study, and whether they suffice."""
-    level: Level = "good" if study.verdict == CAPABLE else "bad"
-    low, high = (wording().fixed(end, 2) for end in study.cg_interval)
-    lasts = wording().fixed(study.smallest_tolerance, 4)
-    return [
-        (tr("Type-1 study"), tr(DECISIONS[study.verdict]), tr("Capable if Cg and Cgk are 1.33 or more"), level),
-        (
-            tr("Tolerance T"),
-            f"{number(study.tolerance, 'g')} mm",
-            tr("Full width: twice the ± tolerance of the thickness"),
-            "",
-        ),
-        (
-            tr("Cg"),
-            wording().fixed(study.cg, 2),
-            tr("0.2 T / (6 s); 95 % interval {low} to {high}", low=low, high=high),
-            "",
-        ),
-        (tr("Cgk"), wording().fixed(study.cgk, 2), tr("(0.1 T − |bias|) / (3 s)"), ""),
-        (tr("Bias"), f"{wording().fixed(study.bias, 4, signed=True)} mm", tr("Mean less the reference value"), ""),
-        (tr("p of the bias"), f"{study.p:.2g}", tr("t-test: how probable a bias as large is without any"), ""),
-        (tr("Smallest T"), f"{lasts} mm", tr("Smallest tolerance for which Cgk reaches 1.33"), ""),
-    ]
-
-
 class RepeatRow(NamedTuple):
     """A repeat in the list, in words."""
 
@@ -167,10 +110,8 @@ def repeat_row(repeat: Repeat) -> RepeatRow:
     )
 
 
-def repeats_tsv(
-    repeats: tuple[Repeat, ...], statistics: RepeatStatistics | None, study: Type1Study | None = None
-) -> str:
-    """The series as text with tabs, all digits kept, for a spreadsheet."""
+def repeats_tsv(repeats: tuple[Repeat, ...], *told: Iterable[Fact]) -> str:
+    """The series as text with tabs, and what is `told` of it, all digits kept, for a spreadsheet."""
     lines = [[tr("scan"), tr("thickness [mm]"), "U [mm]", "k", tr("calibration"), tr("measured at")]]
     lines += [
         [
@@ -183,20 +124,20 @@ def repeats_tsv(
         ]
         for repeat in repeats
     ]
-    if statistics is not None:
-        named = (
-            (tr("mean [mm]"), statistics.mean_mm),
-            (tr("error of the mean [mm]"), statistics.error_mm),
-            ("RMSE [mm]", statistics.rmse_mm),
-            (f"{tr(SPREAD)} [mm]", statistics.std_mm),
-            (tr("largest error [mm]"), statistics.largest_error_mm),
-        )
-        lines += [[]] + [[name, f"{value:.6f}"] for name, value in named if value is not None and not math.isnan(value)]
-    if study is not None:
-        lines += [[], [tr("type-1 study"), study.verdict], [tr("tolerance T [mm]"), f"{study.tolerance:.6f}"]]
-        lines += [["Cg", f"{study.cg:.6f}"], ["Cgk", f"{study.cgk:.6f}"]]
-        lines += [[tr("bias [mm]"), f"{study.bias:.6f}"], [tr("p of the bias"), f"{study.p:.6g}"]]
+    for facts in told:
+        lines += [[], *([_with_unit(fact), _in_full(fact)] for fact in facts)]
     return "\n".join("\t".join(line) for line in lines) + "\n"
+
+
+def _with_unit(fact: Fact) -> str:
+    name = wording().known(fact.label)
+    return f"{name} [{fact.unit}]" if fact.unit else name
+
+
+def _in_full(fact: Fact) -> str:
+    if not isinstance(fact.value, float):
+        return fact.text(wording())
+    return f"{fact.value:.10g}" if fact.digits is None else f"{fact.value:.6f}"
 
 
 def short_id(calibration_id: str) -> str:

@@ -2,16 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from PySide6.QtCore import Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QSizePolicy, QSplitter, QWidget
 
 from core.files.project.data import Repeat
+from core.report.facts.fact import Fact
+from core.report.facts.of_studies import repeat_facts, study_facts
+from core.study.study import KINDS
 from workbench.language import text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
+from workbench.pages.words import show_facts
 from workbench.theme import icon
-from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, in_column, in_row, muted, say
+from workbench.views.layouts import STRETCH, Folding, Tabs, UpAndDown, enable, heading, in_column, in_row, muted, say
 from workbench.views.lists.data_table import DataTable
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.runs import Histogram, RunChart
@@ -34,6 +40,7 @@ class RepeatsTab(QWidget):
         self.table, self.chart, self.words = DataTable(), RunChart(), muted()
         self.rows = ValueRows(least_width=ROWS_PX)
         self.histogram, self.type1, self.type1_words = Histogram(), ValueRows(), muted()
+        self.type1_title = heading(tr(KINDS["type1"]))
         self.table.set_headers(
             [
                 (tr("Scan"), ""),
@@ -62,7 +69,7 @@ class RepeatsTab(QWidget):
         self.charts.add(self.histogram, tr("Histogram"))
         self.charts.setMinimumSize(*CHART_PX)
         self.charts.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)  # as high as there is room
-        numbers = in_column(self.rows, self.type1, self.type1_words, STRETCH, margins=(0, 6, 0, 0))
+        numbers = in_column(self.rows, self.type1_title, self.type1, self.type1_words, STRETCH, margins=(0, 6, 0, 0))
         self.below = UpAndDown(Folding(in_row(self.charts, margins=(0, 6, 0, 0)), numbers, spacing=14))
         split = QSplitter(Qt.Orientation.Vertical)
         split.addWidget(above)
@@ -89,7 +96,7 @@ class RepeatsTab(QWidget):
             self.histogram.clear(tr("There are no repeats yet."))
             self.chart.clear(tr("Two scans or more of the same part show how well the measurement repeats."))
             return
-        self.rows.set_rows(words.statistics_rows(statistics, spec.nominal_mm))
+        show_facts(self.rows, self._facts())
         self.chart.set_runs(
             [repeat.thickness_mm for repeat in repeats.all],
             [repeat.U_mm for repeat in repeats.all],
@@ -107,12 +114,21 @@ class RepeatsTab(QWidget):
             [repeat.thickness_mm for repeat in repeats.all], label=tr("thickness"), unit="mm", limits=limits
         )
 
+    def _facts(self) -> Sequence[Fact]:
+        statistics = self._repeats.statistics()
+        return () if statistics is None else repeat_facts(statistics, nominal=self._repeats.spec.nominal_mm)
+
+    def _of_type1(self) -> Sequence[Fact]:
+        study = self._repeats.type1
+        return () if study is None else study_facts(study)
+
     def _show_type1(self) -> None:
         """The study where there can be one; else what it needs, as soon as there is a repeat."""
         repeats = self._repeats
         repeats.study()
         study = repeats.type1
-        self.type1.set_rows([] if study is None else words.type1_rows(study))
+        self.type1_title.setVisible(study is not None)
+        show_facts(self.type1, self._of_type1())
         said = repeats.no_type1 if study is None else "\n".join(map(text_of, study.notes))
         say(self.type1_words, said if repeats.all else "")
 
@@ -141,4 +157,4 @@ class RepeatsTab(QWidget):
 
     def _copy(self) -> None:
         repeats = self._repeats
-        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, repeats.statistics(), repeats.type1))
+        QGuiApplication.clipboard().setText(words.repeats_tsv(repeats.all, self._facts(), self._of_type1()))

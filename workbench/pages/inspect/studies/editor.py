@@ -5,8 +5,8 @@ from __future__ import annotations
 from PySide6.QtGui import QFontDatabase
 from PySide6.QtWidgets import QLabel, QPlainTextEdit, QPushButton, QVBoxLayout, QWidget
 
+from core.study.study import KINDS
 from workbench.language import tr
-from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.studies import HEADS, LIMITS, Draft, InspectStudies
 from workbench.theme import icon, shades
 from workbench.views import ask
@@ -67,7 +67,7 @@ class StudyEditor(QWidget):
         studies, draft = self._studies, self._studies.draft
         if draft is None:
             return
-        self.title.setText(words.kind_title(draft.kind))
+        self.title.setText(tr(KINDS[draft.kind]))
         self.help.setText(self._help(draft))
         head = self.text.fontMetrics().horizontalAdvance(HEADS[draft.kind].strip())
         self.text.setMinimumWidth(min(head, MOST_HEAD_PX) + BESIDE_PX)

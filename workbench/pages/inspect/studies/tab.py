@@ -15,10 +15,13 @@ from PySide6.QtWidgets import (
 )
 
 from core.files.project.data import KeptStudy
+from core.report.facts.of_studies import study_facts, study_tables
+from core.study.study import KINDS
 from workbench.language import named, text_of, tr
 from workbench.pages.inspect.studies import words
 from workbench.pages.inspect.studies.editor import StudyEditor
 from workbench.pages.inspect.studies.studies import InspectStudies
+from workbench.pages.words import show_facts, show_table
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.layouts import STRETCH, Folding, UpAndDown, enable, in_column, in_row, muted
@@ -171,9 +174,10 @@ class StudiesTab(QWidget):
         studies = self._studies
         kept = next((one for one in studies.all if one.id == studies.chosen), None)
         study = None if kept is None else studies.study
-        for widget in (self.title, self.table, self.rows, self.notes):
+        for widget in (self.title, self.rows, self.notes):
             widget.setVisible(study is not None)
-        shown = () if kept is None or study is None else words.charts(kept.kind, study)
+        self.table.setVisible(study is not None and bool(study_tables(study)))
+        shown = () if study is None else words.charts(study)
         for number, chart in enumerate(self.charts):
             chart.setVisible(number < len(shown))
         if kept is None or study is None or study is self._shown_study:
@@ -181,11 +185,12 @@ class StudiesTab(QWidget):
         self._shown_study = study
         for chart, one in zip(self.charts, shown, strict=False):
             chart.set_values(one.values, one.good, one.tips, one.limits, axes=one.axes, unit=study.unit)
-        headers, body = words.table(kept.kind, study)
-        self.title.setText(named(words.kind_title(kept.kind), text_of(kept.title)))
-        self.rows.set_rows(words.rows(kept.kind, study))
-        self.table.set_headers(headers)
-        self.table.set_rows(body)
+        self.title.setText(named(tr(KINDS[kept.kind]), text_of(kept.title)))
+        first, others = study_tables(study)[:1], study_tables(study)[1:]
+        show_facts(self.rows, study_facts(study), others)
+        self.table.setVisible(bool(first))
+        for table in first:
+            show_table(self.table, table)
         self.table.show_rows(MOST_IN_SIGHT)
         self._fit_table()
         self.notes.setText("\n".join(map(text_of, study.notes)))
@@ -208,4 +213,4 @@ class StudiesTab(QWidget):
 
 def _row_of(study: KeptStudy) -> TreeRow:
     title, tip = text_of(study.title), tr("Ticked studies are printed in the report")
-    return TreeRow(study.id, (Cell(words.kind_title(study.kind), tip, ticked=study.included), Cell(title, title)))
+    return TreeRow(study.id, (Cell(tr(KINDS[study.kind]), tip, ticked=study.included), Cell(title, title)))

@@ -1,0 +1,101 @@
+"""What is told of a result in rows and columns: made once, drawn by terminal, window, PDF and XLSX."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+from core.messages import Message
+from core.report.facts.fact import Fact, Reader, Value
+from core.report.wording import Words
+
+
+@dataclass(frozen=True, slots=True)
+class Column:
+    """What the values of a column are: the fields of a `Fact` but its value."""
+
+    label: str | Message
+    unit: str = ""
+    digits: int | None = None
+    tip: str | Message = ""
+    level: Reader = Reader.TECHNICIAN
+    significant: int | None = None
+    signed: bool = False
+
+    def fact(self, value: Value) -> Fact:
+        """One of its values."""
+        return Fact(
+            self.label, value, self.unit, self.digits, self.tip, self.level,
+            significant=self.significant, signed=self.signed,
+        )  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class FactTable:
+    """What is told in rows and columns.
+
+    Parameters
+    ----------
+    columns
+        The first one names the rows.
+    rows
+        A value for each column; None: it has none.
+    title
+        Parts the names of its rows from those of another table of the same result; "" where there is none.
+    level
+        Whom it is for.
+    """
+
+    columns: tuple[Column, ...]
+    rows: tuple[tuple[Value, ...], ...]
+    title: str = ""
+    level: Reader = Reader.TECHNICIAN
+
+    def for_reader(self, reader: Reader) -> FactTable:
+        """The columns that a reader is told."""
+        places = [place for place, column in enumerate(self.columns) if column.level <= reader]
+        rows = tuple(tuple(row[place] for place in places) for row in self.rows)
+        return replace(self, columns=tuple(self.columns[place] for place in places), rows=rows)
+
+    def texts(self, words: Words) -> list[list[str]]:
+        """The cells of each row without their units, which stand in the heads; "" where there is no value."""
+        return [
+            [
+                "" if value is None else replace(column.fact(value), unit="").text(words)
+                for column, value in zip(self.columns, row, strict=True)
+            ]
+            for row in self.rows
+        ]
+
+    def lines(self, words: Words) -> list[tuple[str, str]]:
+        """Each row in one line: its name, and its values with what they are called, 'σ 0.306 mm, of T 22.7 %'."""
+        return [(self._name(row, words), words.joined(self._said(row, words))) for row in self.rows]
+
+    def facts(self) -> tuple[Fact, ...]:
+        """Each value by itself, called by its row and its column in English: 'gauge R&R: σ'."""
+        english = Words()
+        return tuple(
+            replace(column.fact(value), label=f"{self._name(row, english)}: {column.label}", level=self._level(column))
+            for row in self.rows
+            for column, value in zip(self.columns[1:], row[1:], strict=True)
+            if value is not None
+        )
+
+    def _level(self, column: Column) -> Reader:
+        return max(self.level, column.level)
+
+    def _name(self, row: tuple[Value, ...], words: Words) -> str:
+        name = self.columns[0].fact(row[0]).text(words)
+        return words("{name}: {value}", name=words(self.title), value=name) if self.title else name
+
+    def _said(self, row: tuple[Value, ...], words: Words) -> list[str]:
+        return [
+            f"{words.known(column.label)} {column.fact(value).text(words)}"
+            for column, value in zip(self.columns[1:], row[1:], strict=True)
+            if value is not None
+        ]
+
+
+def tables_for_reader(tables: Iterable[FactTable], reader: Reader) -> tuple[FactTable, ...]:
+    """The tables that a reader is told, with the columns that are for this reader."""
+    return tuple(table.for_reader(reader) for table in tables if table.level <= reader)
