@@ -48,7 +48,8 @@ NAMES = (
     "set.channel_red*", "source.aravis*", "source.basler*", "source.device", "source.first_camera", "source.folder",
     "source.folder_help", "source.folder_usual", "source.genicam*", "source.opencv*", "source.region", "source.replay*",
     "source.scene*", "source.simulated", "source.simulated_help", "study.after_the_guideline", "study.flatness_error",
-    "study.its_columns", "study.nearest_column", "study.probing_*", "study.sphere_spacing", "surface.where_*",
+    "study.its_columns", "study.nearest_column", "study.probing_*", "study.sphere_spacing", "study.tip_*",
+    "surface.where_*",
     "target.board", "target.poses", "target.print_to_size", "target.target", "target.views", "window.another_*",
     "window.elsewhere", "window.profile_tilt", "window.results_folder",
 )  # fmt: skip

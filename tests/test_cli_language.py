@@ -243,5 +243,5 @@ def test_json_is_the_same_in_every_language(simulated, measured, tmp_path):
 def test_a_name_of_ones_own_is_not_translated_though_the_catalogue_has_the_word(tmp_path, name, shown):
     (tmp_path / "repeats.csv").write_text("value;u_mm\n50.01;0.01\n50.02;0.01\n49.99;0.01\n")
     said = trisect("study", "repeats", tmp_path / "repeats.csv", "--characteristic", name, "--language", "de")
-    assert said.out.split()[0] == shown, said.out
+    assert said.out.splitlines()[0].split(": ")[1].strip() == shown, said.out
     assert language.told("files") == "Dateien"

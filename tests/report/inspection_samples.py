@@ -59,9 +59,7 @@ def characteristics():
 
 
 def studies():
-    """As study.json has them, by the functions that write it."""
-    from core.files.study.study_file import study_values
-
+    """One of each kind."""
     rng = np.random.default_rng(4)
     values = 50.0 + rng.normal(0.002, 0.004, 25)
     parts = 49.9 + 0.05 * rng.standard_normal((5, 1, 1)) + 0.002 * rng.standard_normal((5, 3, 2))
@@ -72,14 +70,13 @@ def studies():
     series[25] += 0.06
     readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place) for place in range(10)]
     readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
-    made = (
+    return (
         type1_study(values, 50.0, 0.4),
         grr_study(parts, tolerance=0.4),
         series_study(series, (49.9, 50.1), stated=StatedUncertainty(0.003, 0.006), name="width"),
         repeat_study(repeated, budget, **known),
         acceptance_check(readings, {"form": 0.05, "size": 0.012}),
     )
-    return tuple(study_values(study) for study in made)
 
 
 def logo():

@@ -167,13 +167,13 @@ def test_names_of_ones_own_stay_as_they_are_though_the_catalogue_has_the_words(c
 
 def test_studies_are_printed_with_figures_and_notes(data):
     text = words(data)
-    assert "Type-1 gauge study n reference value T mean s (n − 1) bias 25 50.0000 mm 0.4000 mm" in text
-    assert "Gauge R&R (ANOVA) Source of variation σ, mm share of σ², % of the total, % of T, %" in text
-    assert "%GRR of the total %GRR of T ndc verdict" in text
+    assert "Type-1 study verdict Cg (95 %) Cgk bias (95 %) s (n − 1) repeats" in text
+    assert "source of variation σ, mm share of σ², % of the total, % of T, %" in text
+    assert "Gauge R&R verdict %GRR of T (95 %) %GRR of the total (95 %) categories (ndc)" in text
     assert "is pooled with the error" in text
-    assert "Repeats of thickness n mean error RMSE s (n − 1) largest error 12 50.00" in text
-    assert "U of the mean verdict 0.0" in text
-    assert "Quantity positions largest error, mm at limit, mm verdict" in text
+    assert "Repeats: thickness verdict repeats mean s (n − 1) nominal bias conforming 12 50.00" in text
+    assert "contribution to U of the mean u, mm share of u², %" in text
+    assert "quantity positions largest error, mm at limit, mm verdict" in text
     assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text
     assert "probing error, size 4 +0.0100 p0 0.012 conforming" in text
     assert "4 of the 10 positions the guideline asks for" in text

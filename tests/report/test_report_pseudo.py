@@ -7,6 +7,8 @@ import pytest
 from pypdf import PdfReader
 
 from core.report.pdf import build_report
+from core.study.repeats import RepeatStudy
+from core.study.series import SeriesStudy
 from core.translations import PSEUDO
 
 from .inspection_samples import whole_content
@@ -55,10 +57,7 @@ def spoken(content):
     texts += [str(row.source) for one in content.inspected for row in one.budget] + [
         one.name for one in content.deviations
     ]
-    for study in content.studies:
-        texts += [str(study.get("characteristic", "")), str(study.get("verdict", "")), *map(str, study["notes"])]
-        texts += [str(one["source"]) for one in study.get("components", ())]
-        texts += [str(one[key]) for one in study.get("quantities", ()) for key in ("title", "verdict")]
+    texts += [one.name for one in content.studies if isinstance(one, RepeatStudy | SeriesStudy)]
     return {word.casefold() for text in texts for word in re.findall(r"[^\W\d_]+", text)}
 
 

@@ -20,7 +20,7 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.pipeline.steps.report_step import with_inspection, with_studies
 from core.report.content import CalibrationMark
-from core.study.type1 import type1_study
+from core.study.type1 import Type1Study, type1_study
 from tests.report.report_samples import block_content
 
 
@@ -115,8 +115,7 @@ def test_a_study_is_printed_from_its_file(tmp_path, content):
     values = 50 + np.linspace(-0.01, 0.012, 25)
     write_study(tmp_path, type1_study(values, 50.0, 0.4))
     (study,) = with_studies(content, [tmp_path / "study.json"]).studies
-    assert [one["kind"] for one in with_studies(content, [tmp_path]).studies] == ["type1"], "its folder will do"
-    assert study["kind"] == "type1"
-    assert study["mean"] == pytest.approx(50.001)
+    (by_folder,) = with_studies(content, [tmp_path]).studies
+    assert isinstance(study, Type1Study) and study.mean == by_folder.mean == pytest.approx(50.001)
     with pytest.raises(InputError, match=r"missing\.json"):
         with_studies(content, [tmp_path / "missing.json"])

@@ -10,6 +10,7 @@ from core.files.pictures import write_picture
 from core.files.project.data import Accepted
 from core.files.project.keys import finished
 from core.inspect.uncertainty.part import MATERIALS, Part
+from core.report.facts.of_studies import repeat_facts, study_facts
 from core.study.type1 import type1_study
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.part import MATERIAL_NAMES
@@ -472,13 +473,15 @@ def test_the_series_has_its_statistics(shown):
 
 def test_the_series_is_copied_with_all_digits(shown):
     with_repeats(shown, cases.repeat(2, 50.0123456), cases.repeat(3, 50.1))
-    lines = repeats_tsv(shown.repeats.all, shown.repeats.statistics()).splitlines()
+    facts = repeat_facts(shown.repeats.statistics(), nominal=50.0)
+    lines = repeats_tsv(shown.repeats.all, facts).splitlines()
     assert lines[0].split("\t")[:3] == ["scan", "thickness [mm]", "U [mm]"]
     assert lines[1].split("\t")[:2] == ["recordings/scan-2", "50.012346"]
     assert lines[1].split("\t")[5].startswith("2025-03-04T10:30:00")
     assert [line.split("\t")[0] for line in lines[4:]] == [
-        "mean [mm]", "error of the mean [mm]", "RMSE [mm]", "s (n − 1) [mm]", "largest error [mm]",
+        "repeats", "mean [mm]", "s (n − 1) [mm]", "nominal [mm]", "bias [mm]", "largest error [mm]", "RMSE [mm]",
     ]  # fmt: skip
+    assert lines[5].split("\t")[1] == "50.056173", "all its digits"
 
 
 def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown, qtbot):
@@ -490,7 +493,7 @@ def test_a_type_1_study_of_the_repeats_has_the_numbers_of_the_command_line(shown
     qtbot.waitUntil(lambda: shown.repeats.type1 is not None)
     told, wanted = shown.repeats.type1, type1_study(values, 50.0, 0.4)
     assert (told.cg, told.cgk, told.p) == (wanted.cg, wanted.cgk, wanted.p)
-    assert f"Cgk\t{wanted.cgk:.6f}" in repeats_tsv(shown.project.repeats, shown.repeats.statistics(), told)
+    assert f"Cgk\t{wanted.cgk:.6f}" in repeats_tsv(shown.project.repeats, study_facts(told))
     shown.faces.set_number("tolerance_mm", 0.1)
     assert shown.repeats.type1 is None, "it is of another tolerance"
     shown.faces.set_number("tolerance_mm", None)

@@ -79,7 +79,8 @@ def test_a_gauge_rr_study_is_pasted_made_shown_and_undone(tab, studies, presente
     assert tab.stack.currentIndex() == 0 and shown(tab.list, 0, 1) == "10 parts × 3 operators × 3 repeats"
     words = tab.list.fontMetrics().horizontalAdvance(shown(tab.list, 0))
     assert tab.list.columnWidth(0) > words + tab.list.style().pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth) + 8
-    assert tab.rows.text_of("%GRR of the total") == "27.9 %" and tab.rows.text_of("ndc") == "4"
+    assert tab.rows.text_of("Categories (ndc)") == "4"
+    assert tab.rows.text_of("%GRR of the total (95 %)").startswith("27.9 % (")
     assert len(tab.table.rows()) == 7 and "gauge R&R" in tab.table.copied()
     undo(presenter)
     tab.window().refreshing.at_once()
@@ -136,7 +137,7 @@ def test_a_series_has_its_charts_its_indices_and_the_points_that_break_a_rule(ta
     tab.window().refreshing.at_once()
     assert all(chart.isVisible() for chart in tab.charts)
     assert tab.charts[1].axis_text("left") == "moving range [mm]"
-    assert tab.rows.text_of("Verdict") == "not proven" and "(" in tab.rows.text_of("Cpk")
+    assert tab.rows.text_of("Verdict") == "not proven" and "(" in tab.rows.text_of("Cpk (95 %)")
     assert tab.table.copied().split("\n")[26].split("\t")[0::2] == ["part 26", "1"]
     assert "part 26" in tab.notes.text()
 
@@ -326,7 +327,7 @@ def test_the_table_of_a_gauge_rr_study_is_seen_whole_in_german(presenter, show_p
         value = page.studies.rows._labels[0][1]
         qtbot.waitUntil(lambda: value.width() >= value.sizeHint().width())
         tip = table._model.headerData(3, Qt.Orientation.Horizontal, Qt.ItemDataRole.ToolTipRole)
-        assert tip == tr("s over that of the whole scatter")
+        assert tip == tr("σ over that of the whole scatter")
     finally:
         choose(language("en"), qapp)
         qapp.setStyleSheet(sheet)
