@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -28,7 +28,7 @@ from core.files.project.data import Accepted
 from core.files.reading import read_bytes, read_json
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.results.camera_file import camera_id, read_camera, write_camera
-from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.files.results.fan_file import fan_id, read_fan, tells_facts, write_fan
 from core.files.tables import KeptMessage, OrNan, Time, kept
 from core.messages import Message
 from core.model import Camera
@@ -72,6 +72,8 @@ class StoredCalibration:
         SHA-256 in hex of the pictures it was made from, by their names within the set.
     notes
         Sentences on single pictures that the calibration itself does not hold.
+    facts_known
+        Whether the calibration's file says all that decides what it proves; that of an earlier version does not.
     """
 
     kind: Annotated[Kind, Field(description='"camera" or "fan"')]
@@ -86,6 +88,7 @@ class StoredCalibration:
     settings: Mapping[str, Any] = field(default_factory=dict, hash=False)
     inputs: Mapping[str, str] = field(default_factory=dict, hash=False)
     notes: tuple[KeptMessage, ...] = ()
+    facts_known: bool = True
     __pydantic_config__ = ConfigDict(extra="ignore", strict=True)
 
 
@@ -164,7 +167,8 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
     folder = project_folder / FOLDER
     entries = [_read_about(path) for path in sorted(folder.glob(f"*{_KEPT}"))] if folder.is_dir() else []
     there = [entry for entry in entries if _path(folder, entry.kind, entry.id).exists()]
-    return tuple(sorted(there, key=lambda entry: entry.kept_at, reverse=True))
+    told = [replace(one, facts_known=one.kind != "fan" or tells_facts(_path(folder, "fan", one.id))) for one in there]
+    return tuple(sorted(told, key=lambda entry: entry.kept_at, reverse=True))
 
 
 def read_stored(project_folder: Path, kind: Kind, id_: str) -> StoredCalibration | None:

@@ -92,6 +92,24 @@ def finished(step: str, project: Project, results: Mapping[str, Done], at: datet
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
+def made_anew(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
+    """The `results`, where what `step` gave was made anew under the same name: all that rests on it is out of date."""
+    anew, results = {_MADE[step]}, dict(results)
+    for name in STEPS:
+        done = results.get(name)
+        if done is not None and anew.intersection(done.rests_on):
+            keys = {of: "" if of in anew else key for of, key in done.rests_on.items()}
+            results[name] = replace(done, key=_digest(keys), rests_on=keys)
+            anew |= {_MADE[name]} if name in _MADE else set()
+    return results
+
+
+_MADE: Mapping[str, str] = {
+    "planes": label("laser planes"), "scan": label("scan"), "inspect": label("thickness"),
+    "features": label("features"),
+}  # fmt: skip
+"""What the steps that rest on a result call it, by the step that makes it."""
+
 FOUND_BY: Mapping[str, tuple[str, ...]] = {
     "camera": (label("pictures of the camera target"), label("camera target"), label("colour channel")),
     "planes": (

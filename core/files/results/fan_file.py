@@ -185,6 +185,18 @@ def fan_id(fan: Fan) -> str:
     return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
 
 
+_FACTS = ("converged", "points_off_alike", "flatness_assumed")
+
+
+def tells_facts(path: Path) -> bool:
+    """Whether a planes.json says all that decides what its planes prove; not one of an earlier version, or damaged."""
+    try:
+        tables = read_json(path)
+    except InputError:
+        return False
+    return all(tables.get(name) is not None for name in _FACTS)
+
+
 def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
     """Write planes.json, which remembers the `camera` it was measured with; InputError if it cannot be written."""
     degrees = {

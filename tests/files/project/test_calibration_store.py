@@ -102,6 +102,19 @@ def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
     assert [entry.id for entry in history(tmp_path)] == [one, other]
 
 
+def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(tmp_path, camera, fan):
+    kept_id = keep_fan(tmp_path, fan, camera.camera, POSES)
+    (entry,) = history(tmp_path)
+    assert not entry.facts_known, "as of an earlier version"
+    known = replace(fan, converged=True, points_off_alike=False, flatness_assumed=False)
+    assert keep_fan(tmp_path, known, camera.camera, POSES) == kept_id
+    (entry,) = history(tmp_path)
+    assert entry.facts_known
+    assert read_stored_fan(tmp_path, kept_id, camera.camera).converged is True
+    (tmp_path / "calibrations" / f"planes-{kept_id}.json").write_text("{")
+    assert not history(tmp_path)[0].facts_known, "a damaged one tells nothing, and does not hide the others"
+
+
 def test_a_calibration_that_was_taken_away_is_not_in_the_history(tmp_path, camera):
     kept = keep_camera(tmp_path, camera, CameraSettings().told)
     (tmp_path / "calibrations" / f"camera-{kept}.json").unlink()

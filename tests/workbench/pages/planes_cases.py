@@ -98,9 +98,9 @@ class Planes:
         camera = project.accepted.camera
         entry = SimpleNamespace(
             kind="fan", id=id_, kept_at=datetime.now(UTC), used=used, total=total, rms_mm=calibration.rms_mm,
-            camera_id=camera,
+            camera_id=camera, facts_known=True,
         )  # fmt: skip
-        self.kept.append(entry)
+        self.kept[:] = [one for one in self.kept if one.id != id_] + [entry]
         return id_
 
     def show(self, folder: Path, project: Project, pose: PoseFeatures, fan: Any) -> PoseStages:

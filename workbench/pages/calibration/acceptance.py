@@ -8,7 +8,7 @@ from typing import Any, Literal
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Project
-from core.files.project.keys import finished
+from core.files.project.keys import finished, made_anew
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.project_model import CALIBRATIONS
@@ -62,8 +62,11 @@ class Acceptance(QObject):
             now = self._model.project
             after = replace(self._with(now, id_), rejected=now.rejected - {id_})
             self._model.edit(self._words()[0], after)
+            results = self._model.results
+            if id_ == getattr(project.accepted, CALIBRATIONS[self._step]):
+                results = made_anew(self._step, results)  # the same numbers, and more is known of them
             made_from = replace(project, accepted=after.accepted)
-            self._model.record(self._step, finished(self._step, made_from, self._model.results))
+            self._model.record_all({**results, self._step: finished(self._step, made_from, results)})
             self.kept.emit()
 
         def failed(_: Any) -> None:

@@ -62,10 +62,20 @@ class PlanesPresenter(CalibrationPresenter):
         return fan_id(self.work.calibration.fan) if self.work.calibration is not None else ""
 
     def _is_current(self) -> bool:
-        return self.is_done
+        return self.is_done and not self._tells_too_little
+
+    @property
+    def _tells_too_little(self) -> bool:
+        """Whether the accepted planes are those shown, and their file, of an earlier version, knows less of them."""
+        entries = self.history.entries if self.candidate == self.acceptance.accepted else ()
+        return any(entry.id == self.candidate and not entry.facts_known for entry in entries)
 
     def _missing(self) -> dict[Stage, str]:
         outdated = tr("The accepted laser planes are out of date; calibrate again.")
+        if self._tells_too_little:
+            outdated = tr("The file of these laser planes, of an earlier version, tells too little; accept them again.")
+        elif self.candidate:
+            outdated = self.state.sentence
         return {
             Stage.NO_CAMERA: tr("Accept a camera calibration first."),
             Stage.NONE: tr("Record or choose pictures of the plate under the laser first."),
@@ -77,7 +87,7 @@ class PlanesPresenter(CalibrationPresenter):
             Stage.FAILED: tr("The laser planes could not be calibrated; record more poses or check the plate."),
             Stage.SOLVED: tr("Accept the laser planes first."),
             Stage.REJECTED: tr("The laser planes were rejected; accept better ones first."),
-            Stage.OUTDATED: self.state.sentence if self.candidate else outdated,
+            Stage.OUTDATED: outdated,
         }
 
     def _accepted_already(self) -> str:

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, cast
 
 import pytest
@@ -13,7 +14,7 @@ import pytest
 from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import read_project
-from core.files.project.keys import finished
+from core.files.project.keys import finished, left_to_do
 from core.files.results.fan_file import read_fan, write_fan
 from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
@@ -422,6 +423,26 @@ def test_settings_that_give_what_is_accepted_are_not_out_of_date_however_they_ca
     accepted.set_used(["pose02"], True)
     states.append(accepted.state.state)
     assert states == [State.DONE, State.OUTDATED, State.DONE]
+
+
+def test_planes_whose_file_tells_too_little_are_accepted_again_and_what_rests_on_them_is_measured_again(
+    accepted: PlanesPresenter, planes: Planes, qtbot: Any
+) -> None:
+    id_ = accepted.candidate
+    planes.kept[:] = [SimpleNamespace(**{**vars(entry), "facts_known": False}) for entry in planes.kept]
+    for step in ("scan", "inspect", "report"):
+        accepted.model.record(step, finished(step, accepted.project, accepted.model.results))
+    assert not left_to_do(accepted.project, accepted.model.results)
+    accepted.history.refresh()
+    settled(qtbot, accepted)
+    assert stage(accepted) is Stage.OUTDATED
+    assert (accepted.can_accept, "earlier version" in accepted.blocker()) == ("", True)
+    accepted.accept()
+    settled(qtbot, accepted)
+    assert (accepted.project.accepted.fan, stage(accepted)) == (id_, Stage.ACCEPTED)
+    assert accepted.can_accept == "These laser planes are accepted already."
+    assert left_to_do(accepted.project, accepted.model.results) == ("scan", "inspect", "report")
+    assert "laser planes" in accepted.model.states["scan"].sentence
 
 
 def test_planes_that_rest_on_another_camera_are_not_restored(accepted: PlanesPresenter) -> None:
