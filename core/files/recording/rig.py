@@ -21,6 +21,7 @@ from core.files.reading import read_toml
 from core.files.toml_text import toml_text
 from core.image.mosaic import Pattern
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
+from core.image.targets.kinds import DICTIONARIES
 from core.inspect.uncertainty.part import MATERIALS, Part, TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
@@ -113,7 +114,7 @@ class _Charuco(_Printed):
     square_mm: _Length = Field(description=_A_LENGTH)
     marker_mm: _Length = Field(description="a length in mm above 0 and at most 5000, smaller than square_mm")
     dictionary: str = Field(
-        "DICT_4X4_50", pattern=r"^DICT_(4X4|5X5|6X6|7X7)_(50|100|250|1000)$", description='one like "DICT_4X4_50"'
+        "DICT_4X4_50", pattern=rf"^(?i:{'|'.join(DICTIONARIES)})$", description='one like "DICT_4X4_50"'
     )
 
     @model_validator(mode="after")
@@ -132,7 +133,7 @@ class _Charuco(_Printed):
 
     def target(self) -> Target:
         columns, rows = self.squares
-        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary)
+        return Charuco(columns, rows, self.square_mm, self.marker_mm, self.dictionary.upper())
 
 
 class _CircleGrid(_Printed):

@@ -50,6 +50,13 @@ class Checkerboard:
         return _grid(self.columns, self.rows, self.square_mm)
 
 
+DICTIONARIES = (
+    *(f"DICT_{side}X{side}_{count}" for side in (4, 5, 6, 7) for count in (50, 100, 250, 1000)),
+    *(f"DICT_APRILTAG_{family}" for family in ("16H5", "25H9", "36H10", "36H11")),
+)
+"""Markers that a ChArUco board may have, by OpenCV's names; an AprilTag's "h" may be small as well."""
+
+
 @dataclass(frozen=True, slots=True)
 class Charuco:
     """A checkerboard of `columns` × `rows` squares of `square_mm`, with markers of `marker_mm` in its white ones.

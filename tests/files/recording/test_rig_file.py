@@ -223,6 +223,13 @@ def test_complaints_name_the_field_and_what_is_allowed(tmp_path, old, new, said)
         assert part in sentence
 
 
+@pytest.mark.parametrize("name", ["DICT_APRILTAG_36h11", "DICT_APRILTAG_36H11"])
+def test_april_tags_are_written_as_opencv_writes_them_or_in_capitals(tmp_path, name):
+    board = f'kind = "charuco"\nsquares = [9, 7]\nsquare_mm = 20\nmarker_mm = 15\ndictionary = "{name}"\n'
+    rig = read(tmp_path, GOOD.replace('kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0\n', board))
+    assert rig.camera_target.dictionary == "DICT_APRILTAG_36H11", "as the window's list has it"
+
+
 def test_marker_must_fit_its_square(tmp_path):
     board = 'kind = "charuco"\nsquares = [9, 7]\nsquare_mm = 20\nmarker_mm = 20\n'
     text = GOOD.replace('kind = "checkerboard"\ninner_corners = [17, 12]\nsquare_mm = 10.0\n', board)

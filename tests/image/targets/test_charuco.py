@@ -12,8 +12,8 @@ CAMERA = rig(1 / 4)
 WHERE = pose(20, -15, 7, (45, 35), 420)
 
 
-def printed(legacy=False, rows=7):
-    dictionary = cv2.aruco.getPredefinedDictionary(cv2.aruco.DICT_4X4_50)
+def printed(legacy=False, rows=7, markers=cv2.aruco.DICT_4X4_50):
+    dictionary = cv2.aruco.getPredefinedDictionary(markers)
     board = cv2.aruco.CharucoBoard((9, rows), 10.0, 7.0, dictionary)
     board.setLegacyPattern(legacy)
     return board_picture(board.generateImage((900, 100 * rows)), 0.1)
@@ -44,6 +44,14 @@ def test_boards_of_the_pattern_before_opencv_4_6_are_read():
     old = render(CAMERA, WHERE, printed(legacy=True, rows=6), samples=4)
     view = detect(Charuco(9, 6, 10.0, 7.0), old)
     assert len(view.uv) == 40
+    assert np.abs(errors(view)).max() < 0.15
+
+
+@pytest.mark.parametrize("family", ["16h5", "25h9", "36h10", "36h11"])
+def test_boards_of_april_tags_are_read(family):
+    shown = render(CAMERA, WHERE, printed(rows=5, markers=getattr(cv2.aruco, f"DICT_APRILTAG_{family}")), samples=4)
+    view = detect(Charuco(9, 5, 10.0, 7.0, f"DICT_APRILTAG_{family}"), shown)
+    assert len(view.uv) == 32
     assert np.abs(errors(view)).max() < 0.15
 
 

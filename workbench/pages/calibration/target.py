@@ -11,14 +11,11 @@ from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.board_shape import MADE, BoardTolerance
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
-from core.image.targets.kinds import USUAL, USUAL_MARKER
+from core.image.targets.kinds import DICTIONARIES, USUAL, USUAL_MARKER
 from core.inspect.uncertainty.part import SUSPECTED_CELSIUS, Part, TargetTemperature
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.work import jobs
-
-DICTIONARIES = tuple(f"DICT_{side}X{side}_{count}" for side in (4, 5, 6, 7) for count in (50, 100, 250, 1000))
-"""Markers a ChArUco board may have, by OpenCV's names."""
 
 PAPERS = ("A4", "A3", "A2", "Letter", "Tabloid")
 """What a target can be printed on (core.report.target_sheet.PAPER_MM)."""

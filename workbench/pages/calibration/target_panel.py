@@ -9,8 +9,9 @@ from PySide6.QtCore import Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
+from core.image.targets.kinds import DICTIONARIES
 from workbench.language import tr
-from workbench.pages.calibration.target import DICTIONARIES, PAPERS, USUAL_U
+from workbench.pages.calibration.target import PAPERS, USUAL_U
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.editors import NumberRange
