@@ -12,9 +12,9 @@ from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 
 POINT_COLUMNS = {
-    "x_mm": "%.6f",
-    "y_mm": "%.6f",
-    "z_mm": "%.6f",
+    "x_camera_mm": "%.6f",
+    "y_camera_mm": "%.6f",
+    "z_camera_mm": "%.6f",
     "sigma_mm": "%.6f",
     "nx": "%.6f",
     "ny": "%.6f",
@@ -25,7 +25,7 @@ POINT_COLUMNS = {
     "image_u_px": "%.4f",
     "image_v_px": "%.4f",
 }
-"""Columns of a cloud, in the camera frame, and how their values are written: lengths to 1 nm."""
+"""Columns of a cloud, their frame and unit in their names, and how their values are written: lengths to 1 nm."""
 
 _ROWS_AT_ONCE = 20_000
 """Points that are made into text at a time: a few megabytes, however large the cloud is."""

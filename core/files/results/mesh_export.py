@@ -40,7 +40,7 @@ def write_obj(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
     InputError
         If it cannot be written.
     """
-    head = f"# Trisect {__version__}\n# unit mm; calibration {calibration_id}\n"
+    head = f"# Trisect {__version__}\n# unit mm; frame: the camera, z forward, y down; calibration {calibration_id}\n"
     parts = [head, _rows("v", mesh.vertices), _rows("vn", mesh.normals)]
     for name, chosen in _groups(mesh):
         corners = mesh.triangles[chosen] + 1
@@ -114,6 +114,8 @@ def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     triangles["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
     triangles["corners"] = corners
-    head = f"Trisect {__version__}; unit mm; calibration {calibration_id}".encode("ascii", "replace")[:HEAD]
+    head = f"Trisect {__version__}; mm; camera frame, z forward; calibration {calibration_id}".encode(
+        "ascii", "replace"
+    )[:HEAD]
     count = np.array(len(triangles), dtype="<u4")
     write_bytes(path, head.ljust(HEAD) + count.tobytes() + triangles.tobytes())

@@ -22,17 +22,26 @@ from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
 _COMMON, _SECTION = "sigma_common", ("skewness", "spread")
-_SINCE_LATER = (_COMMON, *_SECTION)
+_SEEN, _RESTS = "normal_seen", ("x_rest", "y_rest", "z_rest")
+"""1 where the normal is the surface's, 0 where it is the ray back to the camera; and what x y z in single precision
+leave of the coordinates, so that rays and planes are fitted again to all their digits."""
+_SINCE_LATER = (_COMMON, *_SECTION, _SEEN, *_RESTS)
 """Files of earlier versions have none."""
+_LEAST_LOST_MM = 1e-4
+"""Coordinates that single precision rounds by more are written about an offset: beyond 2048 mm."""
+_OFFSET = "offset "
+_CAMERA_FRAME = "frame of reference: the camera, z forward, y down"
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
 _CLOUD = [
-    # Coordinates in double: 700 mm in single precision step by 0.06 µm, but rays and planes are fitted to them again.
-    *[("x", "f8"), ("y", "f8"), ("z", "f8")],
+    # In single precision, off by 0.03 µm at 700 mm: PCL's filters drop all points whose coordinates are double.
+    *[("x", "f4"), ("y", "f4"), ("z", "f4")],
     *_NORMALS,
     *[("sigma", "f4"), ("intensity", "f4"), ("frame", "i4")],
     *[("sweep", "i4"), ("image_u", "f4"), ("image_v", "f4")],
     (_COMMON, "f4"),
     *[(name, "f4") for name in _SECTION],
+    (_SEEN, "u1"),
+    *[(name, "f8") for name in _RESTS],
 ]
 _MESH = [("x", "f4"), ("y", "f4"), ("z", "f4"), *_NORMALS, ("sigma", "f4")]
 _FILLED = "filled"
@@ -52,7 +61,9 @@ class CloudFile:
 
 
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
-    """Write cloud.ply: x y z nx ny nz sigma intensity frame; sweep image_u image_v sigma_common skewness spread behind.
+    """Write cloud.ply: x y z nx ny nz sigma intensity frame; behind them what the comments in its head say.
+
+    Where the surface's normal is not known, nx ny nz are the ray back to the camera: programs stumble over zeros.
 
     Raises
     ------
@@ -60,19 +71,29 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
         If it cannot be written.
     """
     vertices = np.empty(len(cloud), dtype=_CLOUD)
-    _put(vertices, ("x", "y", "z"), cloud.points)
-    _put(vertices, ("nx", "ny", "nz"), cloud.normals)
+    with np.errstate(over="ignore", invalid="ignore"):  # reading tells of coordinates that are not finite
+        offset = _offset_of(cloud.points)
+        about = cloud.points - offset
+        _put(vertices, ("x", "y", "z"), about)
+        _put(vertices, _RESTS, about - about.astype(np.float32))
+        back = -cloud.points / np.maximum(np.linalg.norm(cloud.points, axis=1, keepdims=True), np.finfo(float).tiny)
+    seen = cloud.normals.any(axis=1)
+    _put(vertices, ("nx", "ny", "nz"), np.where(seen[:, None], cloud.normals, back))
+    vertices[_SEEN] = seen
     _put(vertices, ("image_u", "image_v"), cloud.uv)
     for name in ("sigma", "intensity", "frame", "sweep", "sigma_common"):
         vertices[name] = getattr(cloud, name)
     _put(vertices, _SECTION, np.column_stack([cloud.skewness, cloud.spread_mm]))
     comments = [
         "unit mm",
-        "frame of reference: the camera, z forward, y down",
+        _CAMERA_FRAME,
+        *([f"{_OFFSET}{offset[0]:.0f} {offset[1]:.0f} {offset[2]:.0f}: add it to x y z"] if offset.any() else []),
         "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
         "sigma_common: what camera and fan calibration add to it, in mm, common to all points",
         "skewness: of the stripe's section, above 0 where its light reaches away from the camera; "
         "spread: its sigma in mm of depth",
+        f"{_SEEN} 1: nx ny nz are the surface's normal; 0: that is not known, they are the ray back to the camera",
+        "x_rest y_rest z_rest: add them to x y z where less than 0.1 um counts",
     ]
     _write(path, {"vertex": vertices}, comments, calibration_id)
 
@@ -95,20 +116,46 @@ def read_cloud(path: Path) -> CloudFile:
     _check_finite(vertices, ("x", "y", "z", "sigma", "image_u", "image_v", *known), path)
     if np.any(vertices["sigma"] <= 0):
         raise InputError(Message("file.sigma_not_positive", "property sigma is not above 0 in every point"), where=path)
+    points, normals = columns("x", "y", "z"), columns("nx", "ny", "nz")
+    if _SEEN in known:
+        normals[vertices[_SEEN] == 0] = 0.0
+    if set(_RESTS) <= set(known):
+        points += columns(*_RESTS)
+    points += _told_offset(data.comments, path)
     cloud = Cloud(
-        points=columns("x", "y", "z"),
+        points=points,
         uv=columns("image_u", "image_v"),
         sigma=columns("sigma")[:, 0],
         intensity=columns("intensity")[:, 0],
         frame=np.asarray(vertices["frame"], dtype=np.int64),
         sweep=np.asarray(vertices["sweep"], dtype=np.int64),
-        normals=columns("nx", "ny", "nz"),
+        normals=normals,
         sigma_common=columns(_COMMON)[:, 0] if _COMMON in known else np.zeros(0),
         skewness=columns("skewness")[:, 0] if "skewness" in known else np.zeros(0),
         spread_mm=columns("spread")[:, 0] if "spread" in known else np.zeros(0),
     )
     ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
     return CloudFile(cloud, ids[0] if ids else "")
+
+
+def _offset_of(points: Array) -> Array:
+    """Whole mm (3,) that coordinates (N, 3) are written about: nothing unless single precision would lose digits."""
+    lost = np.abs(points - points.astype(np.float32)).max(initial=0.0)
+    return np.round(points.mean(axis=0)) if np.isfinite(lost) and lost > _LEAST_LOST_MM else np.zeros(3)
+
+
+def _told_offset(comments: Sequence[str], path: Path) -> Array:
+    """The offset (3,) in mm that the file's head states; InputError if it is none."""
+    told = [line.removeprefix(_OFFSET).partition(":")[0] for line in comments if line.startswith(_OFFSET)]
+    if not told:
+        return np.zeros(3)
+    try:
+        offset = np.array([float(word) for word in told[0].split()])
+    except ValueError:
+        offset = np.zeros(0)
+    if offset.shape != (3,) or not np.all(np.abs(offset) <= LARGEST):
+        raise InputError(Message("file.no_offset", "the offset in its head is not three lengths"), where=path)
+    return offset
 
 
 def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
@@ -128,7 +175,7 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
     faces["vertex_indices"] = mesh.triangles
     if marked:
         faces[_FILLED] = mesh.filled
-    comments = ["unit mm", "frame of reference: the camera, z forward, y down", "sigma: standard uncertainty in mm"]
+    comments = ["unit mm", _CAMERA_FRAME, "sigma: standard uncertainty in mm"]
     _write(path, {"vertex": vertices, "face": faces}, comments, calibration_id)
 
 

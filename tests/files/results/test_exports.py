@@ -30,7 +30,7 @@ def test_the_file_is_binary_stl_with_normals_towards_the_camera(tmp_path, mesh):
     data = (tmp_path / "mesh.stl").read_bytes()
     assert len(data) == 84 + 50 * 3
     assert not data.startswith(b"solid")  # many programs would take it for text
-    assert b"unit mm; calibration abc-def" in data[:80]
+    assert b"mm; camera frame, z forward; calibration abc-def" in data[:80]
     assert int.from_bytes(data[80:84], "little") == 3
     normals = np.array([np.frombuffer(data, "<f4", 3, 84 + 50 * k) for k in range(3)])
     assert np.allclose(normals[0], [0, 0, -1])
@@ -51,7 +51,7 @@ def test_points_are_read_by_numpy_to_a_nanometre(tmp_path, cloud, monkeypatch):
     assert table.dtype.names == tuple(POINT_COLUMNS)
     assert len(table) == len(cloud)
     for names, values in (
-        (("x_mm", "y_mm", "z_mm"), cloud.points),
+        (("x_camera_mm", "y_camera_mm", "z_camera_mm"), cloud.points),
         (("sigma_mm",), cloud.sigma[:, None]),
         (("nx", "ny", "nz"), cloud.normals),
     ):
@@ -66,7 +66,7 @@ def test_every_line_has_the_columns_of_the_head(tmp_path, cloud):
     write_points_csv(tmp_path / "cloud.csv", cloud)
     with (tmp_path / "cloud.csv").open(newline="") as file:
         rows = list(csv.reader(file))
-    assert rows[0][:4] == ["x_mm", "y_mm", "z_mm", "sigma_mm"]
+    assert rows[0][:4] == ["x_camera_mm", "y_camera_mm", "z_camera_mm", "sigma_mm"]
     assert {len(row) for row in rows} == {len(POINT_COLUMNS)}
     write_points_csv(tmp_path / "empty.csv", cloud.select(np.zeros(len(cloud), dtype=bool)))
     assert (tmp_path / "empty.csv").read_text() == ",".join(POINT_COLUMNS) + "\n"

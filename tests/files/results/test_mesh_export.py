@@ -31,7 +31,7 @@ def test_obj_has_normals_groups_and_all_triangles(tmp_path):
     path = tmp_path / "mesh.obj"
     write_obj(path, FILLED, "abc")
     text = path.read_text()
-    assert "# unit mm; calibration abc" in text
+    assert "# unit mm; frame: the camera, z forward, y down; calibration abc" in text
     assert text.index("g measured") < text.index("g filled")
     loaded = trimesh.load_mesh(path, process=False)
     assert len(loaded.faces) == len(FILLED.triangles)

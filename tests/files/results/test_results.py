@@ -227,7 +227,7 @@ def test_what_calibrations_add_to_sigma_is_a_property_behind_those_of_the_design
     common = np.linspace(0.01, 0.02, len(cloud))
     write_cloud(path, replace(cloud, sigma_common=common), "abc")
     assert np.allclose(read_cloud(path).cloud.sigma_common, common, rtol=1e-6)
-    assert parse_ply(path.read_bytes()).elements["vertex"].dtype.names[-3:] == ("sigma_common", "skewness", "spread")
+    assert parse_ply(path.read_bytes()).elements["vertex"].dtype.names[12:15] == ("sigma_common", "skewness", "spread")
     path.write_bytes(path.read_bytes().replace(b"property float sigma_common", b"property float of_another_prog"))
     assert not read_cloud(path).cloud.sigma_common.any()  # a file of an earlier version: not known
 
@@ -247,7 +247,8 @@ def test_cloud_is_the_ply_of_the_design(tmp_path, cloud):
 def test_cloud_and_mesh_are_read_alike_by_another_program(tmp_path, cloud):
     write_cloud(tmp_path / "cloud.ply", cloud, "abc")
     theirs = meshio.read(tmp_path / "cloud.ply")
-    assert np.array_equal(theirs.points, cloud.points)
+    assert theirs.points.dtype == np.float32, "filters of PCL drop points whose coordinates are double"
+    assert np.array_equal(theirs.points, cloud.points.astype(np.float32))
     assert np.allclose(theirs.point_data["sigma"], cloud.sigma, rtol=1e-6)
     assert np.array_equal(theirs.point_data["frame"], cloud.frame)
     corners = np.array([[0, 1, 2], [2, 3, 4]])
@@ -255,6 +256,48 @@ def test_cloud_and_mesh_are_read_alike_by_another_program(tmp_path, cloud):
     write_mesh(tmp_path / "mesh.ply", mesh, "abc")
     assert np.array_equal(trimesh.load_mesh(tmp_path / "mesh.ply", process=False).faces, corners)
     assert read_mesh(tmp_path / "mesh.ply").filled.tolist() == [False, True]
+
+
+def test_every_point_has_a_normal_and_the_file_says_which_are_rays(tmp_path, cloud):
+    known = cloud.normals.copy()
+    known[::3] = 0.0
+    write_cloud(tmp_path / "cloud.ply", replace(cloud, normals=known), "abc")
+    theirs = meshio.read(tmp_path / "cloud.ply")
+    normals = np.column_stack([theirs.point_data[name] for name in ("nx", "ny", "nz")])
+    assert np.allclose(np.linalg.norm(normals, axis=1)[::3], 1.0, atol=1e-6)
+    back = -cloud.points[::3] / np.linalg.norm(cloud.points[::3], axis=1, keepdims=True)
+    assert np.allclose(normals[::3], back, atol=1e-6)
+    assert np.array_equal(theirs.point_data["normal_seen"] == 0, np.arange(len(cloud)) % 3 == 0)
+    assert np.allclose(read_cloud(tmp_path / "cloud.ply").cloud.normals, known, atol=1e-6), "ours are unknown as before"
+    assert any(line.startswith("normal_seen") for line in parse_ply((tmp_path / "cloud.ply").read_bytes()).comments)
+
+
+@pytest.mark.parametrize(("moved_mm", "offset"), [(0.0, False), (1500.0, False), (20_000.0, True)])
+def test_single_precision_loses_less_than_a_tenth_of_a_micrometre_wherever_the_part_is(
+    tmp_path, cloud, moved_mm, offset
+):
+    points = cloud.points + [0.0, 0.0, moved_mm - cloud.points[:, 2].min()]
+    write_cloud(tmp_path / "cloud.ply", replace(cloud, points=points), "abc")
+    data = parse_ply((tmp_path / "cloud.ply").read_bytes())
+    told = [line for line in data.comments if line.startswith("offset ")]
+    assert bool(told) is offset
+    add = np.array([float(word) for word in told[0].split(":")[0].split()[1:]]) if told else np.zeros(3)
+    theirs = meshio.read(tmp_path / "cloud.ply").points.astype(float) + add
+    assert np.abs(theirs - points).max() < 1e-4
+    assert np.allclose(read_cloud(tmp_path / "cloud.ply").cloud.points, points, rtol=0, atol=1e-11)
+
+
+def test_clouds_of_earlier_versions_have_coordinates_in_double_and_are_read(tmp_path, cloud):
+    write_cloud(tmp_path / "new.ply", cloud, "abc")
+    rows = parse_ply((tmp_path / "new.ply").read_bytes()).elements["vertex"]
+    names = rows.dtype.names[:15]
+    earlier = np.empty(len(rows), [(name, "f8" if name in ("x", "y", "z") else rows.dtype[name]) for name in names])
+    for name in names:
+        earlier[name] = rows[name]
+    for axis, name in enumerate(("x", "y", "z")):
+        earlier[name] = cloud.points[:, axis]
+    (tmp_path / "old.ply").write_bytes(ply_bytes(Ply({"vertex": earlier}, ("unit mm", "calibration abc"))))
+    assert np.array_equal(read_cloud(tmp_path / "old.ply").cloud.points, cloud.points)
 
 
 def test_truncated_and_spoilt_clouds_are_refused(tmp_path, cloud):
