@@ -14,6 +14,8 @@ ROWS = (
             "{view} is left out: {reason}."),
     Finding("camera.views_left_out_by_hand", Weight.CAUTION, Effect.NONE,
             "{n} of {all} views are left out by hand: {names}."),
+    Finding("camera.views_repeated", Weight.CAUTION, Effect.NONE,
+            "{n} of {all} views left out ({reason}): {names}."),
     Finding("camera.misfound_corners", Weight.CAUTION, Effect.NONE,
             "One misfound corner of {view} is left out.",
             "{n} misfound corners of {view} are left out."),

@@ -15,6 +15,7 @@ from core.files.reading import file_hash, read_bytes
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.recording_set import RecordingSet
 from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
+from core.image.repeated import REPEATED, Repeats, pixels_of
 from core.messages import Message
 from core.progress import Progress, silent, steps
 from core.stage_times import StageTimes, stage
@@ -137,7 +138,7 @@ class PictureReader:
     def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
-        `times` learns what decoding costs.
+        For one that is an earlier one again, REPEATED. `times` learns what decoding costs.
 
         Raises
         ------
@@ -145,22 +146,24 @@ class PictureReader:
             If a picture's depth (8 or 16 bit) is not that of the first one.
         """
 
-        def attempt(path: Path) -> Picture | Message:
+        def attempt(path: Path) -> tuple[Picture | Message, bytes]:
             try:
                 with stage(times, "decoding"):
-                    return self.read(path)
+                    picture = self.read(path)
+                    return picture, pixels_of(picture)
             except InputError as error:
-                return error.what
+                return error.what, b""
 
         first: tuple[str, Picture] | None = None
+        repeats = Repeats()
         if paths:
             self.laser_channel(self.recording_set.part_of(paths[0]))  # once, before several threads ask for it
-        for path, result in read_ahead(paths, attempt):
+        for path, (result, pixels) in read_ahead(paths, attempt):
             name = self.recording_set.name_of(path)
             if not isinstance(result, Message):
                 first = first or (name, result)
                 _check_depth(path, result, *first)
-            yield name, result
+            yield name, REPEATED if repeats.again(pixels) else result
 
 
 def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:

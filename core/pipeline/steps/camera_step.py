@@ -22,6 +22,7 @@ from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
 from core.image.hot_pixels import hot_pixels, standing_out
+from core.image.repeated import REPEATED
 from core.image.targets import detect
 from core.image.targets.target_view import TargetView
 from core.messages import Field, Message
@@ -171,10 +172,21 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
         return calibration
     solved = iter(calibration.views)
     views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen.views)
-    note = note_of(
-        "camera.views_without_target", n=len(lost), all=len(seen.views), name=lost[0].name, reason=lost[0].reason
-    )
-    return replace(calibration, views=views, notes=(*calibration.notes, note))
+    without = [one for one in lost if one.reason != REPEATED]
+    repeated = [one.name for one in lost if one.reason == REPEATED]
+    notes = list(calibration.notes)
+    if without:
+        name, reason = without[0].name, without[0].reason
+        notes.append(
+            note_of("camera.views_without_target", n=len(without), all=len(seen.views), name=name, reason=reason)
+        )
+    if repeated:
+        notes.append(
+            note_of(
+                "camera.views_repeated", n=len(repeated), all=len(seen.views), reason=REPEATED, names=tuple(repeated)
+            )
+        )
+    return replace(calibration, views=views, notes=tuple(notes))
 
 
 def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibration:

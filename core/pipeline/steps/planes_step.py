@@ -24,6 +24,7 @@ from core.files.recording.step_settings import PlanesSettings, excluded_told, st
 from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.mosaic import ALL_SITES
+from core.image.repeated import REPEATED, Repeats, pixels_of
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
@@ -119,9 +120,10 @@ def measure_poses(
     poses = shared_map(
         measure, recording_set.planes, beside, lambda: progress("plane poses", len(features), total), progress
     )
-    for pose, hashes in poses:
+    repeats = Repeats()
+    for pose, hashes, pixels in poses:
         pictures.learn(hashes, {})
-        features.append(pose)
+        features.append(PoseFeatures(pose.name, None, (), REPEATED) if repeats.again(*pixels) else pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
     features[0] = replace(features[0], notes=(*of_all, *features[0].notes))
@@ -137,22 +139,30 @@ def _measure(
     /,
     *,
     progress: Progress,
-) -> tuple[PoseFeatures, Mapping[str, str]]:
-    """Target and stripes of one pose, and the hashes of its pictures."""
+) -> tuple[PoseFeatures, Mapping[str, str], tuple[bytes, ...]]:
+    """Target and stripes of one pose, the hashes of its pictures, and what their pixels are known by."""
     pictures = PictureReader(recording_set, channels)
-    return _pose_features(pictures, camera, stripe, pair, progress), pictures.hashes
-
-
-def _pose_features(
-    pictures: PictureReader, camera: Camera, stripe: StripeSettings | None, pair: PlanePair, progress: Progress
-) -> PoseFeatures:
     try:
         with stage(progress, "decoding"):
             on = pictures.read(pair.on)
             off = pictures.read(pair.off) if pair.off is not None else None
             beside = _beside(pictures, pair)
     except InputError as error:
-        return PoseFeatures(pair.name, None, (), error.reason)
+        return PoseFeatures(pair.name, None, (), error.reason), pictures.hashes, ()
+    pixels = tuple(pixels_of(picture) for picture in (on, off) if picture is not None)
+    pose = _pose_features(pictures, camera, stripe, pair, (on, off, beside), progress)
+    return pose, pictures.hashes, pixels
+
+
+def _pose_features(
+    pictures: PictureReader,
+    camera: Camera,
+    stripe: StripeSettings | None,
+    pair: PlanePair,
+    read: tuple[Picture, Picture | None, Beside],
+    progress: Progress,
+) -> PoseFeatures:
+    on, off, beside = read
     check_size(pair.on, on.shape, camera)
     if off is not None and off.dtype != on.dtype:
         reason = Message("fan.depths_differ", "the pictures with the fan on and off differ in depth (8 or 16 bit)")

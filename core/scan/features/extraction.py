@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.image.mosaic import Sites
+from core.image.repeated import REPEATED
 from core.image.stripes.bracket import Exposure, Exposures, fused
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -224,12 +225,12 @@ def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
 
 
 def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
-    """The first frames, of which LOOK_AHEAD are not left out by hand."""
+    """The first frames, of which LOOK_AHEAD are neither left out by hand nor repeated."""
     ahead: list[Frame] = []
     wanted = LOOK_AHEAD
     for name, picture in frames:
         ahead.append((name, picture))
-        wanted -= not isinstance(picture, Message) or picture != LEFT_OUT
+        wanted -= not isinstance(picture, Message) or picture not in (LEFT_OUT, REPEATED)
         if not wanted:
             break
     return ahead
