@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 
 from core.calibrate.results import CameraCalibration
+from core.errors import InputError
 from core.files.atomic import make_folder, write_bytes
 from core.files.exchange.opencv_calibration import read_opencv
 from core.files.exchange.ros_camera_info import read_camera_info
@@ -16,6 +17,7 @@ from core.files.project.folder import can_be_saved, results_folder, stored_sourc
 from core.files.project.report_template import read_report_template
 from core.files.reading import file_hash, read_bytes, resolved
 from core.files.results.camera_file import write_camera
+from core.messages import Message
 from core.pipeline.project.report import project_content, report_bytes
 from core.pipeline.steps.export_kinds import Results, export_kind, write_export
 from core.pipeline.steps.report_step import results_content
@@ -99,6 +101,8 @@ def export_results(
 ) -> dict[str, Path]:
     """Write the results in `out` as `kinds` out of EXPORTS, into the folder `to` (None: beside the results).
 
+    One that cannot be had keeps none of the others from being written; it is told when these are.
+
     Parameters
     ----------
     said
@@ -107,18 +111,47 @@ def export_results(
     Raises
     ------
     InputError
-        If there is no such kind, a result is missing, or nothing can be written.
+        If there is no such kind, or some of them cannot be written; says which are.
     """
     chosen = [export_kind(kind) for kind in kinds]
     folder = make_folder(to or out)
     results = Results(out, lambda: said(results_content(out)) if said else results_content(out))
-    written = {}
+    written: dict[str, Path] = {}
+    failed: dict[str, InputError] = {}
     for done, kind in enumerate(chosen):
         progress("writing", done, len(chosen))
-        write_export(kind.name, results, folder / kind.file, progress)
-        written[kind.name] = folder / kind.file
+        try:
+            write_export(kind.name, results, folder / kind.file, progress)
+        except InputError as error:
+            failed[kind.name] = error
+        else:
+            written[kind.name] = folder / kind.file
     progress("writing", len(chosen), len(chosen))
+    if failed:
+        raise _some_failed(failed, written)
     return written
+
+
+def _some_failed(failed: Mapping[str, InputError], written: Mapping[str, Path]) -> InputError:
+    """The error of the one kind that could not be written, or of several; says which others are written."""
+    first = next(iter(failed.values()))
+    reasons = tuple(
+        Message("export.kind_and_reason", "{kind} ({reason})", kind=kind, reason=error.reason)
+        for kind, error in failed.items()
+    )
+    if written:
+        what = Message(
+            "export.some_not_written",
+            "{names} are written, but not {reasons}",
+            names=tuple(path.name for path in written.values()),
+            reasons=reasons,
+        )
+        return InputError(what, todo=first.todo)
+    if len(failed) == 1:
+        return first
+    return InputError(
+        Message("export.none_written", "nothing could be written: {reasons}", reasons=reasons), todo=first.todo
+    )
 
 
 def import_camera(path: Path, out: Path) -> CameraCalibration:
