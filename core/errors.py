@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from core.messages import ENGLISH, Language, Message, plain, visible
+from collections.abc import Sequence
+from typing import Any
+
+from core.messages import ENGLISH, Label, Language, Message, plain, visible
 
 LONGEST = 300
-"""Characters of a sentence; what a file says at greater length is cut within it."""
-_PART = 90
-"""Characters that each part of a sentence keeps at least: place, what is wrong, what to do."""
+"""Characters of a sentence beyond which names and texts from outside are shortened in it; our own words never are."""
+_FOREIGN = 90
+"""Characters that a text from outside keeps then."""
 _WORD = 40
 """Characters that a word keeps at least."""
 
@@ -40,9 +43,12 @@ class InputError(Exception):
 
     def told(self, language: Language = ENGLISH) -> str:
         """The sentence in a reader's language."""
-        where, todo = self.where, language(self.todo)
-        parts = [language(where) if isinstance(where, Message) else where, language(self.what), todo]
-        return language(_sentence(*map(plain, _shortened([visible(part) for part in parts]))))
+        where = self.where if isinstance(self.where, Message) else plain(self.where)
+        parts = (where, self.what, self.todo)
+        told = _with_short_words([visible(language(part)) for part in parts])
+        if _length(told) > LONGEST:
+            told = _with_short_words([visible(language(_with_short_texts(part))) for part in parts])
+        return language(_sentence(*map(plain, told)))
 
     @property
     def reason(self) -> Message:
@@ -96,23 +102,38 @@ def words_of(error: Exception) -> Message | str:
     return error.what if isinstance(error, (InputError, WrongValue)) else str(error)
 
 
-def _shortened(parts: list[str]) -> list[str]:
-    """The parts of a sentence, cut so that it ends at LONGEST characters: long words first, which keep their ends."""
+def _length(parts: Sequence[str]) -> int:
+    """Characters of the sentence made of place, what is wrong and what to do."""
+    return sum(map(len, parts)) + len(": ; .")
 
-    def excess() -> int:
-        return sum(map(len, parts)) + len(": ; .") - LONGEST
 
-    while excess() > 0:
+def _with_short_words(parts: Sequence[str]) -> list[str]:
+    """The parts of a sentence, the longest words cut so that it ends at LONGEST characters: these keep their ends."""
+    parts = list(parts)
+    while (excess := _length(parts) - LONGEST) > 0:
         longest = max((word for part in parts for word in part.split(" ")), key=len)
         if len(longest) <= _WORD:
             break
         opening = f"{longest[0] if longest[0] in '([' else ''}…"
-        kept = max(_WORD, len(longest) - excess()) - len(opening)  # one character less at least: this ends
+        kept = max(_WORD, len(longest) - excess) - len(opening)  # one character less at least: this ends
         parts = [part.replace(longest, opening + longest[-kept:]) for part in parts]
-    for number, part in sorted(enumerate(parts), key=lambda one: -len(one[1])):
-        if excess() > 0:
-            parts[number] = f"{part[: max(_PART, len(part) - excess()) - 1]}…"
     return parts
+
+
+def _with_short_texts(message: Message) -> Message:
+    """The same with the texts from outside in it cut after _FOREIGN characters; our own words stay whole."""
+    return message.with_values(_short) if message.code else plain(_short(str(message)))
+
+
+def _short(value: Any) -> Any:
+    """A value of a message: a text from outside is cut, also within messages and sequences."""
+    if isinstance(value, Message):
+        return _with_short_texts(value)
+    if isinstance(value, tuple):
+        return tuple(map(_short, value))
+    if isinstance(value, str) and not isinstance(value, Label) and len(value) > _FOREIGN and " " in value:
+        return f"{value[: _FOREIGN - 1].rsplit(' ', 1)[0]} …"
+    return value
 
 
 def refuse(error: InputError) -> None:

@@ -110,6 +110,10 @@ class Message:
         """Whether it stands by itself; else it is a part of one, in English without a full stop."""
         return self.text.endswith(".")
 
+    def with_values(self, change: Callable[[Any], Any]) -> Message:
+        """The same message, each of its values as `change` gives it."""
+        return _restored(self.code, self.text, self.many, {name: change(one) for name, one in self.values.items()})
+
     def _parts(self) -> tuple[Any, ...]:
         return self.code, str(self), dict(self.values)
 

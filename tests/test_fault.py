@@ -77,6 +77,23 @@ def test_a_sentence_that_is_too_long_by_any_number_of_characters_has_an_end(word
         assert told.endswith("scan.")
 
 
+def test_our_own_words_are_never_cut():
+    reasons = tuple(
+        Message(
+            "x.reason", "{pose}: {reason}", pose=f"pose{k:02d}", reason=Message("x.why", "no stripe was found " * 4)
+        )
+        for k in range(3)
+    )
+    what = Message(
+        "x.none", "only one pose can be used ({reasons:;}), as {name} says", reasons=reasons, name="no " * 99
+    )
+    told = str(InputError(what, where="planes", todo=Message("x.todo", "look at the pictures " * 3)))
+    assert len(told) > LONGEST
+    assert told.count("no stripe was found") == 12
+    assert told.count("look at the pictures") == 3
+    assert "as no no" in told and "no …" in told, "a text from outside is cut, between two words"
+
+
 def test_names_are_never_read_as_markup(capsys):
     print_rows([("frame [/b]", "[/b] \x1b[31m:smile: [red]x")], [plain("[/i] note")], {"cloud": Path("[/b]") / "c.ply"})
     said = capsys.readouterr().out
