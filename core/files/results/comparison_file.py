@@ -26,7 +26,7 @@ SCHEMA = 1
 """Version of the file's layout."""
 _TODO = Message("advice.compare_first", "compare the scan first{command}", command=Command("trisect compare OTHER DIR"))
 _POINT = [
-    *[(axis, "f8") for axis in "xyz"],
+    *[(axis, "f4") for axis in "xyz"],  # as cloud.ply has them: filters of PCL drop points in double
     *[(axis, "f4") for axis in ("nx", "ny", "nz")],
     *[("deviation", "f4"), ("sigma", "f4"), ("lod95", "f4"), ("significant", "u1")],
     *[("points", "i4"), ("points_other", "i4")],
