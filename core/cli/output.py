@@ -28,7 +28,7 @@ from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.findings.table import gravest_first, is_grave
 from core.inspect.conformity import Verdict
-from core.inspect.results import GaugeResult
+from core.inspect.results import Face, GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.facts.table import FactTable, tables_for_reader
@@ -195,17 +195,17 @@ def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
     decided = tr(DECISIONS[verdict]) if verdict else tr("none: rig.toml states no nominal value")
     rows.append((tr(VERDICT), decided))
     upper, lower = gauge.points_used
-    flatness = tr(
-        "{above:.3f} mm above, {below:.3f} mm below (95 % of points)",
-        above=gauge.upper.flatness_mm,
-        below=gauge.lower.flatness_mm,
-    )
+    above, below = (_flatness(face) for face in (gauge.upper, gauge.lower))
     return [
         *rows,
-        (tr("flatness"), flatness),
-        (tr("angle of the faces"), _angles([gauge.parallelism])),
+        (tr("flatness"), tr("{above} above, {below} below (95 % of points)", above=above, below=below)),
+        (tr("angle of the faces"), tr("not known") if gauge.parallelism is None else _angles([gauge.parallelism])),
         (tr("points on faces"), tr("{above:,} above, {below:,} below", above=upper, below=lower)),
     ]
+
+
+def _flatness(face: Face) -> str:
+    return tr("not known") if face.flatness_mm is None else f"{words().fixed(face.flatness_mm, 3)} mm"
 
 
 def check_rows(check: InterimCheck) -> Rows:

@@ -19,6 +19,9 @@ ROWS = (
             "What is stated of the part's surface, a layer of spray or how deep its material is seen, is taken off "
             "thicknesses alone: all else is as light shows it."),
     # The form of its faces
+    Finding("surface.faces_not_spanned", Weight.GRAVE, Effect.NO_PROOF,
+            "The points of {name:and} lie on one stripe, or too near to each other for their noise: nothing says how "
+            "it lies, or whether it is a face, and what is measured from it proves nothing. Scan it with more sweeps."),
     Finding("form.scatter", Weight.CAUTION, Effect.WIDENS_U,
             "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts on "
             "them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise."),

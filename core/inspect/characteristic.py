@@ -40,6 +40,8 @@ class Characteristic:
         What is to be known of it.
     complete
         Whether u holds all that is known to act on the value; if not, it is a lower bound and proves nothing.
+    doubts
+        Why nothing is proven by its own points, whatever is known of the scan; `complete` holds it.
     at_20
         Whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
     """
@@ -56,6 +58,7 @@ class Characteristic:
     notes: tuple[Message, ...] = ()
     complete: bool = True
     at_20: bool | None = False
+    doubts: tuple[Message, ...] = ()
 
     @property
     def by_master(self) -> bool:

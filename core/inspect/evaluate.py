@@ -208,7 +208,8 @@ def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> C
     found = compared(length, master)
     if not errors.size_unconfirmed or not master.same_calibration or not found.by_master:
         return found
-    proves = replace(errors, size_unconfirmed=False).complete and doubt_of_light(found.budget) is None
+    proves = replace(errors, size_unconfirmed=False).complete and not found.doubts
+    proves = proves and doubt_of_light(found.budget) is None
     return replace(found, complete=proves)
 
 

@@ -11,7 +11,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from core.errors import InputError
 from core.findings.table import note_of
@@ -20,18 +20,17 @@ from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE, notes_on_form
 from core.inspect.fit.plane_fit import (
     FittedFaces,
     ParallelPlaneFit,
-    PlaneFit,
     fit_faces,
     fit_parallel_planes,
-    fit_plane,
 )
+from core.inspect.fit.spanned import faces_not_spanned
+from core.inspect.free_faces import angle_of, free_faces
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
 from core.messages import Message
-from core.model import LightPlane
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 
@@ -53,7 +52,8 @@ class GaugeFit:
 
     `faces` is the joint fit, over `pair.upper` and `pair.lower` (indices into the cloud); `robust` the same planes
     fitted as if points were independent; `upper` and `lower` are each fitted freely, `parallelism` (rad) is the angle
-    between them. `budget` says what the uncertainty of the thickness is made of.
+    between them, None where one of them is not spanned by its points. `budget` says what the uncertainty of the
+    thickness is made of.
     """
 
     faces: FittedFaces
@@ -61,7 +61,7 @@ class GaugeFit:
     pair: FacePair
     upper: Face
     lower: Face
-    parallelism: float
+    parallelism: float | None
     budget: tuple[Contribution, ...]
 
     @property
@@ -117,20 +117,8 @@ def fit_gauge(
             todo=Message("gauge.advice_exchange_faces", "exchange upper_polygon_px and lower_polygon_px"),
         )
     faces = fit_faces(upper, lower, robust, errors)
-    free = [
-        fit_plane(face.points, face.sigma, reference_normal=None if robust.tilt_determined else robust.normal)
-        for face in (upper, lower)
-    ]
-    cross = np.linalg.norm(np.cross(free[0].normal, free[1].normal))
-    return GaugeFit(
-        faces,
-        robust,
-        pair,
-        _face(free[0], pair.upper),
-        _face(free[1], pair.lower),
-        float(np.arctan2(cross, abs(free[0].normal @ free[1].normal))),
-        _budget(faces, errors),
-    )
+    free = free_faces(cloud, pair, faces.planes)
+    return GaugeFit(faces, robust, pair, *free, angle_of(*free), _budget(faces, errors))
 
 
 def measure_gauge(
@@ -185,13 +173,20 @@ def measure_gauge(
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=notes + _notes_on_form(cloud, fit, errors),
+        doubts=_doubts(fit),
     )
     if errors.part is not None:
         gauge = adjusted(gauge, errors.part.thicker_mm, errors.part.surface_rows, errors.part.surface_notes, k=k)
     of_light = doubt_of_light(fit.budget)
-    for doubt in (*([of_light] if of_light else []), *reversed(errors.all_doubts)):
+    for doubt in (*([of_light] if of_light else []), *reversed(gauge.doubts), *reversed(errors.all_doubts)):
         gauge = doubted(gauge, doubt)
     return gauge
+
+
+def _doubts(fit: GaugeFit) -> tuple[Message, ...]:
+    """Why the thickness proves nothing, by its faces themselves."""
+    names = [name for name, face in ((UPPER_FACE, fit.upper), (LOWER_FACE, fit.lower)) if not face.spanned]
+    return (faces_not_spanned(names),) if names else ()
 
 
 def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Message, ...]:
@@ -243,12 +238,3 @@ def _budget(faces: FittedFaces, errors: PointErrors) -> tuple[Contribution, ...]
         form_mm=faces.fit.form_mm,
         calibrations=errors.calibrations,
     )
-
-
-def _face(fit: PlaneFit, indices: NDArray[np.int64]) -> Face:
-    """A face from its free fit: the points the fit kept, their residuals and the spread of 95 % of them."""
-    kept = fit.weights > 0
-    residuals = fit.residuals[kept]
-    low, high = np.quantile(residuals, [0.025, 0.975])
-    plane = LightPlane.from_normal(fit.normal, fit.distance)
-    return Face(plane, indices[kept], residuals, float(high - low), float(np.sqrt(np.mean(residuals**2))))

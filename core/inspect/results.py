@@ -20,14 +20,17 @@ class Face:
 
     `plane` is the face's own plane, fitted freely. `indices` into the cloud, without the points the fit left out;
     `residuals` (mm) of these points from the plane, along its normal, towards the camera positive. `flatness_mm` is
-    the spread of the residuals that holds 95 % of the points, the noise of the points included.
+    the spread of the residuals that holds 95 % of the points, the noise of the points included; None where it is not
+    known. Where the points do not span the face (`core.inspect.fit.spanned`), `plane` and `residuals` are those of the
+    joint fit.
     """
 
     plane: Plane
     indices: NDArray[np.int64]
     residuals: Array
-    flatness_mm: float
+    flatness_mm: float | None
     rms_mm: float
+    spanned: bool = True
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -72,10 +75,10 @@ class GaugeResult:
     """The thickness of a gauge block: distance of two parallel faces.
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
-    the faces when each is fitted freely. `rule` says what the thickness is. `points_used` on the upper and the lower
-    face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. What is not `complete` proves nothing, whatever u:
-    `notes` say why. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated of the part; None:
-    not known.
+    the faces when each is fitted freely, None where a face is not spanned by its points. `rule` says what the thickness
+    is. `points_used` on the upper and the lower face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. What is
+    not `complete` proves nothing, whatever u: `notes` say why, and `doubts` are those of them that its faces themselves
+    give. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
 
     Raises
     ------
@@ -88,7 +91,7 @@ class GaugeResult:
     k: float
     upper: Face
     lower: Face
-    parallelism: float
+    parallelism: float | None
     budget: tuple[Contribution, ...]
     nominal_mm: float | None = None
     tolerance_mm: float | None = None
@@ -97,6 +100,7 @@ class GaugeResult:
     notes: tuple[Message, ...] = ()
     complete: bool = True
     at_20: bool | None = False
+    doubts: tuple[Message, ...] = ()
 
     def __post_init__(self) -> None:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:

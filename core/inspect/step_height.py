@@ -19,16 +19,16 @@ from core.findings.table import note_of
 from core.inspect.faces import FacePair
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE
 from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
-from core.inspect.fit.plane_fit import FittedFaces, ParallelPlaneFit, fit_faces, fit_parallel_planes, fit_plane
+from core.inspect.fit.plane_fit import FittedFaces, ParallelPlaneFit, fit_faces, fit_parallel_planes
 from core.inspect.fit.plane_search import FEWEST_POINTS
+from core.inspect.free_faces import angle_of, free_faces
 from core.inspect.profile_faces import faces_of, level_limit, stretches
-from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.results import Contribution, GaugeResult
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
 from core.inspect.uncertainty.causes import FACE_TILT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, OBSERVED
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
-from core.model import LightPlane
 from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
 
@@ -249,15 +249,14 @@ def measure_steps(
     budget = tuple(rows)
     u, factor = combined(budget), student_factor(k, budget)
     shown = steps[int(np.argmin(np.abs(values - thickness)))]
-    upper, lower = _faces(shown)
-    cross = np.linalg.norm(np.cross(upper.plane.normal, lower.plane.normal))
+    upper, lower = free_faces(shown.cloud, shown.pair, shown.faces.planes)
     return GaugeResult(
         thickness_mm=thickness,
         u_mm=u,
         k=factor,
         upper=upper,
         lower=lower,
-        parallelism=float(np.arctan2(cross, abs(upper.plane.normal @ lower.plane.normal))),
+        parallelism=angle_of(upper, lower),
         budget=budget,
         nominal_mm=nominal_mm,
         tolerance_mm=tolerance_mm,
@@ -322,21 +321,6 @@ def _observed(values: Array, own: Array, weights: Array, alike: float) -> list[C
     if beyond <= 0:
         return []
     return [Contribution(OBSERVED, math.sqrt(beyond * float(weights @ weights)), math.sqrt(beyond), dof=count - 1.0)]
-
-
-def _faces(step: Step) -> tuple[Face, Face]:
-    made = []
-    normal = None if step.faces.planes.tilt_determined else step.faces.planes.normal
-    for indices in (step.pair.upper, step.pair.lower):
-        part = step.cloud.select(indices)
-        fit = fit_plane(part.points, part.sigma, reference_normal=normal)
-        kept = fit.weights > 0
-        residuals = fit.residuals[kept]
-        low, high = np.quantile(residuals, [0.025, 0.975])
-        plane = LightPlane.from_normal(fit.normal, fit.distance)
-        rms = float(np.sqrt(np.mean(residuals**2)))
-        made.append(Face(plane, indices[kept], residuals, float(high - low), rms))
-    return made[0], made[1]
 
 
 def _notes_on_form(steps: Sequence[Step]) -> tuple[Message, ...]:

@@ -36,13 +36,14 @@ _MEMBERS = {"upper": whole(None), "lower": whole(None)}
 
 
 class _Pair(ResultFile):
-    upper: Finite = Field(description="a finite number")
-    lower: Finite = Field(description="a finite number")
+    upper: Finite | None = Field(description="a finite number, or null")
+    lower: Finite | None = Field(description="a finite number, or null")
 
 
 class _Face(ResultFile):
     pi: Row3 = Field(description="three finite numbers")
     rms_mm: Finite = Field(description="a finite number")
+    spanned: bool = True
 
 
 class _Faces(ResultFile):
@@ -62,7 +63,7 @@ class _GaugeFile(ResultFile):
     u_mm: Finite = Field(ge=0, description="a length in mm, not negative")
     k: Finite = Field(gt=0, description="a number above 0")
     flatness_mm: _Pair = Field(description="a table of upper and lower")
-    parallelism_deg: Finite = Field(description="an angle in degrees")
+    parallelism_deg: Finite | None = Field(description="an angle in degrees, or null")
     faces: _Faces = Field(description="a table of upper and lower")
     nominal_mm: Finite | None = None
     tolerance_mm: Finite | None = Field(default=None, gt=0, description="a length in mm above 0")
@@ -87,7 +88,7 @@ def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
         "deviation_mm": gauge.deviation_mm,
         "verdict": gauge.verdict,
         "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
-        "parallelism_deg": math.degrees(gauge.parallelism),
+        "parallelism_deg": None if gauge.parallelism is None else math.degrees(gauge.parallelism),
     }
 
 
@@ -133,7 +134,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         k=file.k,
         upper=_face(file.faces.upper, members["upper"], file.flatness_mm.upper, cloud),
         lower=_face(file.faces.lower, members["lower"], file.flatness_mm.lower, cloud),
-        parallelism=math.radians(file.parallelism_deg),
+        parallelism=None if file.parallelism_deg is None else math.radians(file.parallelism_deg),
         budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
@@ -166,12 +167,15 @@ def _row(row: Contribution, u_mm: float) -> dict[str, Any]:
 
 
 def _plane(face: Face) -> dict[str, Any]:
-    return {"normal": face.plane.normal, "d_mm": face.plane.d_mm, "pi": face.plane.pi, "rms_mm": face.rms_mm}
+    plane = face.plane
+    return {
+        "normal": plane.normal, "d_mm": plane.d_mm, "pi": plane.pi, "rms_mm": face.rms_mm, "spanned": face.spanned,
+    }  # fmt: skip
 
 
-def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float, cloud: Cloud) -> Face:
+def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float | None, cloud: Cloud) -> Face:
     plane = LightPlane(np.array(face.pi))
-    return Face(plane, indices, -plane.distances(cloud.points[indices]), flatness_mm, face.rms_mm)
+    return Face(plane, indices, -plane.distances(cloud.points[indices]), flatness_mm, face.rms_mm, face.spanned)
 
 
 def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:

@@ -142,9 +142,13 @@ class Scene:
         result: str = "",
         rule: Message | None,
         notes: tuple[Message, ...] = (),
+        doubts: tuple[Message, ...] = (),
     ) -> Characteristic:
-        """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter"."""
-        result, doubt = result or kind, doubt_of_light(budget)
+        """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter".
+
+        It proves nothing because of the `doubts` of its points; a doubt of their light is seen in its budget.
+        """
+        result, of_light = result or kind, doubt_of_light(budget)
         return Characteristic(
             name=f"{spec.name} {result}",
             kind=kind,
@@ -155,8 +159,9 @@ class Scene:
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
-            notes=(doubt, *notes) if doubt else notes,
-            complete=self.errors.complete and doubt is None,
+            notes=(*doubts, *([of_light] if of_light else []), *notes),
+            complete=self.errors.complete and of_light is None and not doubts,
+            doubts=doubts,
         )
 
 

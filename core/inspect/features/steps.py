@@ -11,6 +11,7 @@ from core.inspect.features.regions import Indices, face_in
 from core.inspect.fit.judged_form import level, notes_on_form
 from core.inspect.fit.plane_search import search_tolerance
 from core.inspect.fit.shapes import ParallelPlanes
+from core.inspect.fit.spanned import faces_not_spanned
 from core.inspect.fit.surface_fit import fit_surface
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.messages import Message
@@ -39,6 +40,8 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     )
     names = [level(number + 1) for number in range(len(faces))]
     notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, names, part)
+    alone = [name for name, spans in zip(names, fit.faces_spanned, strict=True) if not spans]
+    doubts = (faces_not_spanned(alone),) if alone else ()
     rows = []
     for upper in range(1, len(faces)):
         lower = 0 if spec.over == "lowest" else upper - 1
@@ -58,6 +61,7 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
                 result=f"height {upper}",
                 rule=rule,
                 notes=notes if upper == 1 else (),
+                doubts=doubts,
             )
         )
     return FeatureResult(

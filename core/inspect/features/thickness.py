@@ -21,14 +21,17 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     gauge = measure_gauge(
         scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress
     )
-    row = scene.characteristic(spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule)
+    row = scene.characteristic(
+        spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule, doubts=gauge.doubts
+    )
+    row = replace(row, notes=gauge.notes)  # these hold the doubts
     faces = (gauge.upper, gauge.lower)
     indices = np.concatenate([face.indices for face in faces])
     part = np.repeat([0, 1], [len(face.indices) for face in faces])
     order = np.argsort(indices, kind="stable")
     return FeatureResult(
         spec,
-        characteristics=(replace(row, notes=gauge.notes),),
+        characteristics=(row,),
         indices=indices[order],
         residuals=np.concatenate([face.residuals for face in faces])[order],
         part=part[order],

@@ -31,6 +31,7 @@ from core.errors import InputError
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.fit.plane_fit import LARGEST_WEIGHT
 from core.inspect.fit.shapes import Parts, Shape
+from core.inspect.fit.spanned import spanned
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
 from core.inspect.uncertainty.causes import SAMPLING
@@ -73,6 +74,8 @@ class SurfaceFit(Generic[S]):
         (M,) in mm, outwards positive.
     form
         The spread of the residuals.
+    faces_spanned
+        (faces,) whether the points of each face alone span it; together they do.
     """
 
     shape: S
@@ -81,6 +84,7 @@ class SurfaceFit(Generic[S]):
     part: Parts
     residuals: Array
     form: Spread
+    faces_spanned: NDArray[np.bool_]
 
     def budget(self, gradient: Array) -> tuple[Contribution, ...]:
         """What makes a quantity that follows the parameters with `gradient` (p,) uncertain."""
@@ -127,7 +131,7 @@ def fit_surface(
     Raises
     ------
     InputError
-        If a face has too few points for its shape.
+        If a face has too few points for its shape, or all its points together do not span it.
     """
     part = np.zeros(len(indices), dtype=np.int64) if part is None else part
     points, sigma = cloud.points[indices], cloud.sigma[indices]
@@ -144,20 +148,31 @@ def fit_surface(
             fit = generalised_fit(design, sources.mean(shape.misfit(points, mine)), sources)
             shape = shape.moved(fit.estimate)
     except np.linalg.LinAlgError as error:
-        raise InputError(
-            Message("surface.points_on_a_line", "its points do not fix it: they lie on one line"),
-            todo=MORE_SWEEPS,
-        ) from error
+        raise _not_spanned() from error
+    if not spanned(shape, points, used.sigma, mine):
+        raise _not_spanned()
+    faces = [np.flatnonzero(mine == face) for face in np.unique(mine)]
+    by_face = [spanned(shape, points[face], used.sigma[face], mine[face]) for face in faces]
     calibrations = errors.calibrations
     acting = effects(fit.gains, sources, own=fit.own, form_mm=fit.form_mm, calibrations=calibrations)
     residuals = shape.misfit(points, mine)
     form = spread(used, residuals, sources, (design, fit.gains), calibrations, cell_mm)
-    return SurfaceFit(shape, acting, indices[kept], mine, residuals, form)
+    return SurfaceFit(shape, acting, indices[kept], mine, residuals, form, np.array(by_face, dtype=np.bool_))
 
 
 def too_few(count: int) -> InputError:
     """The complaint that a surface cannot be fitted to so few points."""
     return InputError(Message("surface.too_few_points", "{n} points are too few for it", n=count), todo=MORE_SWEEPS)
+
+
+def _not_spanned() -> InputError:
+    return InputError(
+        Message(
+            "surface.points_do_not_span",
+            "its points do not fix it: they lie on one stripe, or too near to each other for their noise",
+        ),
+        todo=MORE_SWEEPS,
+    )
 
 
 def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) -> tuple[S, Array]:

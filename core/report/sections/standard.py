@@ -234,11 +234,13 @@ def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
             numbers=(1, 2, 3, 4),
         )
     ]
+    between = "–" if gauge.parallelism is None else f"{fixed(math.degrees(gauge.parallelism), 3)}°"
     for name, face, angle in (
-        (look.words("Upper"), gauge.upper, f"{fixed(math.degrees(gauge.parallelism), 3)}°"),
+        (look.words("Upper"), gauge.upper, between),
         (look.words("Lower"), gauge.lower, ""),
     ):
-        numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), fixed(face.flatness_mm, 3), angle)
+        flatness = "–" if face.flatness_mm is None else fixed(face.flatness_mm, 3)
+        numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), flatness, angle)
         rows.append([look.text(name, "small"), *(look.text(number, "number") for number in numbers)])
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 

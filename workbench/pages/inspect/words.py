@@ -19,7 +19,7 @@ from workbench.views.lists.value_rows import ValueRow, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.result_list import ResultList
-    from core.inspect.results import GaugeResult
+    from core.inspect.results import Face, GaugeResult
     from core.inspect.shown.view_frame import ViewFrame
 
 
@@ -58,17 +58,21 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     upper, lower = gauge.points_used
     return [
         *rows,
-        (tr("Flatness, upper face"), f"{wording().fixed(gauge.upper.flatness_mm, 3)} mm", flatness, ""),
-        (tr("Flatness, lower face"), f"{wording().fixed(gauge.lower.flatness_mm, 3)} mm", flatness, ""),
+        (tr("Flatness, upper face"), _flatness(gauge.upper), flatness, ""),
+        (tr("Flatness, lower face"), _flatness(gauge.lower), flatness, ""),
         (
             tr("Angle of the faces"),
-            f"{wording().fixed(math.degrees(gauge.parallelism), 3)}°",
+            tr("not known") if gauge.parallelism is None else f"{wording().fixed(math.degrees(gauge.parallelism), 3)}°",
             tr("Angle between the two faces when each is fitted by itself"),
             "",
         ),
         (tr("Points used, upper face"), grouped(upper), tr("Points the upper plane rests on"), ""),
         (tr("Points used, lower face"), grouped(lower), tr("Points the lower plane rests on"), ""),
     ]
+
+
+def _flatness(face: Face) -> str:
+    return tr("not known") if face.flatness_mm is None else f"{wording().fixed(face.flatness_mm, 3)} mm"
 
 
 def budget_rows(gauge: GaugeResult) -> list[ValueRow]:

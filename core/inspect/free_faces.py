@@ -1,0 +1,59 @@
+"""Two faces of a part, each by itself: its own plane and flatness, and the angle between both."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.inspect.faces import FacePair
+from core.inspect.fit.plane_fit import ParallelPlaneFit, fit_plane
+from core.inspect.fit.shapes import ParallelPlanes
+from core.inspect.fit.spanned import spanned
+from core.inspect.results import Face
+from core.model import LightPlane
+from core.model.arrays import Array
+from core.scan.surface.cloud import Cloud
+
+
+def free_faces(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit) -> tuple[Face, Face]:
+    """The upper and the lower face of a `pair` in a cloud, each fitted freely.
+
+    Points that do not span a face leave open how it lies: it is that of the joint fit `planes` then, without flatness.
+    """
+    return (
+        _face(cloud, pair.upper, planes, planes.upper_distance),
+        _face(cloud, pair.lower, planes, planes.lower_distance),
+    )
+
+
+def angle_of(upper: Face, lower: Face) -> float | None:
+    """Angle in rad between two faces; None if one of them does not tell how it lies."""
+    if not (upper.spanned and lower.spanned):
+        return None
+    cross = np.linalg.norm(np.cross(upper.plane.normal, lower.plane.normal))
+    return float(np.arctan2(cross, abs(upper.plane.normal @ lower.plane.normal)))
+
+
+def _face(cloud: Cloud, indices: NDArray[np.int64], planes: ParallelPlaneFit, distance: float) -> Face:
+    """A face from its free fit: the points the fit kept, their residuals and the spread of 95 % of them."""
+    points, sigma = cloud.points[indices], cloud.sigma[indices]
+    fit = fit_plane(points, sigma, reference_normal=None if planes.tilt_determined else planes.normal)
+    kept = fit.weights > 0
+    shape = _plane(fit.normal, fit.distance, points[kept])
+    if not spanned(shape, points[kept], sigma[kept], np.zeros(int(kept.sum()), dtype=np.int64)):
+        residuals = distance - points @ planes.normal
+        plane = LightPlane.from_normal(planes.normal, distance)
+        return Face(plane, indices, residuals, None, _rms(residuals), spanned=False)
+    residuals = fit.residuals[kept]
+    low, high = np.quantile(residuals, [0.025, 0.975])
+    plane = LightPlane.from_normal(fit.normal, fit.distance)
+    return Face(plane, indices[kept], residuals, float(high - low), _rms(residuals))
+
+
+def _plane(normal: Array, distance: float, points: Array) -> ParallelPlanes:
+    middle = points.mean(axis=0)
+    return ParallelPlanes.through(-normal, (middle - normal * (normal @ middle - distance))[None])
+
+
+def _rms(residuals: Array) -> float:
+    return float(np.sqrt(np.mean(residuals**2)))
