@@ -35,6 +35,8 @@ UNEXPLAINED: Source = "bend"
 """The source of errors that were seen, but not why: they are uncertain by all of what was seen."""
 LAWLESS: tuple[Source, ...] = (UNEXPLAINED, "skewed fan")
 """The sources of errors whose law is only a bound: a fit must not take them out."""
+UNMEASURED: tuple[Source, ...] = ("change", "assumed change", "charted change", *SCALES)
+"""The sources of errors whose size is stated or assumed: nothing in this calibration has measured it."""
 
 NEGLIGIBLE = 1e-12
 """Share of the largest variance below which a direction is left out: rounding."""

@@ -5,6 +5,12 @@ stretches and
 few in number, so the generalised least-squares estimate of β comes from one small system in which the common errors are
 unknowns with a prior (the same as inverting the full covariance, by Woodbury's identity).
 
+What nothing has measured, such as the change of the rig since its calibration, is no error that the points may be
+asked for at the price of their noise: a fit that makes up for an assumed error follows the noise of whatever shows it.
+So the robust weights, the own noise and the form come from what is measured. Then what is assumed takes part with the
+largest share of its assumed size, 0 to 1, with which noise acts at most NOISE_FOR_ASSUMED times as much on what is
+wanted as without it. All of its size counts in the uncertainty.
+
 How large the form is, and whether own noise is larger than stated, is found from the residuals: variance components,
 each by its sum of squares over its redundancy.
 
@@ -17,6 +23,8 @@ Förstner, W., Ein Verfahren zur Schätzung von Varianz- und Kovarianzkomponente
 
 from __future__ import annotations
 
+import math
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -31,6 +39,11 @@ SILENT_SD = 6.0
 Wider than `core.model.robust.TUKEY`, as the weights also serve to find how large own noise is: of normal residuals
 their mean square comes out 11 % too small with 6, and 17 % with 4.685 (by integration). The estimate is 98 % efficient.
 """
+NOISE_FOR_ASSUMED = 1.2
+"""So many times as much as without it noise may act on the result where the fit makes up for what is only assumed."""
+HALVINGS = 8
+"""Of the interval in which the share of what is assumed is looked for, from LEAST_SHARE to 1 by its logarithm."""
+LEAST_SHARE = 1e-3
 ROUNDS = 10
 """Of weights and variance components, at most; it ends as soon as the form changes by less than a twentieth."""
 PRIOR_FREEDOM = 10.0
@@ -53,20 +66,20 @@ class Generalised:
         (J,) standard deviations in mm of the stretches' own noise, as large as the residuals show.
     form_mm
         Standard deviation of a patch beyond all that is named.
-    residuals
-        (J,) misfits less model and common errors, in their own standard deviations.
     """
 
     estimate: Array
     gains: Array
     own: Array
     form_mm: float
-    residuals: Array
 
 
-def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalised:
-    """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`."""
-    effects = np.hstack([sources.speckle, sources.sweeps, sources.explained, sources.form])
+def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Array | None = None) -> Generalised:
+    """Robust generalised least squares of `misfit` (J,) = `design` (J, p) · β with the errors of `sources`.
+
+    The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
+    """
+    effects = np.hstack([sources.speckle, sources.sweeps, sources.measured, sources.form])
     fixed, first_form = design.shape[1], effects.shape[1] - sources.form.shape[1]
     weights, factor = np.ones(len(misfit)), np.ones(2)
     group = sources.of_fan.astype(np.int64)
@@ -91,7 +104,42 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources) -> Generalis
         if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
             break
     gains = inverse[:fixed] @ (columns * root[:, None]).T
-    return Generalised(solution[:fixed], gains, own, form_before, residuals)
+    assumed = sources.common[:, sources.assumed & ~sources.unexplained]
+    if not assumed.shape[1]:
+        return Generalised(solution[:fixed], gains, own, form_before)
+    shared = np.hstack([sources.speckle, sources.sweeps])
+    wanted = np.eye(fixed) if wanted is None else wanted
+
+    def noise(gains: Array) -> Array:
+        acting = wanted @ gains
+        return np.asarray(np.hypot(np.linalg.norm(acting * own, axis=1), np.linalg.norm(acting @ shared, axis=1)))
+
+    gains = _with_assumed(np.hstack([columns, assumed * root[:, None]]), root, gains, assumed.shape[1], noise)
+    return Generalised(gains @ misfit, gains, own, form_before)
+
+
+def _with_assumed(columns: Array, root: Array, gains: Array, assumed: int, noise: Callable[[Array], Array]) -> Array:
+    """`gains` (p, J) where the last `assumed` of `columns` (J, m) take part as far as `noise` of gains (q,) allows."""
+    information, of_estimate = columns.T @ columns, np.eye(columns.shape[1])[:, : len(gains)]
+    prior = np.repeat([0.0, 1.0], [len(gains), len(information) - len(gains)])
+
+    def with_share(share: float) -> Array:
+        prior[-assumed:] = share**-2.0
+        inverse = cho_solve(cho_factor(information + np.diag(prior)), of_estimate)
+        return np.asarray(inverse.T @ (columns * root[:, None]).T)
+
+    most, low, high = NOISE_FOR_ASSUMED * noise(gains), math.log(LEAST_SHARE), 0.0
+    share = high
+    for _ in range(HALVINGS):
+        found = with_share(math.exp(share))
+        if (noise(found) <= most).all():
+            low, gains = share, found
+        else:
+            high = share
+        if low == high:
+            break
+        share = (low + high) / 2
+    return gains
 
 
 def _form(form: float, solution: Array, inverse: Array) -> float:

@@ -307,7 +307,8 @@ def fit_faces(upper: Cloud, lower: Cloud, planes: ParallelPlaneFit, errors: Poin
         # n·X_p − d = δd − (axes·X_p)·α + what is wrong with X_p along n, where n and d are still off by axes·α and δd.
         design = np.column_stack([face[used] == 0, face[used] == 1, -(points[used] @ axes)]).astype(np.float64)
         misfit = points[used] @ normal - distances[face[used]]
-        fit = generalised_fit(sources.mean(design), sources.mean(misfit), sources)
+        thickness = np.concatenate([[-1.0, 1.0], np.zeros(axes.shape[1])])
+        fit = generalised_fit(sources.mean(design), sources.mean(misfit), sources, thickness[None, :])
         turned = normal + axes @ fit.estimate[2:]
         length = float(np.linalg.norm(turned))
         normal, distances = turned / length, (distances + fit.estimate[:2]) / length

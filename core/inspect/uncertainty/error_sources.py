@@ -21,7 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.deviations import LAWLESS
+from core.calibrate.deviations import LAWLESS, UNMEASURED
 from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import light_below
@@ -57,12 +57,18 @@ class Sources:
     behind: Array  # (J,) what skewed light may do at most to the misfits, in mm; 0 where none is seen
     below: Array  # (J, faces) what light from below each face does that nothing excludes
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
+    assumed: NDArray[np.bool_]  # (K,) common errors whose size nothing has measured
     cause_below: Message  # what the row of `below` is called
 
     @property
     def explained(self) -> Array:
         """(J, K′) effects of the common errors that a fit may estimate from the points."""
         return np.asarray(self.common[:, ~self.unexplained])
+
+    @property
+    def measured(self) -> Array:
+        """(J, K″) effects of those of them whose size was measured."""
+        return np.asarray(self.common[:, ~(self.unexplained | self.assumed)])
 
     @classmethod
     def of(
@@ -135,6 +141,7 @@ class Sources:
             mean(of_noise * seen.farthest_mm[part]),
             (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
             np.array([source in LAWLESS for source in errors.sources], dtype=np.bool_),
+            np.array([source in UNMEASURED for source in errors.sources], dtype=np.bool_),
             LIGHT_FROM_BELOW_ASSUMED if errors.part is None or errors.part.material is None else LIGHT_FROM_BELOW,
         )
 

@@ -1,5 +1,7 @@
 """Each row of a budget against a case that can be worked out by hand."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -134,3 +136,44 @@ def test_own_noise_larger_than_stated_is_counted_as_large_as_it_is():
     sources = Sources.of(cloud, np.array([0.0, 0.0, 1.0]), np.ones(len(cloud)), face, face, errors)
     fit = generalised_fit(np.ones((len(sources.own), 1)), sources.mean(noise), sources)
     assert np.median(fit.own) == pytest.approx(0.05, rel=0.1)
+
+
+def leaning_faces(change_mm):
+    """A face seen by fan stripes of small noise; an assumed change lifts it and tilts it, and a measured one alike."""
+    rng = np.random.default_rng(3)
+    cloud = join([stripe_cloud(i, v=20.0 * i) for i in range(60)])
+    face = np.zeros(len(cloud), dtype=np.int64)
+    direction = np.array([0.0, 0.0, 1.0])
+    sources = Sources.of(cloud, direction, np.ones(len(cloud)), face, face, PointErrors(correlation_px=10.0))
+    along = np.linspace(-1, 1, len(sources.own))
+    acting = change_mm * (1 + along)[:, None]
+    return sources, acting, rng.normal(0, sources.own)
+
+
+def with_common(sources, acting, *, assumed):
+    none, one = np.zeros(1, dtype=bool), np.full(1, assumed)
+    return replace(sources, common=acting, unexplained=none, assumed=one)
+
+
+def test_what_is_only_assumed_raises_the_noise_of_a_result_by_a_fifth_at_most():
+    """Its tilt would show an assumed change, and the fit would follow the tilt's noise to take it out."""
+    sources, acting, misfit = leaning_faces(0.5)
+    design = np.ones((len(sources.own), 1))
+    alone = generalised_fit(design, misfit, with_common(sources, 0 * acting, assumed=False))
+    measured = generalised_fit(design, misfit, with_common(sources, acting, assumed=False))
+    assumed = generalised_fit(design, misfit, with_common(sources, acting, assumed=True))
+
+    def noise(fit):
+        return float(np.linalg.norm(fit.gains[0] * fit.own))
+
+    assert noise(measured) > 1.5 * noise(alone)
+    assert noise(alone) < noise(assumed) <= 1.2001 * noise(alone)
+
+
+def test_what_is_assumed_to_be_small_takes_part_whole():
+    sources, acting, misfit = leaning_faces(1e-4)
+    design = np.ones((len(sources.own), 1))
+    measured, assumed = (
+        generalised_fit(design, misfit, with_common(sources, acting, assumed=one)) for one in (False, True)
+    )
+    assert assumed.gains == pytest.approx(measured.gains, rel=0.02)
