@@ -77,7 +77,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
         _put(vertices, ("x", "y", "z"), about)
         _put(vertices, _RESTS, about - about.astype(np.float32))
         back = -cloud.points / np.maximum(np.linalg.norm(cloud.points, axis=1, keepdims=True), np.finfo(float).tiny)
-    seen = cloud.normals.any(axis=1)
+    seen = np.asarray(cloud.normals.any(axis=1))
     _put(vertices, ("nx", "ny", "nz"), np.where(seen[:, None], cloud.normals, back))
     vertices[_SEEN] = seen
     _put(vertices, ("image_u", "image_v"), cloud.uv)

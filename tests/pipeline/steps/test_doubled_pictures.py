@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from core.files.pictures import read_picture
-from core.files.recording.options import Options
 from core.files.recording.recording_set import open_set
 from core.files.recording.set_listing import pictures_in
+from core.files.recording.step_settings import ScanSettings
 from core.image.repeated import REPEATED
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import measure_check
@@ -19,7 +19,7 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from tests.simulated import copy_of
 
-COARSE = Options(sigma_cut_mm=0.3)
+COARSE = ScanSettings(sigma_cut_mm=0.3)
 
 
 def measured(folder: Path, out: Path):

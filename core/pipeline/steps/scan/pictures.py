@@ -15,8 +15,8 @@ from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
-from core.findings.table import note_of
 from core.files.recording.step_settings import ScanSettings
+from core.findings.table import note_of
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes
