@@ -207,7 +207,7 @@ def _of_grr(study: GrrStudy) -> list[Fact]:
     before = label("√2 σ of the parts over σ of gauge R&R, before it is cut off to a whole number")
     facts.append(
         Fact(
-            label("ndc, not cut off"), study.ndc, digits=2, tip=before, level=Reader.METROLOGIST,
+            label("categories, not cut off"), study.ndc, digits=2, tip=before, level=Reader.METROLOGIST,
             interval=study.ndc_interval,
         )
     )  # fmt: skip

@@ -11,7 +11,7 @@ from typing import TypeAlias
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
-from reportlab.platypus import Flowable, KeepTogether, Table, TableStyle
+from reportlab.platypus import Flowable, KeepTogether, Spacer, Table, TableStyle
 
 from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.facts.table import FactTable, tables_for_reader
@@ -243,9 +243,10 @@ def figures(look: ReportLook, facts: Iterable[Fact]) -> Table:
     return plain_table(rows, [TEXT_WIDTH / 6] * 6)
 
 
-def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Table]:
+def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Flowable]:
     """What an auditor reads of a result in rows and columns."""
-    return [_fact_table(look, table) for table in tables_for_reader(tables, Reader.AUDITOR)]
+    read = tables_for_reader(tables, Reader.AUDITOR)
+    return [part for table in read for part in (Spacer(0, 1 * mm), _fact_table(look, table), Spacer(0, 1 * mm))]
 
 
 def _fact_table(look: ReportLook, table: FactTable) -> Table:

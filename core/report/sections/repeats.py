@@ -14,7 +14,7 @@ from core.report.layout.blocks import Cell, figures, heads, more_line, ruled_tab
 from core.report.layout.style import ReportLook
 from core.report.wording import decimals_of
 
-WIDTHS = [shares * mm for shares in (7, 45, 29, 21, 17, 9, 18, 24)]
+WIDTHS = [shares * mm for shares in (7, 41, 29, 21, 17, 9, 22, 24)]
 """Number, scan, time, thickness, U, k, deviation, calibration."""
 
 NUMERIC = (3, 4, 5, 6)

@@ -32,6 +32,9 @@ VERDICT_ICONS: dict[str, tuple[str, str]] = {
     "not proven": ("mdi6.help-rhombus-outline", "warn"),
 }
 
+NAME_PX = 96
+"""Least width of the labels: beside a long value a short one stays in one line."""
+
 ValueRow = tuple[str, str, str, Level]
 """Label, text with unit, tip, level."""
 
@@ -56,6 +59,7 @@ class ValueRows(QWidget):
         self._grid.setHorizontalSpacing(8)
         self._grid.setVerticalSpacing(3)
         self._grid.setColumnStretch(0, 1)
+        self._grid.setColumnMinimumWidth(0, NAME_PX)
         column = in_column(on=self, spacing=3)
         column.addLayout(self._grid)
         column.addWidget(self.more, 0, Qt.AlignmentFlag.AlignLeft)
