@@ -31,6 +31,7 @@ from core.errors import InputError
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.fit.plane_fit import LARGEST_WEIGHT
 from core.inspect.fit.shapes import Parts, Shape
+from core.inspect.fit.simpler_shape import flat_points
 from core.inspect.fit.spanned import spanned
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
@@ -45,6 +46,8 @@ from core.scan.surface.cloud import Cloud
 S = TypeVar("S", bound=Shape)
 
 MORE_SWEEPS = Message("feature.advice_more_sweeps", "scan it with more sweeps")
+
+CURVED = Message("surface.advice_curved", "draw a region on the curved surface")
 
 FEWEST = 12
 """Points on each face of a surface: more than twice the parameters of any shape here."""
@@ -131,7 +134,8 @@ def fit_surface(
     Raises
     ------
     InputError
-        If a face has too few points for its shape, or all its points together do not span it.
+        If a face has too few points for its shape, or all its points together do not span it, or a plane
+        explains those of a sphere or a cylinder.
     """
     part = np.zeros(len(indices), dtype=np.int64) if part is None else part
     points, sigma = cloud.points[indices], cloud.sigma[indices]
@@ -148,9 +152,11 @@ def fit_surface(
             fit = generalised_fit(design, sources.mean(shape.misfit(points, mine)), sources)
             shape = shape.moved(fit.estimate)
     except np.linalg.LinAlgError as error:
-        raise _not_spanned() from error
+        raise _not_fixed(shape, used, errors) from error
     if not spanned(shape, points, used.sigma, mine):
-        raise _not_spanned()
+        raise _not_fixed(shape, used, errors)
+    if flat := flat_points(shape, used, errors):
+        raise InputError(flat, todo=CURVED)
     faces = [np.flatnonzero(mine == face) for face in np.unique(mine)]
     by_face = [spanned(shape, points[face], used.sigma[face], mine[face]) for face in faces]
     calibrations = errors.calibrations
@@ -165,7 +171,11 @@ def too_few(count: int) -> InputError:
     return InputError(Message("surface.too_few_points", "{n} points are too few for it", n=count), todo=MORE_SWEEPS)
 
 
-def _not_spanned() -> InputError:
+def _not_fixed(shape: Shape, used: Cloud, errors: PointErrors) -> InputError:
+    """Why points do not fix a shape; those of one stripe are flat on any surface."""
+    flat = flat_points(shape, used, errors) if len(np.unique(used.sweep)) > 1 else None
+    if flat is not None:
+        return InputError(flat, todo=CURVED)
     return InputError(
         Message(
             "surface.points_do_not_span",

@@ -79,7 +79,8 @@ def test_a_thickness_of_a_plan_proves_nothing_either_even_by_a_master(monkeypatc
 
 def test_a_level_of_one_stripe_proves_no_height(monkeypatch: pytest.MonkeyPatch) -> None:
     cloud, pair = one_line_below(scan())
-    plan = InspectionPlan((FeatureSpec("step", "steps", limits=(("height", Limits(30.0, -1.0, 1.0)),)),))
+    limits = (("height", Limits(0.0, -1.0, 1.0)),)
+    plan = InspectionPlan((FeatureSpec("step", "steps", limits=limits, nominal_heights=(30.0,)),))
     assert evaluate(plan, scan(), errors=ERRORS).verdict == Verdict.CONFORMING
     monkeypatch.setattr("core.inspect.features.steps._levels", lambda spec, scene: [pair.lower, pair.upper])
     (row,) = evaluate(plan, cloud, errors=ERRORS).characteristics
