@@ -1,6 +1,8 @@
 """The two parallel faces of a part, found in the cloud or given as polygons in the picture.
 
-Of all pairs of parallel planes (`core.inspect.fit.plane_search`) the pair whose smaller face is largest wins.
+Of all pairs of parallel planes (`core.inspect.fit.plane_search`) the pair whose smaller face is largest wins. Where
+others are of like size (two parts on a table, a part with a step), the one nearest to the nominal thickness does, and
+all of them are kept: only a person knows which one was meant.
 """
 
 from __future__ import annotations
@@ -16,11 +18,13 @@ from core.inspect.face_region import Region, inside_polygon
 from core.inspect.fit.plane_search import (
     FEWEST_POINTS,
     POINT_CLOUD,
+    FoundPlane,
     find_planes,
     largest_plane,
     points_on,
     search_tolerance,
 )
+from core.inspect.results import PairCandidate
 from core.messages import Field, Message
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -47,22 +51,31 @@ PARALLEL = np.radians(2.0)
 """Faces are parallel within this angle; larger angles are another feature, not a worse gauge block."""
 
 
+LIKE_SIZE = 0.25
+"""Pairs whose smaller face has this share of the largest one's area could as well be meant."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class FacePair:
-    """Indices into the cloud of the points on the face nearer to the camera and on the other."""
+    """Indices into the cloud of the points on the face nearer to the camera and on the other.
+
+    `candidates` are all pairs that could be meant, this one first, where it was chosen among several by itself.
+    """
 
     upper: NDArray[np.int64]
     lower: NDArray[np.int64]
+    candidates: tuple[PairCandidate, ...] = ()
 
 
 def find_faces(
     cloud: Cloud,
     *,
     margin_mm: float = 1.5,
+    nominal_mm: float | None = None,
     seed: int = 0,
     progress: Progress = silent,
 ) -> FacePair:
-    """The points of the two largest parallel faces.
+    """The points of the two largest parallel faces, or, of several pairs of like size, of that nearest to a nominal.
 
     Parameters
     ----------
@@ -70,6 +83,8 @@ def find_faces(
         Normals are estimated when it has none.
     margin_mm
         Points nearer than this to the edge of their face are left out: stripes are biased there.
+    nominal_mm
+        Thickness of the pair that is meant; None: the largest is taken.
     seed
         Of the random search; the same seed gives the same faces.
     progress
@@ -106,9 +121,36 @@ def find_faces(
                 lower=Field("gauge.lower_polygon_px"),
             ),
         )
-    best = max(pairs, key=lambda pair: sorted(plane.region.area_mm2 for plane in pair))
-    upper, lower = sorted(best, key=lambda plane: plane.distance)
-    return FacePair(upper.region.indices, lower.region.indices)
+    pairs.sort(key=lambda pair: sorted(plane.region.area_mm2 for plane in pair), reverse=True)
+    least = LIKE_SIZE * min(plane.region.area_mm2 for plane in pairs[0])
+    found = [_Pair.of(cloud, *pair) for pair in pairs if min(plane.region.area_mm2 for plane in pair) >= least]
+    alike = [found[0], *(one for one in found[1:] if one.candidate.thickness_mm > 2 * tolerance)]
+    if nominal_mm is not None:
+        alike.sort(key=lambda one: abs(one.candidate.thickness_mm - nominal_mm))
+    candidates = tuple(one.candidate for one in alike) if len(alike) > 1 else ()
+    return FacePair(alike[0].upper.region.indices, alike[0].lower.region.indices, candidates)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Pair:
+    """Two parallel planes, the one nearer to the camera first."""
+
+    upper: FoundPlane
+    lower: FoundPlane
+    candidate: PairCandidate
+
+    @classmethod
+    def of(cls, cloud: Cloud, one: FoundPlane, other: FoundPlane) -> _Pair:
+        upper, lower = sorted((one, other), key=lambda plane: plane.distance)
+        places = [cloud.uv[plane.region.indices].mean(axis=0) for plane in (upper, lower)]
+        amid = cloud.points[upper.region.indices].mean(axis=0)
+        candidate = PairCandidate(
+            abs(float(lower.distance - lower.normal @ amid)),
+            (len(upper.region.indices), len(lower.region.indices)),
+            (float(places[0][0]), float(places[0][1])),
+            (float(places[1][0]), float(places[1][1])),
+        )
+        return cls(upper, lower, candidate)
 
 
 def faces_in_polygons(

@@ -8,6 +8,7 @@ extrapolated by itself, and no mean height is taken.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -25,12 +26,12 @@ from core.inspect.fit.plane_fit import (
 )
 from core.inspect.fit.spanned import faces_not_spanned
 from core.inspect.free_faces import angle_of, free_faces
-from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.results import Contribution, Face, GaugeResult, PairCandidate
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import doubt_of_light
-from core.messages import Message
+from core.messages import Field, Message
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 
@@ -80,6 +81,7 @@ def fit_gauge(
     *,
     errors: PointErrors | None = None,
     regions: Polygons | FacePair | None = None,
+    nominal_mm: float | None = None,
     progress: Progress = silent,
 ) -> GaugeFit:
     """Find the two faces and fit them.
@@ -93,6 +95,8 @@ def fit_gauge(
     regions
         (upper, lower) polygons, each (n, 2) in pixels, or the points of the faces themselves; None: the two largest
         parallel faces are found.
+    nominal_mm
+        Thickness of the faces that are meant, should several pairs be found.
     progress
         Called with how far it is.
 
@@ -102,7 +106,7 @@ def fit_gauge(
         If there are no two parallel faces, or the one given as the upper is not nearer to the camera.
     """
     if regions is None:
-        pair = find_faces(cloud, progress=progress)
+        pair = find_faces(cloud, nominal_mm=nominal_mm, progress=progress)
     elif isinstance(regions, FacePair):
         pair = regions
     else:
@@ -154,7 +158,7 @@ def measure_gauge(
         As `fit_gauge`.
     """
     errors = errors or PointErrors()
-    fit = fit_gauge(cloud, errors=errors, regions=regions, progress=progress)
+    fit = fit_gauge(cloud, errors=errors, regions=regions, nominal_mm=nominal_mm, progress=progress)
     u, factor = combined(fit.budget), student_factor(k, fit.budget)
     missing = errors.missing()
     notes: tuple[Message, ...] = ()
@@ -174,6 +178,7 @@ def measure_gauge(
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=notes + _notes_on_form(cloud, fit, errors),
         doubts=_doubts(fit),
+        candidates=fit.pair.candidates,
     )
     if errors.part is not None:
         gauge = adjusted(gauge, errors.part.thicker_mm, errors.part.surface_rows, errors.part.surface_notes, k=k)
@@ -186,7 +191,26 @@ def measure_gauge(
 def _doubts(fit: GaugeFit) -> tuple[Message, ...]:
     """Why the thickness proves nothing, by its faces themselves."""
     names = [name for name, face in ((UPPER_FACE, fit.upper), (LOWER_FACE, fit.lower)) if not face.spanned]
-    return (faces_not_spanned(names),) if names else ()
+    return (
+        *([_several(fit.pair.candidates)] if fit.pair.candidates else []),
+        *([faces_not_spanned(names)] if names else []),
+    )
+
+
+def _several(candidates: Sequence[PairCandidate]) -> Message:
+    """That it is not known which of several pairs of faces is meant: the one measured, and the next best."""
+    chosen, second = candidates[:2]
+    return note_of(
+        "gauge.several_faces",
+        n=len(candidates),
+        mm=chosen.thickness_mm,
+        u=chosen.upper_px[0],
+        v=chosen.upper_px[1],
+        other_mm=second.thickness_mm,
+        other_u=second.upper_px[0],
+        other_v=second.upper_px[1],
+        lower=Field("gauge.lower_polygon_px"),
+    )
 
 
 def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Message, ...]:

@@ -70,6 +70,26 @@ class Contribution:
         return self.u_mm / self.point_mm if self.point_mm else None
 
 
+@dataclass(frozen=True, slots=True)
+class PairCandidate:
+    """A pair of parallel faces that could be the ones meant.
+
+    Parameters
+    ----------
+    thickness_mm
+        Their distance, roughly: by the planes found in the search.
+    points
+        How many points the search found on the upper and on the lower face.
+    upper_px, lower_px
+        Where in the picture the middle of their points is.
+    """
+
+    thickness_mm: float
+    points: tuple[int, int]
+    upper_px: tuple[float, float]
+    lower_px: tuple[float, float]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class GaugeResult:
     """The thickness of a gauge block: distance of two parallel faces.
@@ -79,6 +99,7 @@ class GaugeResult:
     is. `points_used` on the upper and the lower face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. What is
     not `complete` proves nothing, whatever u: `notes` say why, and `doubts` are those of them that its faces themselves
     give. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
+    `candidates` are the pairs of faces that could be meant, the measured one first; () where there was no choice.
 
     Raises
     ------
@@ -101,6 +122,7 @@ class GaugeResult:
     complete: bool = True
     at_20: bool | None = False
     doubts: tuple[Message, ...] = ()
+    candidates: tuple[PairCandidate, ...] = ()
 
     def __post_init__(self) -> None:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:

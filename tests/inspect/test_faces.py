@@ -1,15 +1,22 @@
 """The two parallel faces: found among clutter, or given as polygons."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from core.errors import InputError
 from core.inspect import faces
+from core.inspect.conformity import Verdict
 from core.inspect.face_region import Region
 from core.inspect.faces import faces_in_polygons, find_faces
 from core.inspect.fit.plane_search import FoundPlane
+from core.inspect.gauge import measure_gauge
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
-from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at, square
+from core.scan.surface.triangulate import join
+from tests.inspect.block_scan import FOCAL, HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at, pixels, square
 
 
 @pytest.fixture(scope="module")
@@ -148,3 +155,33 @@ def test_a_face_with_hardly_a_point_away_from_its_edges_is_none(scan, monkeypatc
     monkeypatch.setattr(faces, "find_planes", lambda *_, **__: sparse)
     with pytest.raises(InputError, match="no two are parallel"):
         find_faces(cloud)
+
+
+def two_blocks() -> tuple[Cloud, Array]:
+    """A block of 40 mm, and beside it on the table another of 25 mm that is about as large."""
+    tall = BlockScan(height=40.0, sweeps=30)
+    cloud = tall.measure(np.random.default_rng(0))
+    beside = tall.points - (TABLE_MM - tall.height) * NORMAL
+    flat = beside @ axes().T
+    top = cloud.select(tall.upper & (np.abs(flat[:, 0]) < HALF - 4))
+    moved = top.points + 15.0 * NORMAL + 75.0 * axes()[1]
+    second = replace(top, points=moved, uv=pixels(moved))
+    cloud = join(
+        [cloud.select(~(np.linalg.norm(cloud.points - moved.mean(axis=0), axis=1) < 55.0) | tall.upper), second]
+    )
+    return cloud, tall.covariance
+
+
+def test_of_two_blocks_that_near_the_nominal_is_measured_and_proves_nothing() -> None:
+    cloud, covariance = two_blocks()
+    for nominal in (40.0, 25.0):
+        gauge = measure_gauge(cloud, errors=PointErrors(covariance), nominal_mm=nominal, tolerance_mm=1.0)
+        other = 65.0 - nominal
+        assert gauge.thickness_mm == pytest.approx(nominal, abs=0.1)
+        assert gauge.verdict == Verdict.NOT_PROVEN
+        assert [round(one.thickness_mm) for one in gauge.candidates][:1] == [nominal]
+        assert other in [round(one.thickness_mm) for one in gauge.candidates]
+        assert f"one of {nominal:.1f} mm" in str(gauge.notes[0])
+        u, v = gauge.candidates[0].upper_px
+        amid = cloud.uv[gauge.upper.indices].mean(axis=0)
+        assert (u, v) == pytest.approx(tuple(amid), abs=20.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -20,7 +21,7 @@ from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row3, kept, row_tables
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
-from core.inspect.results import Contribution, Face, GaugeResult
+from core.inspect.results import Contribution, Face, GaugeResult, PairCandidate
 from core.messages import Command, Message
 from core.model import LightPlane
 from core.scan.surface.cloud import Cloud
@@ -51,6 +52,16 @@ class _Faces(ResultFile):
     lower: _Face
 
 
+_PX = Field(description="two finite numbers: a pixel")
+
+
+class _Candidate(ResultFile):
+    thickness_mm: Finite = Field(ge=0, description="a length in mm, not negative")
+    points: tuple[int, int] = Field(description="two whole numbers")
+    upper_px: tuple[Finite, Finite] = _PX
+    lower_px: tuple[Finite, Finite] = _PX
+
+
 class _Contribution(BudgetRow):
     u_mm: Finite
 
@@ -73,6 +84,7 @@ class _GaugeFile(ResultFile):
     normal: Row3 | None = None
     notes: list[KeptMessage] = Field(default_factory=list)
     budget: list[_Contribution] = Field(default_factory=list)
+    candidates: list[_Candidate] = Field(default_factory=list)
     calibration_id: str = ""
 
 
@@ -108,6 +120,7 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
                 "normal": gauge.normal,
                 "budget": [_row(row, gauge.u_mm) for row in gauge.budget],
                 "faces": {"upper": _plane(gauge.upper), "lower": _plane(gauge.lower)},
+                "candidates": [asdict(one) for one in gauge.candidates],
                 "calibration_id": calibration_id,
                 "version": __version__,
             }
@@ -143,6 +156,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         normal=None if file.normal is None else np.array(file.normal),
         rule=file.rule,
         notes=tuple(file.notes),
+        candidates=tuple(PairCandidate(**one.model_dump()) for one in file.candidates),
     )
 
 

@@ -47,8 +47,8 @@ def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
             Message("feature.thickness_regions", "a thickness has two regions, the upper and the lower face"),
             todo=Message("feature.advice_both_regions", "give both, or none"),
         )
-    if filters.sigma_max_mm is None:
-        return find_faces(cloud, margin_mm=filters.margin_mm, progress=scene.progress)
-    kept = np.flatnonzero(cloud.sigma <= filters.sigma_max_mm)
-    pair = find_faces(cloud.select(kept), margin_mm=filters.margin_mm, progress=scene.progress)
-    return FacePair(kept[pair.upper], kept[pair.lower])
+    allowed, limits = np.inf if filters.sigma_max_mm is None else filters.sigma_max_mm, spec.limits_of("thickness")
+    kept = np.flatnonzero(cloud.sigma <= allowed)
+    nominal_mm = None if limits is None else limits.nominal
+    pair = find_faces(cloud.select(kept), margin_mm=filters.margin_mm, nominal_mm=nominal_mm, progress=scene.progress)
+    return replace(pair, upper=kept[pair.upper], lower=kept[pair.lower])
