@@ -5,6 +5,12 @@ from __future__ import annotations
 from core.findings.finding import Effect, Finding, Weight
 
 ROWS = (
+    # Files of a set
+    Finding("set.not_read", Weight.CAUTION, Effect.NONE,
+            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png, a film picture by "
+            "picture.",
+            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, a film picture by "
+            "picture."),
     # Camera, light and surface
     Finding("scan.no_reference", Weight.CAUTION, Effect.NONE,
             "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel."),

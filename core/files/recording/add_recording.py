@@ -7,11 +7,9 @@ from pathlib import Path
 
 from core.files.atomic import cannot_write
 from core.files.linking import link
-from core.files.recording.set_listing import further_exposures, pictures_in
+from core.files.recording.set_listing import OFF, further_exposures, is_off, pictures_in, without_off
 from core.held_files import rename
 from core.progress import Progress, silent
-
-_OFF = "_off"
 
 
 def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> Path:
@@ -27,7 +25,7 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
         If a folder cannot be read or written.
     """
     old = pictures_in(before)
-    taken = {_pose(path) for path in old}
+    taken = {without_off(path) for path in old}
     try:
         new = _renamed(pictures_in(recorded), taken)
         for path, name in new.items():
@@ -42,22 +40,17 @@ def add_recording(before: Path, recorded: Path, progress: Progress = silent) -> 
     return recorded
 
 
-def _pose(path: Path) -> str:
-    """The name without ending that the two pictures of a pair share."""
-    return path.stem.removesuffix(_OFF)
-
-
 def _renamed(new: tuple[Path, ...], taken: set[str]) -> dict[Path, str]:
     """New names of those pictures whose names are taken."""
-    poses = {_pose(path) for path in new}
+    poses = {without_off(path) for path in new}
     used, names = taken | poses, dict[str, str]()
     for pose in sorted(poses & taken):
         names[pose] = _free(pose, used)
         used.add(names[pose])
     return {
-        path: f"{names[_pose(path)]}{_OFF if path.stem.endswith(_OFF) else ''}{path.suffix}"
+        path: f"{names[without_off(path)]}{OFF if is_off(path) else ''}{path.suffix}"
         for path in new
-        if _pose(path) in names
+        if without_off(path) in names
     }
 
 

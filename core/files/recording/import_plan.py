@@ -15,7 +15,6 @@ from enum import StrEnum
 from pathlib import Path
 from typing import TypeAlias
 
-import cv2
 import numpy as np
 from PIL import Image
 
@@ -25,18 +24,15 @@ from core.files.picture_size import opened_head
 from core.files.pictures import read_picture
 from core.files.reading import cannot_read, resolved
 from core.files.recording.recording_set import CHECK
-from core.files.recording.set_listing import check_sizes, pictures_in
+from core.files.recording.set_listing import OFF, check_sizes, is_off, notes_on_not_read, pictures_in, without_off
+from core.image.stripes.exchanged import PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.messages import Message, plural_message
 
-_OFF = "_off"
 _REFERENCE = "reference"
 _EXIF_TABLE, _TAKEN_AT, _TAKEN_AT_PART, _WRITTEN_AT = 0x8769, 0x9003, 0x9291, 0x0132
 """Tags of Exif: its own table, DateTimeOriginal, SubsecTimeOriginal, and DateTime of the file."""
 _NAMES_SHOWN = 3
 """So many pictures are named in a note."""
-_SWAPPED = 1.5
-"""Pairs whose light is so many times stronger in the off picture are told as exchanged. In 44 real pairs of three
-cameras the strongest light was 1.1 to 30 times stronger in the on picture."""
 
 
 class Order(StrEnum):
@@ -99,7 +95,7 @@ class ImportedPicture:
     def files(self) -> tuple[tuple[str, Path], ...]:
         """(name within the set, where it lies) of each file: "planes/07_off.png"."""
         on = (f"{self.part}/{self.name}{self.source.suffix}", self.source)
-        return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{_OFF}{self.off.suffix}", self.off))
+        return (on,) if self.off is None else (on, (f"{self.part}/{self.name}{OFF}{self.off.suffix}", self.off))
 
 
 @dataclass(frozen=True, slots=True)
@@ -199,8 +195,8 @@ def _frames(where: Where, reference: Path | None, order: Order) -> _Part:
 def _poses(part: str, on: Where, off: Where | None, order: Order) -> _Part:
     files, notes = _listed(on)
     if off is None:
-        offs = {path.stem.removesuffix(_OFF): path for path in files if path.stem.endswith(_OFF)}
-        files = [path for path in files if not path.stem.endswith(_OFF)]
+        offs = {without_off(path): path for path in files if is_off(path)}
+        files = [path for path in files if not is_off(path)]
         if not offs:
             _refuse_two_kinds(on, files)
         partners, left = {path: offs.pop(path.stem) for path in files if path.stem in offs}, list(offs.values())
@@ -249,34 +245,7 @@ def _listed(where: Where) -> tuple[list[Path], tuple[Message, ...]]:
             where=where,
             todo=Message("import.advice_formats", "pictures are png, tif, bmp, jpg and pgm"),
         )
-    return fitting, _unread(folder, where.pattern)
-
-
-_PICTURES_NOT_READ = frozenset(
-    {".webp", ".gif", ".heic", ".heif", ".avif", ".jp2", ".raw", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".ppm", ".pnm"}
-    | {".mp4", ".avi", ".mov"}
-)
-"""Endings (lower case) of pictures and films that a camera or a telephone may have written beside them."""
-
-
-def _unread(folder: Path, pattern: str) -> tuple[Message, ...]:
-    try:
-        names = [path.name for path in folder.iterdir() if path.suffix.lower() in _PICTURES_NOT_READ]
-    except OSError as error:
-        raise cannot_read(folder, error) from error
-    names = sorted(name for name in names if _matched(pattern, name) is not None)
-    if not names:
-        return ()
-    return (
-        plural_message(
-            "import.not_read",
-            "{n} file in {folder} is of a kind that is not read ({names}): convert it to png.",
-            "{n} files in {folder} are of a kind that is not read ({names}): convert them to png.",
-            n=len(names),
-            folder=folder.name,
-            names=tuple(names[:_NAMES_SHOWN]),
-        ),
-    )
+    return fitting, notes_on_not_read(folder, lambda name: _matched(where.pattern, name) is not None)
 
 
 def _matched(pattern: str, name: str) -> tuple[str, ...] | None:
@@ -364,12 +333,12 @@ def _set_names(files: Sequence[Path], *, taken: Iterable[str] = (), ends_with_of
     stems = [path.stem for path in files]
     lowered = [stem.lower() for stem in stems]
     clash = len({*lowered, *taken}) < len(lowered) + len(tuple(taken))
-    off = ends_with_off and any(stem.endswith(_OFF) for stem in stems)
+    off = ends_with_off and any(map(is_off, files))
     names = [path.name for path in files]
     if names == sorted(names) and not clash and not off:
         return stems
     digits = len(str(len(files) - 1))
-    bare = [stem.removesuffix(_OFF) if ends_with_off else stem for stem in stems]
+    bare = [without_off(path) if ends_with_off else path.stem for path in files]
     return [f"{place:0{digits}d}-{stem}" for place, stem in enumerate(bare)]
 
 
@@ -491,12 +460,13 @@ def _exchanged(pictures: Sequence[ImportedPicture]) -> tuple[Message, ...]:
     pairs = [one for one in pictures if one.off is not None]
     if not pairs:
         return ()
-    tried = [pairs[place] for place in sorted({0, len(pairs) // 2, len(pairs) - 1})]
+    tried = [pairs[place] for place in np.unique(np.linspace(0, len(pairs) - 1, PAIRS_TRIED).astype(int))]
     try:
-        if np.median([_light_off_over_on(one.source, one.off) for one in tried if one.off]) <= _SWAPPED:
-            return ()
+        pairs_read = [(read_picture(one.source), read_picture(one.off)) for one in tried if one.off]
     except InputError:
         return ()  # a damaged picture is told by name when it is measured
+    if not are_exchanged([light_off_over_on(on, off) for on, off in pairs_read]):
+        return ()
     return (
         Message(
             "import.exchanged",
@@ -504,13 +474,3 @@ def _exchanged(pictures: Sequence[ImportedPicture]) -> tuple[Message, ...]:
             name=tried[0].name,
         ),
     )
-
-
-def _light_off_over_on(on: Path, off: Path) -> float:
-    """How many times stronger the strongest light that only the off picture has is than that of the on picture."""
-    first, second = (read_picture(path).astype(np.float32) for path in (on, off))
-    if first.shape != second.shape:
-        return 0.0
-    light = cv2.blur(first - second, (5, 5))
-    light -= np.median(light[::4, ::4])
-    return float(-light.min() / max(float(light.max()), 1e-9))

@@ -32,6 +32,7 @@ from core.files.recording.set_listing import (
     PlanePair,
     check_sizes,
     further_exposures,
+    notes_on_not_read,
     pictures_in,
     plane_pairs,
     scan_frames,
@@ -105,6 +106,10 @@ class RecordingSet:
     def where(self, part: str) -> Path | str:
         """The folder of a part, or its name if it has none: what a complaint about it begins with."""
         return self.folders.get(part, part)
+
+    def not_read(self, part: str) -> tuple[Message, ...]:
+        """A note on pictures and films in the folder of a part that are of a kind that is not read."""
+        return notes_on_not_read(self.folders.get(part))
 
     @property
     def rig_file(self) -> Path:
@@ -205,14 +210,27 @@ def gather_set(
     return found
 
 
+def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Message) -> InputError:
+    """The error of a part without pictures; where there are some of a kind that is not read, these are to be told."""
+    unread = recording_set.not_read(part)
+    if unread:
+        todo = Message(
+            "advice.convert_pictures",
+            "convert {names} to png, a film picture by picture",
+            names=unread[0].values["names"],
+        )
+    return InputError(what, where=recording_set.where(part), todo=todo)
+
+
 def require_camera(recording_set: RecordingSet) -> None:
     """InputError unless the set has views of the camera target, and says what that is."""
     require_tables(recording_set.rig, recording_set.rig_file, "camera_target")
     if not recording_set.camera:
-        raise InputError(
+        raise _nothing_in(
+            recording_set,
+            "camera",
             Message("set.no_camera_pictures", "there are no pictures of the camera target"),
-            where=recording_set.where("camera"),
-            todo=Message("advice.record_views", "record ten or more"),
+            Message("advice.record_views", "record ten or more"),
         )
 
 
@@ -220,20 +238,22 @@ def require_planes(recording_set: RecordingSet) -> None:
     """InputError unless the set has pictures of the plane target with the fan on, and says what both are."""
     require_tables(recording_set.rig, recording_set.rig_file, "plane_target", "laser_fan")
     if not recording_set.planes:
-        raise InputError(
+        raise _nothing_in(
+            recording_set,
+            "planes",
             Message("set.no_plane_pictures", "there are no pictures of the plane target with the fan on"),
-            where=recording_set.where("planes"),
-            todo=Message("advice.record_poses", "record five or more poses"),
+            Message("advice.record_poses", "record five or more poses"),
         )
 
 
 def require_scan(recording_set: RecordingSet) -> None:
     """InputError unless the set has frames of a scan."""
     if not recording_set.frames:
-        raise InputError(
+        raise _nothing_in(
+            recording_set,
+            "scan",
             Message("set.no_frames", "there are no frames of a scan"),
-            where=recording_set.where("scan"),
-            todo=Message("advice.record_sweeps", "record 30 or more sweep positions"),
+            Message("advice.record_sweeps", "record 30 or more sweep positions"),
         )
 
 

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from core.acquire.source import Lasers, Step
-from core.files.recording.set_listing import pictures_in
+from core.files.recording.set_listing import is_off, pictures_in, without_off
 
 _PARTS: tuple[Step, ...] = ("camera", "planes", "scan", "check")
 
@@ -29,7 +29,7 @@ class ReplayPictures:
         """The pictures of a step taken under these lasers, in the order of their names; empty if there are none."""
         pictures = pictures_in(self.folder / step if self.is_set else self.folder)
         if step in ("planes", "check"):
-            off = {path.stem.removesuffix("_off"): path for path in pictures if path.stem.endswith("_off")}
+            off = {without_off(path): path for path in pictures if is_off(path)}
             shown = [path for path in pictures if path not in off.values()]
             if lasers.fan:
                 return tuple(shown)

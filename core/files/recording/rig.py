@@ -32,6 +32,8 @@ _MISSING = Message("rig.missing", "the file is missing; it says what the targets
 # The description of a field ends the sentence "… is <value>, not <description>".
 _Count = Annotated[int, Field(ge=3, le=500)]
 _Length = Annotated[float, Field(gt=0, le=5000, allow_inf_nan=False)]
+SMALLEST_PRINTED_MM = 0.5
+"""A smaller square, pitch or side of a target is one in metres: half a metre away it would be a pixel or two."""
 _A_LENGTH = label("a length in mm above 0 and at most 5000")
 _TWO_COUNTS = label("two whole numbers from 3 to 500, [columns, rows]")
 _Vertex = Annotated[list[Annotated[float, Field(allow_inf_nan=False)]], Field(min_length=2, max_length=2)]
@@ -71,6 +73,22 @@ class _Printed(Table):
     @model_validator(mode="after")
     def _with_u(self) -> _Printed:
         require_pairs(self, WARMTH)
+        return self
+
+    @model_validator(mode="after")
+    def _in_millimetres(self) -> _Printed:
+        for key in ("square_mm", "pitch_mm", "side_mm"):
+            value = getattr(self, key, None)
+            if value is not None and value < SMALLEST_PRINTED_MM:
+                raise Clash(
+                    key,
+                    Message(
+                        "rig.in_metres",
+                        "is {value:g}, and no target is that small; lengths are in mm: is it {in_mm:g}?",
+                        value=value,
+                        in_mm=1e3 * value,
+                    ),
+                )
         return self
 
     def temperature(self) -> TargetTemperature:

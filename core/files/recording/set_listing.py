@@ -6,7 +6,7 @@ import contextlib
 import re
 import struct
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 from pathlib import Path
@@ -17,13 +17,24 @@ from core.errors import InputError
 from core.files.limits import check_file
 from core.files.picture_size import opened_head
 from core.files.pictures import is_picture
-from core.messages import Message
+from core.files.reading import cannot_read
+from core.findings.table import note_of
+from core.messages import Message, plural_message
 
-_OFF = "_off"
+OFF = "_off"
+"""At the end of the name of a picture with the fan off, in small letters or in capitals."""
 FURTHER = (2, 3)
 """Numbers of further exposures: NAME@2.png, NAME@3.png."""
 _FURTHER = re.compile(rf"(.+)@({'|'.join(map(str, FURTHER))})")
 _REFERENCE = "reference"
+_NOT_READ = frozenset(
+    {".webp", ".gif", ".heic", ".heif", ".avif", ".jp2", ".raw", ".dng", ".cr2", ".cr3", ".nef", ".arw", ".ppm", ".pnm"}
+    | {".mp4", ".avi", ".mov", ".mkv", ".m4v", ".webm", ".wmv", ".mpg", ".mpeg"}
+)
+"""Endings (lower case) of pictures and films that a camera or a telephone may have written beside those that are read:
+what coding they have lost, a stripe's noise does not show."""
+_NAMES_SHOWN = 3
+"""So many files are named in a note."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -46,6 +57,26 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
     Nothing if there is no such folder, InputError if it cannot be listed.
     """
     return tuple(path for path in _all_in(folder) if not is_further(path))
+
+
+def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
+    """A note on files in a folder, of names that fit, that look like pictures or films of a kind that is not read."""
+    if folder is None or not folder.is_dir():
+        return ()
+    try:
+        names = [path.name for path in folder.iterdir() if path.suffix.lower() in _NOT_READ and fits(path.name)]
+    except OSError as error:
+        raise cannot_read(folder, error) from error
+    if not names:
+        return ()
+    return (
+        note_of(
+            "set.not_read",
+            n=len(names),
+            folder=folder.name,
+            names=tuple(sorted(names)[:_NAMES_SHOWN]),
+        ),
+    )
 
 
 def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:
@@ -81,19 +112,37 @@ def _all_in(folder: Path | None) -> tuple[Path, ...]:
     return tuple(sorted(found, key=lambda path: path.name))
 
 
+def is_off(path: Path) -> bool:
+    """Whether a picture's name is that of one with the fan off: NAME_off or NAME_OFF."""
+    return path.stem.lower().endswith(OFF)
+
+
+def without_off(path: Path) -> str:
+    """A picture's name without its ending, and without that it has the fan off."""
+    return path.stem[: -len(OFF)] if is_off(path) else path.stem
+
+
 def plane_pairs(folder: Path | None) -> tuple[PlanePair, ...]:
-    """Pictures with the fan on, each with its partner NAME_off; an off picture without partner is an error."""
-    pictures = {path.stem: path for path in pictures_in(folder)}
+    """Pictures with the fan on, each with its partner NAME_off; an off picture without partner is an error.
+
+    Names that differ in small letters and capitals alone are the same, unless there is one that does not.
+    """
+    pictures = pictures_in(folder)
+    offs = [path for path in pictures if is_off(path)]
+    by_name = {without_off(path).lower(): path for path in offs} | {without_off(path): path for path in offs}
     pairs = [
-        PlanePair(stem, path, pictures.get(stem + _OFF)) for stem, path in pictures.items() if not stem.endswith(_OFF)
+        PlanePair(path.stem, path, by_name.get(path.stem, by_name.get(path.stem.lower())))
+        for path in pictures
+        if not is_off(path)
     ]
     partners = {pair.off for pair in pairs}
-    for stem, path in pictures.items():
-        if stem.endswith(_OFF) and path not in partners:
-            wanted = stem.removesuffix(_OFF) + path.suffix
+    for path in offs:
+        if path not in partners:
             raise InputError(
                 Message(
-                    "set.no_picture_with_fan", "there is no picture {wanted} with the fan on beside it", wanted=wanted
+                    "set.no_picture_with_fan",
+                    "there is no picture {wanted} with the fan on beside it",
+                    wanted=without_off(path) + path.suffix,
                 ),
                 where=path,
                 todo=Message("advice.add_or_remove", "add it or remove this one"),

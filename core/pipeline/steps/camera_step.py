@@ -55,7 +55,7 @@ def camera_step(
             see_views(log.pictures, progress), settings, progress, work.recording_set.rig.camera_board
         )
         log.settings.update(solved_for(calibration))
-        log.notes.extend(calibration.notes)
+        log.notes.extend((*calibration.notes, *work.recording_set.not_read("camera")))
         write_camera(log.path("camera"), calibration)
     return read_camera(work.path("camera"))
 

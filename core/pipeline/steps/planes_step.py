@@ -25,6 +25,7 @@ from core.files.results.camera_file import read_camera
 from core.files.results.fan_file import fan_id, read_fan, write_fan
 from core.image.mosaic import ALL_SITES
 from core.image.repeated import REPEATED, Repeats, pixels_of
+from core.image.stripes.exchanged import EXCHANGED, PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
@@ -38,6 +39,7 @@ from core.stage_times import stage
 
 FOLDER = "planes/"
 """In front of a pose's name where pictures of all kinds are named, as in the options."""
+_EXCHANGE = Message("advice.exchange_names", "give each NAME its NAME_off's name, and the other way round")
 
 
 def planes_step(
@@ -72,7 +74,7 @@ def planes_step(
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
-        log.notes.extend(calibration.notes)
+        log.notes.extend((*calibration.notes, *work.recording_set.not_read("planes")))
         log.notes.extend(() if ridges is None else (ridges,))
         write_fan(log.path("planes"), calibration, camera)
         write_poses(log.path("poses"), fan_id(calibration.fan), poses)
@@ -107,7 +109,7 @@ def measure_poses(
     Raises
     ------
     InputError
-        If there are no poses, or their pictures have another size than the camera's.
+        If there are no poses, their pictures have another size than the camera's, or on and off are exchanged.
     """
     recording_set = pictures.recording_set
     require_planes(recording_set)
@@ -115,14 +117,17 @@ def measure_poses(
     chosen = pictures.laser_channel(part)
     measure = partial(_measure, recording_set, pictures.channels, camera, stripe)
     features: list[PoseFeatures] = []
-    total = len(recording_set.planes)
+    total, pairs = len(recording_set.planes), sum(pair.off is not None for pair in recording_set.planes)
     progress("plane poses", 0, total)
     poses = shared_map(
         measure, recording_set.planes, beside, lambda: progress("plane poses", len(features), total), progress
     )
-    repeats = Repeats()
-    for pose, hashes, pixels in poses:
+    repeats, ratios = Repeats(), list[float]()
+    for pose, hashes, (pixels, ratio) in poses:
         pictures.learn(hashes, {})
+        ratios += [] if ratio is None else [ratio]
+        if len(ratios) == min(PAIRS_TRIED, pairs) > 1 and are_exchanged(ratios):
+            raise InputError(EXCHANGED, where=recording_set.where(part), todo=_EXCHANGE)
         features.append(PoseFeatures(pose.name, None, (), REPEATED) if repeats.again(*pixels) else pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
@@ -139,8 +144,11 @@ def _measure(
     /,
     *,
     progress: Progress,
-) -> tuple[PoseFeatures, Mapping[str, str], tuple[bytes, ...]]:
-    """Target and stripes of one pose, the hashes of its pictures, and what their pixels are known by."""
+) -> tuple[PoseFeatures, Mapping[str, str], tuple[tuple[bytes, ...], float | None]]:
+    """Target and stripes of one pose, the hashes of its pictures, and what these are known by.
+
+    That are their pixels, and how much more of the light the off picture has; None: there is none, or it is damaged.
+    """
     pictures = PictureReader(recording_set, channels)
     try:
         with stage(progress, "decoding"):
@@ -148,10 +156,13 @@ def _measure(
             off = pictures.read(pair.off) if pair.off is not None else None
             beside = _beside(pictures, pair)
     except InputError as error:
-        return PoseFeatures(pair.name, None, (), error.reason), pictures.hashes, ()
+        return PoseFeatures(pair.name, None, (), error.reason), pictures.hashes, ((), None)
     pixels = tuple(pixels_of(picture) for picture in (on, off) if picture is not None)
-    pose = _pose_features(pictures, camera, stripe, pair, (on, off, beside), progress)
-    return pose, pictures.hashes, pixels
+    features = _pose_features(pictures, camera, stripe, pair, (on, off, beside), progress)
+    ratio = None if off is None else light_off_over_on(on, off)
+    if features.view is not None and not features.target_moved and ratio is not None and are_exchanged([ratio]):
+        features = replace(features, centrelines=(), reason=EXCHANGED)  # between the dark lines there seem to be some
+    return features, pictures.hashes, (pixels, ratio)
 
 
 def _pose_features(

@@ -235,4 +235,4 @@ def test_bad_requests_are_refused_in_one_sentence(tmp_path):
 def test_pictures_of_kinds_that_are_not_read_are_told(tmp_path):
     pictures(tmp_path, "v1.png")
     (tmp_path / "v2.HEIC").write_bytes(b"x")
-    assert codes(plan_import(ImportRequest(camera=Where(tmp_path))).notes) == ["import.not_read"]
+    assert codes(plan_import(ImportRequest(camera=Where(tmp_path))).notes) == ["set.not_read"]

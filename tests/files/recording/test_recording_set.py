@@ -11,6 +11,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.files.recording.rig import Channels, default_rig, rig_to_toml
 from core.image.mosaic import ALL_SITES, Sites
+from core.image.repeated import REPEATED
 from core.messages import Message
 
 RIG = rig_to_toml(default_rig())
@@ -268,3 +269,34 @@ def test_a_set_of_grey_pictures_whose_targets_are_stated_in_red_reads_them_as_th
     recording_set = raw_set(folder, channels=Channels(camera="red"))
     pictures = PictureReader(recording_set)
     assert np.array_equal(pictures.read_target(recording_set.planes[0].on), pictures.read(recording_set.planes[0].on))
+
+
+@pytest.mark.parametrize("name", ["p1_OFF.png", "p1_Off.png", "P1_OFF.png"])
+def test_the_picture_with_the_fan_off_may_be_named_in_capitals(folder, name):
+    (folder / "planes" / "p1_off.png").rename(folder / "planes" / name)
+    assert [(p.name, p.off and p.off.name) for p in open_set(folder).planes] == [("p1", name), ("p2", None)]
+
+
+def test_a_film_in_the_place_of_pictures_is_told(folder):
+    for path in (folder / "scan").iterdir():
+        path.unlink()
+    (folder / "scan" / "sweep.MP4").write_bytes(b"film")
+    with pytest.raises(InputError, match=r"there are no frames of a scan; convert sweep\.MP4 to png"):
+        require_scan(open_set(folder))
+
+
+def test_films_and_pictures_that_are_not_read_are_told_beside_those_that_are(folder):
+    for name in ("one.webp", "two.mov", "notes.txt"):
+        (folder / "camera" / name).write_bytes(b"x")
+    found = open_set(folder)
+    (note,) = found.not_read("camera")
+    assert str(note).startswith("2 files in camera are of a kind that is not read (one.webp, two.mov)")
+    assert found.not_read("scan") == ()
+
+
+def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):
+    noise = np.random.default_rng(1).integers(0, 255, (30, 40), np.uint8)
+    for frame in (1, 4):
+        write_picture(folder / "scan" / f"frame_{frame:03d}.png", noise)
+    found = open_set(folder)
+    assert [picture is REPEATED for _, picture in PictureReader(found).stream(found.frames)] == [False] * 4 + [True, False]

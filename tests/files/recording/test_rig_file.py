@@ -187,6 +187,8 @@ def test_text_in_another_encoding_is_refused(tmp_path):
         ("square_mm = 10.0", "square_mm = -3", ["camera_target.square_mm is -3", "above 0 and at most 5000"]),
         ("square_mm = 10.0", "square_mm = nan", ["camera_target.square_mm is NaN", "above 0"]),
         ("square_mm = 10.0", "square_mm = 1e9", ["camera_target.square_mm is 1000000000.0", "at most 5000"]),
+        ("square_mm = 10.0", "square_mm = 0.01", ["camera_target.square_mm is 0.01", "in mm: is it 10?"]),
+        ("side_mm = 60.0", "side_mm = 0.06", ["plane_target.side_mm is 0.06", "is it 60?"]),
         ("square_mm = 10.0", "square_mm = true", ["camera_target.square_mm is true"]),
         ("square_mm = 10.0", "square_mm = 10.0\nflatness_mm = -1", ["camera_target.flatness_mm is -1", "0 to 100"]),
         ("side_mm = 60.0", "side_mm = 60.0\nscale_sd = 2", ["plane_target.scale_sd is 2", "0 to 0.1"]),
@@ -274,7 +276,7 @@ POLYGONS = (
 
 
 @pytest.mark.parametrize("target", [
-    Checkerboard(17, 12, 10.0), Checkerboard(9, 6, 1 / 3), Charuco(9, 7, 20, 15, "DICT_5X5_100"),
+    Checkerboard(17, 12, 10.0), Checkerboard(9, 6, 10 / 3), Charuco(9, 7, 20, 15, "DICT_5X5_100"),
     CircleGrid(7, 6, 37.5, asymmetric=True), CircleGrid(7, 7, 20.0), BlackSquare(60.0),
 ])  # fmt: skip
 @pytest.mark.parametrize("gauge", [

@@ -9,6 +9,7 @@ from PySide6.QtCore import Qt, SignalInstance
 from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
+from core.files.recording.rig import SMALLEST_PRINTED_MM
 from core.image.targets.kinds import DICTIONARIES
 from workbench.language import tr
 from workbench.pages.calibration.target import PAPERS, USUAL_U
@@ -81,7 +82,7 @@ class TargetPanel(QWidget):
         form.add_number(
             "size_mm",
             length,
-            NumberRange(0.1, 5000, decimals=3, step=0.1, unit="mm"),
+            NumberRange(SMALLEST_PRINTED_MM, 5000, decimals=3, step=0.1, unit="mm"),
             tr("Measure it on the print: all lengths rest on it."),
         )
         if kind == "charuco":

@@ -35,6 +35,7 @@ def notes_on_scan(
             *assumed_stability(recording_set, judgement.change, calibration.fan),
             *assumed_shutter(recording_set.rig.row_time_us, scan),
             *notes_on_lost_frames(recording_set),
+            *recording_set.not_read("scan"),
         )
     )
 
