@@ -10,7 +10,6 @@ import hashlib
 import zlib
 from typing import Any
 
-import numpy as np
 from numpy.typing import NDArray
 
 from core.messages import Message
@@ -32,7 +31,7 @@ def pixels_of(picture: NDArray[Any]) -> bytes:
         return b""
     known = hashlib.blake2b(rows.tobytes(), digest_size=16, person=f"{picture.dtype}".encode())
     known.update(repr(picture.shape).encode())
-    return known.digest() + zlib.crc32(memoryview(np.ascontiguousarray(picture)).cast("B")).to_bytes(4, "big")
+    return known.digest() + zlib.crc32(picture.tobytes()).to_bytes(4, "big")
 
 
 class Repeats:

@@ -106,7 +106,8 @@ _TwoLevels = tuple[list[Stretch], list[Stretch]]
 def _pair(levels: _TwoLevels | None) -> FacePair | None:
     if levels is None:
         return None
-    return FacePair(*(np.concatenate([one.indices for one in level]) for level in levels))
+    upper, lower = (np.concatenate([one.indices for one in level]) for level in levels)
+    return FacePair(upper, lower)
 
 
 def _apart(found: Sequence[Stretch], normal: Array, limit: float) -> list[_TwoLevels]:

@@ -19,7 +19,7 @@ from core.files.picture_size import opened_head
 from core.files.pictures import is_picture
 from core.files.reading import cannot_read
 from core.findings.table import note_of
-from core.messages import Message, plural_message
+from core.messages import Message
 
 OFF = "_off"
 """At the end of the name of a picture with the fan off, in small letters or in capitals."""

@@ -41,7 +41,8 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
 def _faces(spec: FeatureSpec, scene: Scene) -> FacePair | None:
     cloud, filters = scene.cloud, spec.filters
     if len(spec.regions) == 2:
-        return FacePair(*(face_in(region, filters, scene) for region in spec.regions))
+        upper, lower = (face_in(region, filters, scene) for region in spec.regions)
+        return FacePair(upper, lower)
     if not isinstance(spec.regions[0], Auto):
         raise InputError(
             Message("feature.thickness_regions", "a thickness has two regions, the upper and the lower face"),

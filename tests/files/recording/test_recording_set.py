@@ -299,4 +299,7 @@ def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):
     for frame in (1, 4):
         write_picture(folder / "scan" / f"frame_{frame:03d}.png", noise)
     found = open_set(folder)
-    assert [picture is REPEATED for _, picture in PictureReader(found).stream(found.frames)] == [False] * 4 + [True, False]
+    assert [picture is REPEATED for _, picture in PictureReader(found).stream(found.frames)] == [False] * 4 + [
+        True,
+        False,
+    ]
