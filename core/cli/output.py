@@ -198,14 +198,17 @@ def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
     above, below = (_flatness(face) for face in (gauge.upper, gauge.lower))
     return [
         *rows,
-        (tr("flatness"), tr("{above} above, {below} below (95 % of points)", above=above, below=below)),
+        (tr("flatness"), tr("{above} above, {below} below", above=above, below=below)),
         (tr("angle of the faces"), tr("not known") if gauge.parallelism is None else _angles([gauge.parallelism])),
         (tr("points on faces"), tr("{above:,} above, {below:,} below", above=upper, below=lower)),
     ]
 
 
 def _flatness(face: Face) -> str:
-    return tr("not known") if face.flatness_mm is None else f"{words().fixed(face.flatness_mm, 3)} mm"
+    if face.flatness_mm is None:
+        return tr("not known")
+    beside = "" if face.flatness_u_mm is None else f" ± {words().fixed(2 * face.flatness_u_mm, 3)} mm"
+    return f"{words().fixed(face.flatness_mm, 3)} mm{beside}"
 
 
 def check_rows(check: InterimCheck) -> Rows:

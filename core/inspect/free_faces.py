@@ -5,24 +5,28 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from core.errors import InputError
 from core.inspect.faces import FacePair
+from core.inspect.fit.form_zone import FormZone
 from core.inspect.fit.plane_fit import ParallelPlaneFit, fit_plane
 from core.inspect.fit.shapes import ParallelPlanes
 from core.inspect.fit.spanned import spanned
+from core.inspect.fit.surface_fit import fit_surface
 from core.inspect.results import Face
+from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import LightPlane
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
 
 
-def free_faces(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit) -> tuple[Face, Face]:
+def free_faces(cloud: Cloud, pair: FacePair, planes: ParallelPlaneFit, errors: PointErrors) -> tuple[Face, Face]:
     """The upper and the lower face of a `pair` in a cloud, each fitted freely.
 
     Points that do not span a face leave open how it lies: it is that of the joint fit `planes` then, without flatness.
     """
     return (
-        _face(cloud, pair.upper, planes, planes.upper_distance),
-        _face(cloud, pair.lower, planes, planes.lower_distance),
+        _face(cloud, pair.upper, planes, planes.upper_distance, errors),
+        _face(cloud, pair.lower, planes, planes.lower_distance, errors),
     )
 
 
@@ -34,8 +38,10 @@ def angle_of(upper: Face, lower: Face) -> float | None:
     return float(np.arctan2(cross, abs(upper.plane.normal @ lower.plane.normal)))
 
 
-def _face(cloud: Cloud, indices: NDArray[np.int64], planes: ParallelPlaneFit, distance: float) -> Face:
-    """A face from its free fit: the points the fit kept, their residuals and the spread of 95 % of them."""
+def _face(
+    cloud: Cloud, indices: NDArray[np.int64], planes: ParallelPlaneFit, distance: float, errors: PointErrors
+) -> Face:
+    """A face from its free fit: the points the fit kept, their residuals and the zone of its form."""
     points, sigma = cloud.points[indices], cloud.sigma[indices]
     fit = fit_plane(points, sigma, reference_normal=None if planes.tilt_determined else planes.normal)
     kept = fit.weights > 0
@@ -45,9 +51,18 @@ def _face(cloud: Cloud, indices: NDArray[np.int64], planes: ParallelPlaneFit, di
         plane = LightPlane.from_normal(planes.normal, distance)
         return Face(plane, indices, residuals, None, _rms(residuals), spanned=False)
     residuals = fit.residuals[kept]
-    low, high = np.quantile(residuals, [0.025, 0.975])
     plane = LightPlane.from_normal(fit.normal, fit.distance)
-    return Face(plane, indices[kept], residuals, float(high - low), _rms(residuals))
+    form = _form(cloud, indices[kept], shape, errors)
+    flatness = (None, None) if form is None else (form.value, form.u)
+    return Face(plane, indices[kept], residuals, flatness[0], _rms(residuals), flatness_u_mm=flatness[1])
+
+
+def _form(cloud: Cloud, indices: NDArray[np.int64], shape: ParallelPlanes, errors: PointErrors) -> FormZone | None:
+    """The zone of a face's form; None where its points are too few for it."""
+    try:
+        return fit_surface(cloud, indices, shape, errors, form_mm=0.0).form
+    except InputError:
+        return None
 
 
 def _plane(normal: Array, distance: float, points: Array) -> ParallelPlanes:

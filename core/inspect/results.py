@@ -20,9 +20,9 @@ class Face:
 
     `plane` is the face's own plane, fitted freely. `indices` into the cloud, without the points the fit left out;
     `residuals` (mm) of these points from the plane, along its normal, towards the camera positive. `flatness_mm` is
-    the spread of the residuals that holds 95 % of the points, the noise of the points included; None where it is not
-    known. Where the points do not span the face (`core.inspect.fit.spanned`), `plane` and `residuals` are those of the
-    joint fit.
+    the width of the zone of its form, free of the points' noise (`core.inspect.fit.form_zone`), and `flatness_u_mm` its
+    standard uncertainty; None where it is not known. Where the points do not span the face
+    (`core.inspect.fit.spanned`), `plane` and `residuals` are those of the joint fit.
     """
 
     plane: Plane
@@ -31,6 +31,7 @@ class Face:
     flatness_mm: float | None
     rms_mm: float
     spanned: bool = True
+    flatness_u_mm: float | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

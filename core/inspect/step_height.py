@@ -249,7 +249,7 @@ def measure_steps(
     budget = tuple(rows)
     u, factor = combined(budget), student_factor(k, budget)
     shown = steps[int(np.argmin(np.abs(values - thickness)))]
-    upper, lower = free_faces(shown.cloud, shown.pair, shown.faces.planes)
+    upper, lower = free_faces(shown.cloud, shown.pair, shown.faces.planes, shown.errors)
     return GaugeResult(
         thickness_mm=thickness,
         u_mm=u,

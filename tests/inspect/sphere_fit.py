@@ -23,8 +23,8 @@ from core.scan.surface.cloud import Cloud
 class SphereFit:
     """A sphere: `centre` (3,) and `radius_mm` in mm, camera frame, with `u_mm` the radius's standard uncertainty.
 
-    `indices` into the cloud of the points used; `residuals` (mm) of these, outwards positive; `form_mm` is the spread
-    of the residuals that holds 95 % of the points, their noise included, and `u_form_mm` the standard uncertainty of
+    `indices` into the cloud of the points used; `residuals` (mm) of these, outwards positive; `form_mm` is the zone of
+    its form, free of the points' noise, and `u_form_mm` the standard uncertainty of
     that spread; `budget` says what `u_mm` is made of, and `fit` all that is known of the fitted surface.
     """
 
@@ -78,7 +78,9 @@ def fit_sphere(
             where=POINT_CLOUD,
         )
     errors = errors or PointErrors()
-    fit = with_uneven_light(fit_surface(cloud, indices, sphere_through(cloud.points[indices]), errors), cloud, errors)
+    fit = fit_surface(cloud, indices, sphere_through(cloud.points[indices]), errors, form_mm=0.0)
+    fit = with_uneven_light(fit, cloud, errors)
+    assert fit.form is not None
     rows = fit.budget(np.array([0.0, 0.0, 0.0, 1.0]))
     sphere = fit.shape
     return SphereFit(

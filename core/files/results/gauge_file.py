@@ -74,6 +74,7 @@ class _GaugeFile(ResultFile):
     u_mm: Finite = Field(ge=0, description="a length in mm, not negative")
     k: Finite = Field(gt=0, description="a number above 0")
     flatness_mm: _Pair = Field(description="a table of upper and lower")
+    flatness_u_mm: _Pair = Field(default=_Pair(upper=None, lower=None), description="a table of upper and lower")
     parallelism_deg: Finite | None = Field(description="an angle in degrees, or null")
     faces: _Faces = Field(description="a table of upper and lower")
     nominal_mm: Finite | None = None
@@ -100,6 +101,7 @@ def gauge_summary(gauge: GaugeResult) -> dict[str, Any]:
         "deviation_mm": gauge.deviation_mm,
         "verdict": gauge.verdict,
         "flatness_mm": {"upper": gauge.upper.flatness_mm, "lower": gauge.lower.flatness_mm},
+        "flatness_u_mm": {"upper": gauge.upper.flatness_u_mm, "lower": gauge.lower.flatness_u_mm},
         "parallelism_deg": None if gauge.parallelism is None else math.degrees(gauge.parallelism),
     }
 
@@ -145,8 +147,8 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         thickness_mm=file.thickness_mm,
         u_mm=file.u_mm,
         k=file.k,
-        upper=_face(file.faces.upper, members["upper"], file.flatness_mm.upper, cloud),
-        lower=_face(file.faces.lower, members["lower"], file.flatness_mm.lower, cloud),
+        upper=_face(file.faces.upper, members["upper"], (file.flatness_mm.upper, file.flatness_u_mm.upper), cloud),
+        lower=_face(file.faces.lower, members["lower"], (file.flatness_mm.lower, file.flatness_u_mm.lower), cloud),
         parallelism=None if file.parallelism_deg is None else math.radians(file.parallelism_deg),
         budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
@@ -187,9 +189,11 @@ def _plane(face: Face) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _face(face: _Face, indices: NDArray[np.int64], flatness_mm: float | None, cloud: Cloud) -> Face:
+def _face(face: _Face, indices: NDArray[np.int64], flatness: tuple[float | None, float | None], cloud: Cloud) -> Face:
     plane = LightPlane(np.array(face.pi))
-    return Face(plane, indices, -plane.distances(cloud.points[indices]), flatness_mm, face.rms_mm, face.spanned)
+    return Face(
+        plane, indices, -plane.distances(cloud.points[indices]), flatness[0], face.rms_mm, face.spanned, flatness[1]
+    )
 
 
 def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:

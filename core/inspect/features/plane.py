@@ -23,17 +23,11 @@ def measure_plane(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     """Fit a plane to the face of the region; InputError if there is none."""
     indices = face_in(spec.regions[0], spec.filters, scene)
     fit = _fitted(spec, scene, indices)
-    rule = (
-        Message(
-            "feature.rule_flatness_of_cells",
-            "range that holds 95 % of the deviations from the plane: means over cells of {cell_mm:g} mm",
-            cell_mm=spec.filters.cell_mm,
-        )
-        if spec.filters.cell_mm
-        else Message(
-            "feature.rule_flatness",
-            "range that holds 95 % of the deviations from the plane: points, their noise included",
-        )
+    assert fit.form is not None
+    rule = Message(
+        "feature.rule_flatness_zone",
+        "width of the zone of the deviations from the plane over {mm:.1f} mm and more, without the points' noise",
+        mm=fit.form.length_mm,
     )
     notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, (FACE,))
     flatness = scene.characteristic(spec, "flatness", fit.form.value, fit.form.budget, rule=rule, notes=notes)
@@ -63,7 +57,7 @@ def _fitted(spec: FeatureSpec, scene: Scene, indices: NDArray[np.int64]) -> Surf
     else:
         start = ParallelPlanes.through(-centre / np.linalg.norm(centre), centre)
     filters = spec.filters
-    return fit_surface(scene.cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    return fit_surface(scene.cloud, indices, start, scene.errors, tukey=filters.outliers, form_mm=filters.cell_mm)
 
 
 def _result(

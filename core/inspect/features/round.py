@@ -34,12 +34,11 @@ def measure_sphere(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         )
     indices, start = np.sort(indices), sphere_through(cloud.points[indices])
     filters = spec.filters
-    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, form_mm=filters.cell_mm)
     fit = with_uneven_light(fit, cloud, scene.errors)
     notes = notes_on_form(cloud, indices, fit.shape, scene.errors, (SPHERE,))
     rule = Message("feature.rule_sphere", "diameter of the sphere of least squares, by the points' covariance")
-    form = Message("feature.rule_sphere_form", "range that holds 95 % of the deviations from the sphere")
-    return _result(spec, scene, fit, Element.of_sphere(fit), (rule, form), notes)
+    return _result(spec, scene, fit, Element.of_sphere(fit), rule, notes)
 
 
 def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
@@ -54,12 +53,11 @@ def measure_cylinder(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices = points_in(region, filters, scene)
         on, start = find_cylinder(cloud.select(indices), on_table=isinstance(region, Auto), progress=scene.progress)
         indices = indices[on]
-    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, cell_mm=filters.cell_mm)
+    fit = fit_surface(cloud, indices, start, scene.errors, tukey=filters.outliers, form_mm=filters.cell_mm)
     fit = with_uneven_light(fit, cloud, scene.errors)
     notes = notes_on_form(cloud, indices, fit.shape, scene.errors, (CYLINDER,))
     rule = Message("feature.rule_cylinder", "diameter of the cylinder of least squares, by the points' covariance")
-    form = Message("feature.rule_cylinder_form", "range that holds 95 % of the deviations from the cylinder")
-    return _result(spec, scene, fit, Element.of_cylinder(fit), (rule, form), notes)
+    return _result(spec, scene, fit, Element.of_cylinder(fit), rule, notes)
 
 
 def _result(
@@ -67,17 +65,23 @@ def _result(
     scene: Scene,
     fit: SurfaceFit[Sphere] | SurfaceFit[Cylinder],
     element: Element,
-    rules: tuple[Message, Message],
+    rule: Message,
     notes: tuple[Message, ...],
 ) -> FeatureResult:
-    """`rules` of diameter and form; `notes` on the latter."""
+    """`rule` of the diameter; `notes` on the form."""
+    assert fit.form is not None
+    of_form = Message(
+        "feature.rule_form_zone",
+        "width of the zone of the deviations from the surface over {mm:.1f} mm and more, without the points' noise",
+        mm=fit.form.length_mm,
+    )
     twice_the_radius = np.append(np.zeros(fit.parameters - 1), 2.0)
     rows = fit.budget(twice_the_radius)
     return FeatureResult(
         spec,
         characteristics=(
-            scene.characteristic(spec, "diameter", 2 * fit.shape.radius, rows, rule=rules[0]),
-            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=rules[1], notes=notes),
+            scene.characteristic(spec, "diameter", 2 * fit.shape.radius, rows, rule=rule),
+            scene.characteristic(spec, "form", fit.form.value, fit.form.budget, rule=of_form, notes=notes),
         ),
         indices=fit.indices,
         residuals=fit.residuals,

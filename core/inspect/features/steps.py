@@ -36,7 +36,6 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         scene.errors,
         part=part,
         tukey=spec.filters.outliers,
-        cell_mm=spec.filters.cell_mm,
     )
     names = [level(number + 1) for number in range(len(faces))]
     notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, names, part)

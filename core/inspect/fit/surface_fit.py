@@ -4,12 +4,8 @@ The same for every shape. Tukey's biweight, with the stated σ across the surfac
 they were independent; the generalised fit of `core.inspect.fit.generalised` to these points follows, and what acts on
 its parameters is kept cause by cause, so that whatever is derived from several surfaces has its true uncertainty.
 
-The deviation of form of a surface is the range of its residuals that holds 95 % of them. Optical points are many and
-noisy: the range from the lowest to the highest grows without end with their number. Of single points it holds their
-noise as well; of the means over cells of the surface, all but the form has been filtered out. Its uncertainty: how much
-it depends on the stripes that happened to be scanned, by drawing them again (the bootstrap, whole stripes at a time,
-for their points err together); and what calibrations do to the highest less the lowest points after the fitted surface
-has taken its part.
+Its deviation of form, free of the points' noise, is found where it is asked for (`core.inspect.fit.form_zone`). Beside
+that, `range_of` is the range that holds 95 % of points or of their means over cells, their noise included.
 
 References
 ----------
@@ -28,13 +24,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.inspect.fit.form_zone import FormZone, form_zone
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.fit.plane_fit import LARGEST_WEIGHT
 from core.inspect.fit.shapes import Parts, Shape
 from core.inspect.fit.simpler_shape import flat_points
 from core.inspect.fit.spanned import spanned
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
+from core.inspect.uncertainty.budget import Effect, budget_of, effects
 from core.inspect.uncertainty.causes import SAMPLING
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
@@ -76,7 +73,7 @@ class SurfaceFit(Generic[S]):
     residuals
         (M,) in mm, outwards positive.
     form
-        The spread of the residuals.
+        The zone of its form; None where it was not asked for.
     faces_spanned
         (faces,) whether the points of each face alone span it; together they do.
     """
@@ -86,7 +83,7 @@ class SurfaceFit(Generic[S]):
     indices: NDArray[np.int64]
     part: Parts
     residuals: Array
-    form: Spread
+    form: FormZone | None
     faces_spanned: NDArray[np.bool_]
 
     def budget(self, gradient: Array) -> tuple[Contribution, ...]:
@@ -112,7 +109,7 @@ def fit_surface(
     *,
     part: Parts | None = None,
     tukey: float = TUKEY,
-    cell_mm: float = 0.0,
+    form_mm: float | None = None,
 ) -> SurfaceFit[S]:
     """Fit a shape to points of a cloud.
 
@@ -128,8 +125,8 @@ def fit_surface(
         (N,) which face each of the indices is on; None: all on one.
     tukey
         Points this many robust standard deviations off are left out.
-    cell_mm
-        Side of the cells whose means `form` is the spread of; 0: of single points.
+    form_mm
+        Forms shorter than this are taken for noise; 0: than a fifth of the surface's side. None: no form is asked for.
 
     Raises
     ------
@@ -162,7 +159,8 @@ def fit_surface(
     calibrations = errors.calibrations
     acting = effects(fit.gains, sources, own=fit.own, form_mm=fit.form_mm, calibrations=calibrations)
     residuals = shape.misfit(points, mine)
-    form = spread(used, residuals, sources, (design, fit.gains), calibrations, cell_mm)
+    outward = np.asarray(shape.outward(points, mine), dtype=np.float64)
+    form = None if form_mm is None else form_zone(residuals, points, outward, sources, fit, design, form_mm)
     return SurfaceFit(shape, acting, indices[kept], mine, residuals, form, np.array(by_face, dtype=np.bool_))
 
 
@@ -215,37 +213,6 @@ NEAR = 0.02
 """Share of the residuals about an end that stands for it."""
 DRAWS, MOST_DRAWN = 200, 50_000
 """Drawings of the bootstrap, which give its standard deviation to 5 %, and residuals that take part in one."""
-
-
-@dataclass(frozen=True, eq=False, slots=True)
-class Spread:
-    """A range in mm that holds 95 % of the residuals, its uncertainty, and of how many `samples` (points or cells)."""
-
-    value: float
-    budget: tuple[Contribution, ...]
-    samples: int
-
-    @property
-    def u(self) -> float:
-        """Standard uncertainty in mm."""
-        return combined(self.budget)
-
-
-def spread(
-    cloud: Cloud,
-    residuals: Array,
-    sources: Sources,
-    fit: tuple[Array, Array],
-    calibrations: Sequence[Message],
-    cell_mm: float = 0.0,
-) -> Spread:
-    """The spread of residuals (N,) of a cloud's points about a `fit` of stretches: design (J, p) and gains (p, J)."""
-    found = range_of(cloud, residuals, cell_mm)
-    gain = np.asarray(np.bincount(sources.stretch, found.weight, minlength=len(sources.own)), dtype=np.float64)
-    design, gains = fit
-    gain = gain - gain @ design @ gains  # the fitted surface follows what is common as far as it can
-    acting = [one for one in effects(gain[None, :], sources, calibrations=calibrations) if one.source in calibrations]
-    return Spread(found.value, (found.sampling, *budget_of([(np.ones(1), acting)])), found.samples)
 
 
 class Range(NamedTuple):

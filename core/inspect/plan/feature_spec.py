@@ -83,7 +83,8 @@ class Filters:
     outliers
         Points this many robust standard deviations from the fitted surface are left out.
     cell_mm
-        Form is the spread of the means over cells of this side; 0: of single points, their noise included.
+        Forms shorter than this count as noise; 0: than a fifth of the face's side. An orientation is that of the means
+        over cells of this side; 0: of single points, their noise included.
     """
 
     sigma_max_mm: float | None = None

@@ -32,7 +32,7 @@ FILTERS: tuple[NumberField, ...] = (
         "σ", 2.0, 100.0, 3, 0.5,
     ),
     NumberField(
-        "cell_mm", label("Form over cells of"), label("Noise is averaged over cells so wide; 0: single points."),
+        "cell_mm", label("Form from"), label("Shorter forms count as noise; 0: a fifth of the face."),
         "mm", 0.0, 100.0, 2, 0.5,
     ),
 )  # fmt: skip

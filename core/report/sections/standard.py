@@ -229,7 +229,7 @@ def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
             "Face",
             "points",
             "rms of the residuals, mm",
-            "flatness (95 % of the points), mm",
+            "flatness ± U (k = 2), mm",
             "angle between the faces, fitted freely",
             numbers=(1, 2, 3, 4),
         )
@@ -240,6 +240,8 @@ def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
         (look.words("Lower"), gauge.lower, ""),
     ):
         flatness = "–" if face.flatness_mm is None else fixed(face.flatness_mm, 3)
+        if face.flatness_u_mm is not None:
+            flatness = f"{flatness} ± {fixed(2 * face.flatness_u_mm, 3)}"
         numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), flatness, angle)
         rows.append([look.text(name, "small"), *(look.text(number, "number") for number in numbers)])
     return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])

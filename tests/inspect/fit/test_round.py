@@ -66,10 +66,10 @@ def test_exact_points_give_the_exact_sphere():
     assert fit.form_mm < 1e-6
 
 
-def test_form_is_the_spread_of_the_residuals():
+def test_form_of_a_ball_is_free_of_its_points_noise():
     cloud, hit = scan(np.random.default_rng(3), noise=0.03)
-    fit = fit_sphere(cloud, np.flatnonzero(hit))
-    assert 0.05 < fit.form_mm < 4 * 0.03
+    fit = fit_sphere(cloud, np.flatnonzero(hit), errors=PointErrors(correlation_px=2.0))
+    assert fit.form_mm <= 2 * fit.u_form_mm < 0.05
 
 
 def test_same_seed_same_points():

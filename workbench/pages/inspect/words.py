@@ -54,7 +54,7 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
     if gauge.deviation_mm is not None:
         nominal = tr("Measured thickness less the nominal value of {nominal:g} mm", nominal=gauge.nominal_mm)
         rows.append((tr("Deviation"), f"{wording().fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
-    flatness = tr("Spread that holds 95 % of the points used about their plane, the points' noise included")
+    flatness = tr("Width of the zone that holds the face's form, free of its points' noise, and its U (k = 2)")
     upper, lower = gauge.points_used
     return [
         *rows,
@@ -72,7 +72,10 @@ def result_rows(gauge: GaugeResult) -> list[ValueRow]:
 
 
 def _flatness(face: Face) -> str:
-    return tr("not known") if face.flatness_mm is None else f"{wording().fixed(face.flatness_mm, 3)} mm"
+    if face.flatness_mm is None:
+        return tr("not known")
+    beside = "" if face.flatness_u_mm is None else f" ± {wording().fixed(2 * face.flatness_u_mm, 3)} mm"
+    return f"{wording().fixed(face.flatness_mm, 3)} mm{beside}"
 
 
 def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
