@@ -66,12 +66,15 @@ class Generalised:
         (J,) standard deviations in mm of the stretches' own noise, as large as the residuals show.
     form_mm
         Standard deviation of a patch beyond all that is named.
+    residuals
+        (J,) misfits less model and measured common errors, in their own standard deviations.
     """
 
     estimate: Array
     gains: Array
     own: Array
     form_mm: float
+    residuals: Array
 
 
 def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Array | None = None) -> Generalised:
@@ -106,7 +109,7 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
     gains = inverse[:fixed] @ (columns * root[:, None]).T
     assumed = sources.common[:, sources.assumed & ~sources.unexplained]
     if not assumed.shape[1]:
-        return Generalised(solution[:fixed], gains, own, form_before)
+        return Generalised(solution[:fixed], gains, own, form_before, residuals)
     shared = np.hstack([sources.speckle, sources.sweeps])
     wanted = np.eye(fixed) if wanted is None else wanted
 
@@ -115,7 +118,7 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
         return np.asarray(np.hypot(np.linalg.norm(acting * own, axis=1), np.linalg.norm(acting @ shared, axis=1)))
 
     gains = _with_assumed(np.hstack([columns, assumed * root[:, None]]), root, gains, assumed.shape[1], noise)
-    return Generalised(gains @ misfit, gains, own, form_before)
+    return Generalised(gains @ misfit, gains, own, form_before, residuals)
 
 
 def _with_assumed(columns: Array, root: Array, gains: Array, assumed: int, noise: Callable[[Array], Array]) -> Array:
