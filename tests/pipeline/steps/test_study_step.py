@@ -25,6 +25,7 @@ from core.pipeline.steps.study_step import (
     project_rows,
     read_study_table,
 )
+from core.study.study import kind_of
 from core.translations import language
 from tests.study.grr_tables import AIAG
 
@@ -116,7 +117,7 @@ def test_the_report_has_the_studies_that_are_included(done, tmp_path):
     kept = keep_study(folder, "grr", crossed(AIAG), folder, {})
     check = keep_study(folder, "acceptance", READINGS, folder, {})
     project = replace(done.project, studies=(kept, replace(check, included=False)))
-    assert [study["kind"] for study in project_content(folder, project).studies] == ["grr"]
+    assert [kind_of(study) for study in project_content(folder, project).studies] == ["grr"]
     shutil.rmtree(folder / "studies")
     with pytest.raises(InputError, match="study"):
         project_content(folder, project)
