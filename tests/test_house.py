@@ -123,9 +123,7 @@ CUTS = {
     "find", "index",
 }  # fmt: skip
 """Methods that look at what a text says, or take it apart."""
-TELLING = frozenset(
-    ("tr", "text_of", "sentence", "words", "known", "shown_name", "headed_name", "value_line", "short_value")
-)
+TELLING = frozenset(("tr", "text_of", "sentence", "words", "known", "shown_name", "headed_name", "value_line"))
 """Calls that give a text in the reader's language; so does every function that returns what one of these gives."""
 
 

@@ -30,7 +30,7 @@ from core.files.results.folder_results import read_results
 from core.files.results.rig_history import RigHistory, history_file
 from core.files.step_graph import READJUST
 from core.inspect.conformity import Verdict
-from core.messages import Message, visible
+from core.messages import Message, label, visible
 from core.pipeline.batch import measure_set, run_batch
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.executors import DASK, executor_of
@@ -47,6 +47,11 @@ from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Workspace, read_calibration
 from core.progress import Progress, silent
+from core.report.facts.fact import Reader, named
+from core.report.facts.of_camera import camera_facts, parameter_facts
+from core.report.facts.of_checks import readjustment_facts
+from core.report.facts.of_planes import planes_facts, planes_sentences
+from core.report.facts.of_scan import scan_facts, sigma_of
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
 from core.states import SET_STATES
@@ -107,8 +112,10 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
     """Say what a whole run measured."""
     gauge, verdict = result.gauge, result.results.verdict
     rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
-    rows += [(tr("camera"), output.camera_summary(result.camera)), (tr("fan"), output.fan_summary(result.fan))]
-    rows += output.frame_rows(result.frames, result.points)
+    for of, facts in ((label("camera"), camera_facts(result.camera)), (label("planes"), planes_facts(result.fan))):
+        rows += output.fact_rows(named(of, facts), Reader.TECHNICIAN)
+    scan = scan_facts(result.frames, result.points, result.triangles)
+    rows += [*output.fact_rows(scan, Reader.TECHNICIAN), *output.left_out_rows(result.frames)]
     values = {
         **output.gauge_json(gauge, verdict),
         **output.frames_json(result.frames, result.points),
@@ -123,7 +130,9 @@ def run_camera(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
     """Camera step."""
     with alone_with(folder, out) as work:
         calibration = camera_step(work, chosen.for_camera, progress)
-        rows, values = output.camera_rows(calibration), output.camera_json(calibration)
+        facts = (*camera_facts(calibration), *parameter_facts(calibration))
+        rows = [*output.fact_rows(facts), *output.left_out_rows(calibration.views)]
+        values = output.camera_json(calibration)
         return _shown(work, "camera", rows, values, "camera")
 
 
@@ -131,7 +140,10 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
     """Planes step."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         calibration = planes_step(work, chosen.for_planes, progress)
-        return _shown(work, "planes", output.fan_rows(calibration), output.fan_json(calibration), "planes")
+        rows = output.fact_rows(planes_facts(calibration))
+        rows += output.left_out_rows(calibration.poses)
+        rows += [("", told(sentence)) for sentence in planes_sentences(calibration)]
+        return _shown(work, "planes", rows, output.fan_json(calibration), "planes")
 
 
 def run_check(
@@ -147,7 +159,7 @@ def run_adjusting(folder: Path, out: Path, chosen: Options, progress: Progress) 
     """Re-adjust camera and fan by the pictures of the check."""
     with alone_with(folder, out, channel=chosen.channel) as work:
         done = readjust_step(work, chosen.plane_stripe, progress)
-        rows, values = output.readjustment_rows(done), output.readjustment_json(done)
+        rows, values = output.fact_rows(readjustment_facts(done)), output.readjustment_json(done)
         return _shown(work, READJUST, rows, values, "planes", "calibrated")
 
 
@@ -183,7 +195,9 @@ def run_scan(folder: Path, out: Path, chosen: Options, progress: Progress) -> Sh
     with alone_with(folder, out, channel=chosen.channel) as work:
         measured = scan_step(work, chosen.for_scan, progress)
         frames, points = measured.scan.frames, len(measured.scan.cloud)
-        rows, values = output.frame_rows(frames, points), output.frames_json(frames, points)
+        facts = scan_facts(frames, points, len(measured.mesh.triangles), sigma_of(measured.scan.cloud.sigma))
+        rows = [*output.fact_rows(facts), *output.left_out_rows(frames)]
+        values = output.frames_json(frames, points)
         return _shown(work, "scan", rows, values, "cloud", "mesh")
 
 

@@ -12,11 +12,9 @@ from rich.console import Console
 from rich.table import Table
 
 from core.calibrate.results import (
-    CAMERA_PARAMETERS,
     CameraCalibration,
     FanCalibration,
     ProposedReadjustment,
-    Readjustment,
 )
 from core.cli.language import spoken, told, tr
 from core.cli.talk import is_verbose
@@ -33,16 +31,19 @@ from core.messages import Message, as_json, plain, plural_message, visible
 from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.facts.table import FactTable, tables_for_reader
 from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
+from core.report.facts.fact import Fact, Reader, for_reader, named
+from core.report.facts.of_checks import artefact_facts, check_facts
+from core.report.facts.of_gauge import gauge_facts
+from core.report.facts.of_studies import verdict_fact
+from core.report.facts.pictures import Picture, left_out
+from core.report.wording import Words
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
-from core.states import CHECKS, DECISIONS, VERDICT
-from core.study.artefact_check import KINDS, ArtefactCheck
+from core.states import CHECKS, VERDICT
+from core.study.artefact_check import ArtefactCheck
 from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
-_NAMES_SHOWN = 3
-"""So many frames left out for one reason are named in a line."""
-
 PIPE_WIDTH = 1000
 """Columns in a pipe: lines are not wrapped there."""
 
@@ -83,9 +84,11 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
 
 
-def fact_rows(facts: Iterable[Fact], tables: Iterable[FactTable] = ()) -> Rows:
-    """What an auditor reads of a result; with ``--verbose`` all that is told of it."""
-    reader = Reader.METROLOGIST if is_verbose() else Reader.AUDITOR
+def fact_rows(
+    facts: Iterable[Fact], tables: Iterable[FactTable] = (), reader: Reader = Reader.AUDITOR
+) -> Rows:
+    """What a reader is told of a result; with ``--verbose`` all that there is."""
+    reader = Reader.METROLOGIST if is_verbose() else reader
     rows = [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]
     return rows + [line for table in tables_for_reader(tables, reader) for line in table.lines(words())]
 
@@ -108,125 +111,19 @@ def words() -> Words:
     return Words(spoken())
 
 
-def camera_rows(calibration: CameraCalibration) -> Rows:
-    """Parameters with standard deviations, and how well the views fit."""
-    camera = calibration.camera
-    values = [*camera.matrix[[0, 1, 0, 0, 1], [0, 1, 1, 2, 2]], *camera.distortion]
-    rows = [
-        (name, " ± ".join(with_uncertainty(float(value), calibration.sd[name], words())))
-        for name, value in zip(CAMERA_PARAMETERS, values, strict=True)
-        if calibration.sd[name] > 0
-    ]
-    return [
-        *rows,
-        (tr("reprojection"), camera_summary(calibration)),
-        (tr("picture covered"), f"{calibration.coverage:.0%}"),
-    ]
-
-
-def camera_summary(calibration: CameraCalibration) -> str:
-    """The camera in one line."""
-    used = sum(view.used for view in calibration.views)
-    return told(
-        plural_message(
-            "cli.camera",
-            "{rms_px:.3f} px RMS, {mean_px:.3f} px mean, {used} of {n:,} view",
-            "{rms_px:.3f} px RMS, {mean_px:.3f} px mean, {used} of {n:,} views",
-            n=len(calibration.views),
-            used=used,
-            rms_px=calibration.rms_px,
-            mean_px=calibration.mean_px,
-        )
-    )
-
-
-def fan_rows(calibration: FanCalibration) -> Rows:
-    """Every plane, the angles between them, and whether the pencil suits the laser."""
-    rows = []
-    for number, (plane, rms) in enumerate(zip(calibration.fan.planes, calibration.rms_mm, strict=True), start=1):
-        normal = ", ".join(words().fixed(float(part), 5) for part in plane.normal)
-        said = tr("normal ({normal}), d {d:.3f} mm, RMS {rms:.3f} mm", normal=normal, d=plane.d_mm, rms=rms)
-        rows.append((tr("plane {n}", n=number), said))
-    if calibration.angles:
-        rows.append((tr("angles"), _angles(calibration.angles)))
-        rows.append((tr("angles, free fit"), _angles(calibration.free_angles)))
-    used = sum(pose.used for pose in calibration.poses)
-    rows.append((tr("poses"), _poses_used(used, len(calibration.poses))))
-    if math.isfinite(calibration.cross_validation_mm):
-        foretold = tr("to {rms:.3f} mm RMS, each by the others", rms=calibration.cross_validation_mm)
-        rows.append((tr("poses foretold"), foretold))
-    return [*rows, (tr("verdict"), told(calibration.verdict))] if calibration.verdict else rows
-
-
-def fan_summary(calibration: FanCalibration) -> str:
-    """The fan in one line."""
-    used = sum(pose.used for pose in calibration.poses)
-    rms = ", ".join(spoken().number(value, ".3f") for value in calibration.rms_mm)
-    return told(
-        plural_message(
-            "cli.fan",
-            "{rms} mm RMS, {used} of {n:,} pose",
-            "{rms} mm RMS, {used} of {n:,} poses",
-            n=len(calibration.poses),
-            rms=rms,
-            used=used,
-        )
-    )
-
-
-def _angles(angles: Sequence[float]) -> str:
-    return ", ".join(f"{spoken().number(math.degrees(angle), '.3f')}°" for angle in angles)
-
-
-def _poses_used(used: int, poses: int) -> str:
-    said = plural_message(
-        "cli.poses_used", "{used} of {n:,} pose used", "{used} of {n:,} poses used", n=poses, used=used
-    )
-    return told(said)
-
-
 def gauge_rows(gauge: GaugeResult, verdict: Verdict) -> Rows:
-    """Thickness, deviation, the verdict on the part and the faces."""
-    rows = [(tr("thickness"), thickness_line(gauge, words()))]
-    if gauge.nominal_mm is not None and gauge.tolerance_mm is not None and gauge.deviation_mm is not None:
-        limits = tr("{nominal:g} mm ± {tolerance:g} mm", nominal=gauge.nominal_mm, tolerance=gauge.tolerance_mm)
-        rows.append((tr("nominal"), limits))
-        rows.append((tr("deviation"), f"{words().fixed(gauge.deviation_mm, decimals_of(gauge.U_mm), signed=True)} mm"))
-    decided = tr(DECISIONS[verdict]) if verdict else tr("none: rig.toml states no nominal value")
-    rows.append((tr(VERDICT), decided))
-    upper, lower = gauge.points_used
-    above, below = (_flatness(face) for face in (gauge.upper, gauge.lower))
-    return [
-        *rows,
-        (tr("flatness"), tr("{above} above, {below} below", above=above, below=below)),
-        (tr("angle of the faces"), tr("not known") if gauge.parallelism is None else _angles([gauge.parallelism])),
-        (tr("points on faces"), tr("{above:,} above, {below:,} below", above=upper, below=lower)),
-    ]
-
-
-def _flatness(face: Face) -> str:
-    if face.flatness_mm is None:
-        return tr("not known")
-    beside = "" if face.flatness_u_mm is None else f" ± {words().fixed(2 * face.flatness_u_mm, 3)} mm"
-    return f"{words().fixed(face.flatness_mm, 3)} mm{beside}"
+    """Thickness, deviation and faces, and the verdict on the part."""
+    return fact_rows((*gauge_facts(gauge), verdict_fact(verdict)))
 
 
 def check_rows(check: InterimCheck) -> Rows:
-    """Where the stripes are, and what that does to a step of the part's height."""
-    return [
-        (tr("poses"), _poses_used(check.used, len(check.poses))),
-        (tr("stripes off by"), tr("{px:.3f} px, {mm:.4f} mm (RMS)", px=check.offset_px, mm=check.offset_mm)),
-        (tr("chance"), tr("p = {p:.2g}", p=check.p)),
-        (
-            tr("a step of {step:g} mm", step=check.step_mm),
-            tr(
-                "measured wrong by {error:+.3f} mm ± {unseen:.3f} mm (k = 2) with this calibration",
-                error=check.error_mm,
-                unseen=check.unseen_mm,
-            ),
-        ),
-        (tr("verdict"), told(check.sentence)),
-    ]
+    """What came of a check, how far off the stripes are, and what that does to a step of the part's height."""
+    return [(tr(VERDICT), told(check.sentence)), *fact_rows(check_facts(check)), *left_out_rows(check.poses)]
+
+
+def left_out_rows(pictures: Iterable[Picture]) -> Rows:
+    """Why pictures were left out, one line a reason."""
+    return [("", told(one.line())) for one in left_out(pictures)]
 
 
 def check_json(check: InterimCheck) -> dict[str, Any]:
@@ -240,40 +137,6 @@ def check_json(check: InterimCheck) -> dict[str, Any]:
         "error_mm": check.error_mm,
         "unseen_mm": check.unseen_mm,
     }
-
-
-def readjustment_rows(done: ProposedReadjustment) -> Rows:
-    """What was changed, how sure that is, and what it does."""
-    names = tr("fan turned"), tr("fan moved"), tr("picture moved"), tr("focal length")
-    parts, record = zip(names, _changed_parts(done.record), strict=True), done.record
-    before, after = done.offset_px
-    return [
-        (tr("poses"), tr("{n} used", n=record.poses)),
-        *((name, f"{change} ± {sd} {unit} (k = 1)") for name, (change, sd, unit) in parts),
-        (tr("stripes off by"), tr("{px:.3f} px, before {before:.3f} px (RMS)", px=after, before=before)),
-        (tr("chance"), tr("p = {p:.2g}, before {before:.2g}", p=record.p_after, before=record.p_before)),
-        (
-            tr("a step of {step:g} mm", step=done.step_mm),
-            tr(
-                "measured {more:+.3f} mm larger, ± {U:.3f} mm (k = 2) by camera and fan",
-                more=done.correction_mm,
-                U=2 * done.u_mm,
-            ),
-        ),
-    ]
-
-
-def _changed_parts(record: Readjustment) -> list[tuple[str, str, str]]:
-    """Change, standard uncertainty and unit of turn, shift, drift and focal length."""
-    parts = ((1e6, slice(3), "µrad"), (1e3, slice(3, 6), "µm"), (1.0, slice(6, 8), "px"), (1e6, slice(8, 9), "·10⁻⁶"))
-    return [
-        (
-            ", ".join(spoken().number(by * value, "+.3g") for value in record.change[part]),
-            ", ".join(spoken().number(by * value, ".3g") for value in record.sd[part]),
-            unit,
-        )
-        for by, part, unit in parts
-    ]
 
 
 def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
@@ -297,19 +160,7 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
 
 def artefact_rows(check: ArtefactCheck) -> Rows:
     """What was measured of an artefact, and how that agrees with its certificate."""
-    known = check.artefact
-    return [
-        (tr("artefact"), " ".join(part for part in (known.id, known.certificate and f"({known.certificate})") if part)),
-        (tr("compared"), check.characteristic or tr(KINDS[known.kind])),
-        (
-            tr("certified"),
-            tr("{value:.4f} mm ± {U:.4f} mm (k = {k:g})", value=known.value_mm, U=known.U_mm, k=known.k),
-        ),
-        (tr("measured"), f"{' ± '.join(with_uncertainty(check.measured_mm, 2 * check.u_mm, words()))} mm (k = 2)"),
-        ("E_n", spoken().number(check.e_n, ".2f")),
-        (tr("detects"), tr("errors from {U:.3f} mm (k = 2)", U=2 * check.u_error_mm)),
-        (tr("verdict"), told(check.sentence)),
-    ]
+    return [*fact_rows(named(check.artefact.id, artefact_facts(check))), ("", told(check.sentence))]
 
 
 def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
@@ -357,23 +208,6 @@ def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
     """The same for programs."""
     limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
     return {**check.values, "limits": limits}
-
-
-def frame_rows(frames: Sequence[FrameRecord], points: int) -> Rows:
-    """How many frames gave points, why others did not, and how many points."""
-    reasons: dict[str, list[str]] = {}
-    for frame in frames:
-        if not frame.used:
-            reasons.setdefault(told(frame.reason or NO_REASON), []).append(frame.name)
-    used = sum(frame.used for frame in frames)
-    said = plural_message(
-        "cli.frames_used", "{used} of {n:,} frame used", "{used} of {n:,} frames used", n=len(frames), used=used
-    )
-    rows = [(tr("frames"), told(said))]
-    for reason, names in reasons.items():
-        shown = spoken().joined(names[:_NAMES_SHOWN] + ["…"] * (len(names) > _NAMES_SHOWN))
-        rows.append(("", tr("{n} left out: {reason} ({names})", n=len(names), reason=reason, names=shown)))
-    return [*rows, (tr("points"), grouped(points))]
 
 
 def picture_rows(pictures: Sequence[PictureStep]) -> Rows:

@@ -25,7 +25,6 @@ from core.files.results.comparison_file import ComparisonFile
 from core.files.results.export_list import EXPORTS
 from core.files.results.folder_results import read_results
 from core.files.results.inspection_file import inspection_values
-from core.inspect.characteristic import Characteristic
 from core.inspect.comparison import ComparisonScales
 from core.inspect.conformity import Verdict
 from core.inspect.evaluate import Inspection
@@ -39,14 +38,10 @@ from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step, with_studies
 from core.progress import Progress
 from core.report.content import ReportContent
+from core.report.facts.of_features import HEADS, characteristic_cells
 from core.report.template import LANGUAGES, PAPERS, Paper
-from core.report.wording import decimals_of, grouped, shown_name
-from core.states import DECISIONS
-
-_COLUMNS = (
-    label("characteristic"), label("measured"), label("U"), label("nominal"), label("limits"), label("deviation"),
-    label("verdict"),
-)  # fmt: skip
+from core.report.wording import grouped, shown_name
+from core.states import VERDICT
 
 
 def run_inspect(source: Path, plan: Path, out: Path | None, progress: Progress) -> tuple[Inspection, Path | None]:
@@ -77,40 +72,15 @@ def show_inspection(inspection: Inspection, written: Path | None, *, as_json: bo
         output.print_json({**values, "files": output.files_json(files)})
         return
     table = Table(box=None, padding=(0, 2, 0, 0), header_style="dim")
-    for name in _COLUMNS:
+    for name in (label("characteristic"), *HEADS):
         table.add_column(
-            told(name), justify="left" if name in ("characteristic", "verdict") else "right", overflow="fold"
+            told(name), justify="left" if name in ("characteristic", VERDICT) else "right", overflow="fold"
         )
+    words = output.words()
     for row in inspection.characteristics:
-        table.add_row(*map(visible, _cells(row)))
+        table.add_row(*map(visible, (shown_name(row, words), *characteristic_cells(row, words))))
     output.console().print(table)
     output.print_rows([], (*inspection.problems, *inspection.notes), files)
-
-
-def _cells(row: Characteristic) -> tuple[str, ...]:
-    """One line of the table; an angle in degrees."""
-    scale, unit = (math.degrees(1.0), "°") if row.quantity == "angle" else (1.0, " mm")
-    words, decimals = output.words(), decimals_of(row.U * scale)
-    name = shown_name(row, words)
-
-    def text(value: float, *, signed: bool = False) -> str:
-        return words.fixed(value * scale, decimals, signed=signed) + unit
-
-    if row.limits is None or row.deviation is None:
-        return name, text(row.value), text(row.U), "", "", "", ""
-    lower, upper = row.limits.lower, row.limits.upper
-    sides = [words.numeral(f"{value * scale:+g}") if math.isfinite(value) else "–" for value in (lower, upper)]
-    limits = f"± {words.numeral(f'{upper * scale:g}')}{unit}" if lower == -upper else f"{' … '.join(sides)}{unit}"
-    nominal = words.numeral(f"{row.limits.nominal * scale:g}") + unit
-    return (
-        name,
-        text(row.value),
-        text(row.U),
-        nominal,
-        limits,
-        text(row.deviation, signed=True),
-        tr(DECISIONS[row.verdict]),
-    )
 
 
 def run_compare(

@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import Literal, NamedTuple
+from itertools import chain
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,9 +23,14 @@ from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.report.facts.of_studies import study_facts, study_tables
+from core.report.facts.fact import Fact, named
+from core.report.facts.of_camera import camera_facts, parameter_facts
+from core.report.facts.of_checks import Check, artefact_facts, check_facts
+from core.report.facts.of_gauge import gauge_facts
+from core.report.facts.of_planes import planes_facts
+from core.report.facts.of_scan import scan_facts, sigma_of
 from core.report.template import SECTIONS, Paper, ReportTemplate
 from core.report.wording import result_name
-from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -158,13 +165,6 @@ class LightProfiles:
     U_mm: float
 
 
-class LeftOut(NamedTuple):
-    """A reason, and the names of the pictures left out for it."""
-
-    reason: Message | str
-    names: list[str]
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class ReportContent:
     """Everything that is printed. The same content gives the same bytes.
@@ -207,6 +207,8 @@ class ReportContent:
         What a comparison with another scan or surface came to; None where none was made.
     studies
         Studies of the way of measuring, and of series of parts.
+    check
+        Interim check of these calibrations; None where there is none.
     artefacts
         Known artefacts measured with these calibrations, each as nearest in time to this result.
     calibrations
@@ -270,6 +272,7 @@ class ReportContent:
     deviations: tuple[Deviations, ...] = ()
     compared: Message | None = None
     studies: tuple[Study, ...] = ()
+    check: Check | None = None
     artefacts: tuple[ArtefactCheck, ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
@@ -410,6 +413,27 @@ class ReportContent:
         return {name: heading for name, heading in headings.items() if not missing.get(name, False)}
 
     @property
+    def facts(self) -> Mapping[str, tuple[Fact, ...]]:
+        """What is told of each part of the work, by its name."""
+        artefacts = (named(one.artefact.id, artefact_facts(one)) for one in self.artefacts)
+        return {
+            "camera": (*camera_facts(self.camera), *parameter_facts(self.camera)),
+            "planes": planes_facts(self.fan),
+            "check": () if self.check is None else check_facts(self.check),
+            "artefact": tuple(chain(*artefacts)),
+            "scan": self.scan_facts,
+            "thickness": () if self.gauge is None else gauge_facts(self.gauge),
+        }
+
+    @property
+    def scan_facts(self) -> tuple[Fact, ...]:
+        """What is told of the scan."""
+        cloud = self.cloud
+        extent = np.ptp(cloud.points, axis=0) if len(cloud) else None
+        triangles = len(self.mesh.triangles)
+        return scan_facts(self.frames, len(cloud), triangles, sigma_of(cloud.sigma), extent_mm=extent)
+
+    @property
     def all_notes(self) -> tuple[Message, ...]:
         """The gravest notes, then the report's own, those of the gauge and of both calibrations, each once."""
         of_gauge = self.gauge.notes if self.gauge else ()
@@ -420,12 +444,3 @@ class ReportContent:
         ]
         every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)
         return gravest_first({str(note): note for note in every}.values())
-
-    @property
-    def frames_left_out(self) -> list[LeftOut]:
-        """The frames left out by reason, the commonest reason first."""
-        reasons: dict[Message | str, list[str]] = {}
-        for frame in self.frames:
-            if not frame.used:
-                reasons.setdefault(frame.reason or NO_REASON, []).append(frame.name)
-        return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))

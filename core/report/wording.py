@@ -135,13 +135,6 @@ def value_parts(one: Characteristic, words: Words = ENGLISH) -> tuple[str, str]:
     return _parts(factor * one.value, factor * one.U, one.k, unit, words)
 
 
-def short_value(one: Characteristic, words: Words = ENGLISH) -> str:
-    """'50.012 ± 0.024 mm', '89.95° ± 0.04°'."""
-    unit, factor = shown_unit(one)
-    value, U = with_uncertainty(factor * one.value, factor * one.U, words)
-    return f"{value}° ± {U}°" if unit == "°" else f"{value} ± {U} {unit}"
-
-
 def shown_name(one: Characteristic, words: Words = ENGLISH) -> str:
     """What a characteristic is called, its kind in the report's language: "top flatness", "stairs height 2"."""
     return words(result_name(one))
@@ -236,27 +229,29 @@ def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
 
 
 def tolerance_words(one: Characteristic, words: Words = ENGLISH) -> str:
-    """'±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm': the permitted deviations."""
+    """'±0.2 mm', '−0.1 to +0.3 mm', 'at most +0.05 mm': the permitted deviations; "" for none."""
+    allowed = permitted(one)
+    return "" if allowed is None else words(allowed)
+
+
+def permitted(one: Characteristic) -> Message | None:
+    """The same as a message; None without any limit."""
     unit, factor = shown_unit(one)
     if one.limits is None:
-        return ""
+        return None
     low, high = factor * one.limits.lower, factor * one.limits.upper
+    values = {"low": low, "high": high, "unit": with_unit("", unit)}
     if math.isinf(low) and math.isinf(high):
-        return ""
-    if math.isinf(low):
-        limit = (
-            _signed(high, words) if one.limits.nominal else words.general(high)
-        )  # of a form: the largest there may be
-        return words("at most {limit}", limit=with_unit(limit, unit))
+        return None
+    if math.isinf(low):  # of a form: the largest there may be
+        if not one.limits.nominal:
+            return Message("told.at_most", "at most {high:g}{unit}", **values)
+        return Message("told.below", "at most {high:+g}{unit}", **values)
     if math.isinf(high):
-        return words("at least {limit}", limit=with_unit(_signed(low, words), unit))
+        return Message("told.above", "at least {low:+g}{unit}", **values)
     if math.isclose(-low, high):
-        return with_unit(f"±{words.general(high)}", unit)
-    return words("{low} to {high}", low=_signed(low, words), high=with_unit(_signed(high, words), unit))
-
-
-def _signed(value: float, words: Words) -> str:
-    return words.numeral(f"{value:+g}") if value else "0"
+        return Message("told.within", "±{high:g}{unit}", **values)
+    return Message("told.between", "{low:+g} to {high:+g}{unit}", **values)
 
 
 def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: str, words: Words) -> str:

@@ -11,11 +11,12 @@ from core.errors import InputError
 from core.files.atomic import ANOTHER_OUT
 from core.inspect.faces import region_field
 from core.messages import Command, Field, Message
+from core.report.facts.of_gauge import gauge_facts
 from core.translations import language
 from tests.workbench.pages.inspect_cases import gauge
 from workbench.language import text_of
-from workbench.pages.inspect.words import result_rows, thickness
-from workbench.pages.words import mm
+from workbench.pages.inspect.words import thickness
+from workbench.pages.words import fact_row, mm
 from workbench.views.scene.colours import ticks
 
 
@@ -57,7 +58,7 @@ def test_a_page_in_german_writes_all_its_numbers_alike(monkeypatch: pytest.Monke
     monkeypatch.setattr(workbench.language, "_chosen", language("de"))
     measured = gauge()
     said = [
-        *(row[1] for row in result_rows(measured)),
+        *(fact_row(fact)[1] for fact in gauge_facts(measured)),
         thickness(measured),
         mm(0.125),
         *ticks(-0.5, 0.5, 5)[1],

@@ -80,6 +80,11 @@ def study_rows(content: ReportContent) -> list[dict[str, Any]]:
     ]
 
 
+def told_rows(content: ReportContent) -> list[dict[str, Any]]:
+    """All that is told of what the result rests on: FACT_COLUMNS."""
+    return [fact_row(of, fact) for of, facts in content.facts.items() for fact in facts]
+
+
 def unit_of(one: Characteristic) -> tuple[str, float]:
     """The unit a characteristic is handed over in, and the factor to it."""
     return ("deg", math.degrees(1.0)) if one.quantity == "angle" else ("mm", 1.0)

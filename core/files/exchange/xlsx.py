@@ -1,4 +1,4 @@
-"""The results as a workbook for the office: sheets result, budget, studies, frames, settings; always the same bytes."""
+"""The results as a workbook for the office: a sheet for each kind of table. The same bytes every time."""
 
 from __future__ import annotations
 
@@ -27,6 +27,7 @@ from core.files.exchange.records import (
     result_row,
     setting_rows,
     study_rows,
+    told_rows,
 )
 from core.report.content import ReportContent
 
@@ -37,7 +38,7 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_xlsx(path: Path, content: ReportContent) -> None:
-    """Write result, uncertainty budgets, studies, frames and settings, each on a sheet of its own, numbers in full.
+    """Write result, budgets, studies, frames, facts of each step and settings, each on a sheet, numbers in full.
 
     Raises
     ------
@@ -52,6 +53,7 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
         "budget": as_table(BUDGET_COLUMNS, budgets),
         **({"studies": as_table(FACT_COLUMNS, study_rows(content))} if content.studies else {}),
         "frames": as_table(FRAME_COLUMNS, frame_rows(content)),
+        "facts": as_table(FACT_COLUMNS, told_rows(content)),
         "settings": [["name", "value"], *setting_rows(content)],
     }
     for name, rows in tables.items():

@@ -45,6 +45,11 @@ class CheckedPicture:
     lines: tuple[CheckedLine, ...] = ()
     __pydantic_config__ = RESULT
 
+    @property
+    def used(self) -> bool:
+        """Whether it says something."""
+        return self.reason is None
+
 
 @dataclass(frozen=True, slots=True)
 class InterimCheck:
@@ -98,7 +103,7 @@ class InterimCheck:
     @property
     def used(self) -> int:
         """How many poses say something."""
-        return sum(pose.reason is None for pose in self.poses)
+        return sum(pose.used for pose in self.poses)
 
     @property
     def offset_px(self) -> float:
@@ -122,8 +127,9 @@ class InterimCheck:
         if self.verdict == "passed":
             return Message(
                 "check.passed",
-                "Camera and laser are where they were calibrated: the stripes are off by {offset_px:.2f} px, "
-                "{offset_mm:.3f} mm, as noise and calibration let one expect.",
+                "In order. A {step_mm:g} mm step may be off by {unseen_mm:.2g} mm.",
+                step_mm=self.step_mm,
+                unseen_mm=self.unseen_mm,
                 **values,
             )
         if self.verdict == "doubtful":

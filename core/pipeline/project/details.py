@@ -31,7 +31,7 @@ from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import left_out_notes
-from core.scan.preview.shown import FrameStages, SettledScan, ShownScan, reasons_counted
+from core.scan.preview.shown import FrameStages, SettledScan, ShownScan
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.coverage_map import CoverageMap
 
@@ -79,7 +79,6 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
         frames_used=sum(frame.used for frame in results.frames),
         median_sigma_mm=float(half),
         sigma_95_mm=float(most),
-        left_out=reasons_counted(results.frames),
         share=0.0 if features is None else _covered(features, cloud.uv),
         stripe=None if features is None else features.sweep_stripe,
         notes=tuple(note for note in _scan_notes(results) if note not in of_frames),

@@ -23,6 +23,7 @@ from core.files.recording.recording_set import RIG
 from core.files.recording.rig import Rig, rig_to_toml
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import camera_id
+from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.comparison_file import read_comparison
 from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_gauge
@@ -182,7 +183,14 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         timestamp=record.measured_at,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
-    return replace(with_inspection(content, out), compared=_compared(out))
+    return replace(with_inspection(content, out), compared=_compared(out), check=_check(out, calibration))
+
+
+def _check(out: Path, calibration: Calibration) -> InterimCheck | None:
+    """The interim check of these calibrations; None where there is none."""
+    path = out / FILES["check"]
+    check = read_check(path) if path.exists() else None
+    return check if check is not None and check.calibration_id == calibration.id else None
 
 
 def _compared(out: Path) -> Message | None:

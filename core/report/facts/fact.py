@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Literal, TypeAlias
 
@@ -86,19 +86,37 @@ class Fact:
         >>> Fact("scans", 1204).text(Words()), Fact("alpha", 2410.42, "px", 2, sd=0.31).text(Words())
         ('1\xa0204', '2410.42 ± 0.31 px')
         """
-        if self.value is None:
-            return words("not known")
-        if isinstance(self.value, (str, Message)):
-            return words(self.value)
-        said = self._number(self.value, words)
-        if self.sd is not None:
-            said = f"{said} ± {self._number(self.sd, words, signed=False)}"
-        if self.unit:
-            said = f"{said}°" if self.unit == "°" else f"{said} {self.unit}"
+        said, sd = self.parts(words)
+        if self.value is None or isinstance(self.value, (str, Message)):
+            return said
+        end = "°" if self.unit == "°" else ""
+        said = f"{said}{end} ± {sd}{end}" if sd else f"{said}{end}"
+        if self.unit and not end:
+            said = f"{said} {self.unit}"
         if self.interval is None:
             return said
         low, high = (self._number(end, words) for end in self.interval)
         return words("{value} ({low} to {high})", value=said, low=low, high=high)
+
+    def parts(self, words: Words) -> tuple[str, str]:
+        r"""Value and uncertainty as columns of a table have them, without the unit; "" for an uncertainty there is not.
+
+        Examples
+        --------
+        >>> Fact("alpha", 2410.42, "px", 2, sd=0.31).parts(Words())
+        ('2410.42', '0.31')
+        """
+        if self.value is None:
+            return words("not known"), ""
+        if isinstance(self.value, (str, Message)):
+            return words(self.value), ""
+        sd = "" if self.sd is None else self._number(self.sd, words, signed=False)
+        return self._number(self.value, words), sd
+
+    def column(self, words: Words) -> str:
+        """What the column of `parts` is called: its name with the unit."""
+        title = self.title(words)
+        return words.in_unit(title, self.unit) if self.unit else title
 
     def _number(self, value: float, words: Words, *, signed: bool | None = None) -> str:
         signed = self.signed if signed is None else signed
@@ -125,3 +143,8 @@ def heading(name: str) -> str:
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:
     """The facts that a reader is told."""
     return tuple(fact for fact in facts if fact.level <= reader)
+
+
+def named(of: str | Message, facts: Iterable[Fact]) -> tuple[Fact, ...]:
+    """The same facts where several results are told of: each is called by what it is `of` as well."""
+    return tuple(replace(fact, label=Message("told.named", "{of}, {name}", of=of, name=fact.label)) for fact in facts)

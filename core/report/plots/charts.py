@@ -25,6 +25,7 @@ from core.model import LightPlane
 from core.model.arrays import Array
 from core.progress import Progress, silent
 from core.report.content import Deviations, ReportContent
+from core.report.facts.of_features import characteristic_facts
 from core.report.layout.style import HAIRLINE, INK, MUTED, ReportLook
 from core.report.plots.figures import (
     DPI,
@@ -41,7 +42,7 @@ from core.report.plots.figures import (
     round_up,
 )
 from core.report.plots.surface_view import SurfacePicture, surface_picture, viewer_axes
-from core.report.wording import SIGNS, points_counted, short_value, shown_name
+from core.report.wording import SIGNS, points_counted, shown_name
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
@@ -157,7 +158,7 @@ def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
         points = content.cloud.points[indices]
         middle = points[np.argmin(((points - points.mean(axis=0)) ** 2).sum(axis=1))]
         name, sign = shown_name(one, look.words), f" {SIGNS[one.verdict]}" if one.limits is not None else ""
-        made.append(Callout(f"{name}{sign}\n{short_value(one, look.words)}", middle))
+        made.append(Callout(f"{name}{sign}\n{characteristic_facts(one)[0].text(look.words)}", middle))
     return made
 
 

@@ -9,12 +9,17 @@ from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
 from core.findings.table import is_grave
-from core.messages import Message, plural_message
-from core.report.content import LeftOut, ReportContent
+from core.messages import capital, plural_message
+from core.report.content import ReportContent
+from core.report.facts.of_camera import camera_facts
+from core.report.facts.of_checks import artefact_facts, check_facts
+from core.report.facts.of_planes import planes_sentences, rest_of_planes
+from core.report.facts.pictures import LeftOut, left_out
 from core.report.layout.blocks import (
     GAP,
     Cell,
     Limits,
+    figures,
     heads,
     more_line,
     pairs_table,
@@ -22,14 +27,12 @@ from core.report.layout.blocks import (
     ruled_table,
     section,
     side_by_side,
+    told,
 )
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
-from core.report.sections.calibration_tables import camera_facts, camera_table, fan_facts, fan_table, marks_table
-from core.report.wording import decimals_of, grouped, with_uncertainty
-from core.scan.features.frames import NO_REASON
-from core.states import CHECKS
-from core.study.artefact_check import KINDS
+from core.report.sections.calibration_tables import camera_table, fan_table, marks_table
+from core.report.wording import grouped
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -37,35 +40,18 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
     if not content.artefacts:
         return []
     words = look.words
-    rows: list[list[Flowable]] = [
-        heads(
-            look, "Artefact", "certificate", "measured on", "certified, mm", "measured, mm", "error, mm", "E_n",
-            "valid until", "", numbers=(3, 4, 5, 6),
-        )
-    ]  # fmt: skip
-    for one in content.artefacts:
-        known = one.artefact
-        numbers = (
-            " ± ".join(with_uncertainty(known.value_mm, known.U_mm, words)),
-            " ± ".join(with_uncertainty(one.measured_mm, 2 * one.u_mm, words)),
-            words.fixed(one.error_mm, decimals_of(2 * one.u_mm), signed=True),
-            words.fixed(one.e_n, 2),
-        )
-        due = words("not stated") if known.due is None else known.due.isoformat()
-        rows.append(
-            [
-                look.text(f"{known.id} ({words(KINDS[known.kind])})", "small"),
-                look.text(known.certificate, "small"),
-                look.text(one.day.isoformat(), "small"),
-                *(look.text(number, "number") for number in numbers),
-                look.text(due, "small"),
-                look.text(words(CHECKS[one.verdict]), "small"),
-            ]
-        )
-    shares = (0.125, 0.135, 0.1, 0.17, 0.14, 0.08, 0.06, 0.1, 0.09)
+    tables = [artefact_facts(one) for one in content.artefacts]
+    columns = [capital(fact.column(words)) for fact in tables[0]]
+    rows: list[list[Flowable]] = [heads(look, "Artefact", *columns, numbers=(2, 3, 4, 5))]
+    for one, facts in zip(content.artefacts, tables, strict=True):
+        shown = [" ± ".join(filter(None, fact.parts(words))) for fact in facts]
+        cells = [look.text(text, "number" if 1 <= place <= 4 else "small") for place, text in enumerate(shown)]
+        rows.append([look.text(one.artefact.id, "small"), *cells])
+    shares = (0.1, 0.09, 0.13, 0.14, 0.16, 0.06, 0.12, 0.1, 0.1)
     note = look.say(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
-        "was measured with k = 2. E_n is the error over the U of both together; above 1 nothing is conforming.",
+        "was measured and of the error with k = 2. E_n is the error over the U of both together; above 1 nothing is "
+        "conforming.",
         "caption",
     )
     return [
@@ -86,41 +72,46 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
         look.say("Camera", "small_strong"),
         camera_table(look, content.camera, half),
         Spacer(0, 1 * mm),
-        pairs_table(look, camera_facts(look, content.camera), half, 26 * mm),
+        pairs_table(look, told(look, camera_facts(content.camera)), half, 26 * mm),
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
         look.say("Fixed laser (fan), planes in the camera's frame", "small_strong"),
         fan_table(look, content.fan, other),
         Spacer(0, 1 * mm),
-        pairs_table(look, fan_facts(look, content.fan), other, 27 * mm),
+        pairs_table(look, told(look, rest_of_planes(content.fan)), other, 27 * mm),
+        *(look.text(look.words(sentence), "small") for sentence in planes_sentences(content.fan)),
         Spacer(0, 2 * mm),
         look.text(f"{look.words('Rig')} {content.rig_id}".strip(), "small_strong"),
         pairs_table(look, rig, other, 27 * mm),
         *more_line(look, len(content.rig) - limits.settings),
     ]
     marks = [Spacer(0, 2 * mm), marks_table(look, content, TEXT_WIDTH)] if content.calibrations else []
-    body = [side_by_side(camera, fan, TEXT_WIDTH, 0.42), *marks]
+    body = [side_by_side(camera, fan, TEXT_WIDTH, 0.42), *marks, *_check(look, content)]
     return [section(look, "calibrations", "Calibrations and rig", body)]
+
+
+def _check(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """The interim check of these calibrations."""
+    if content.check is None:
+        return []
+    return [
+        Spacer(0, 2 * mm),
+        look.say("Check of camera and laser", "small_strong"),
+        look.text(look.words(content.check.sentence), "small"),
+        figures(look, told(look, check_facts(content.check))),
+    ]
 
 
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Frames and calibration pictures used, and why others were not."""
-    words = look.words
     used = [frame.name for frame in content.frames if frame.used]
-    if not content.frames:
-        said = words("No frame was given")
-    else:
-        frames = words(plural_message("report.frames", "{n:,} frame", "{n:,} frames", n=len(content.frames)))
-        said = words("{n} of {all} used", n=grouped(len(used)), all=frames)
+    parts: list[Flowable] = [figures(look, told(look, content.scan_facts))]
     if used:
-        said += words(", {first} to {last}", first=used[0], last=used[-1])
-    if used and len(used) == len(content.frames):
-        said += words("; none left out")
-    parts: list[Flowable] = [look.text(words("{said}.", said=said), "small")]
-    left_out = content.frames_left_out + left_out_of_calibration(content)
-    if left_out:
-        parts += [Spacer(0, 1.5 * mm), *left_out_table(look, left_out, TEXT_WIDTH, limits.reasons, limits.names)]
+        parts.append(look.say("From {first} to {last}.", "small", first=used[0], last=used[-1]))
+    out = [*left_out(content.frames), *left_out((*content.camera.views, *content.fan.poses))]
+    if out:
+        parts += [Spacer(0, 1.5 * mm), *left_out_table(look, out, TEXT_WIDTH, limits.reasons, limits.names)]
     return [section(look, "frames", "Frames and calibration pictures", parts)]
 
 
@@ -130,11 +121,11 @@ def warnings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
     if not notes:
         return []
     grave = sum(map(is_grave, notes))
-    told = tuple(look.words.known(note) for note in notes[: max(grave, limits.notes)])
+    shown = tuple(look.words.known(note) for note in notes[: max(grave, limits.notes)])
     body = [
-        *look.bullets(told[:grave], "alarm"),
-        *look.bullets(told[grave:]),
-        *more_line(look, len(notes) - len(told)),
+        *look.bullets(shown[:grave], "alarm"),
+        *look.bullets(shown[grave:]),
+        *more_line(look, len(notes) - len(shown)),
     ]
     return [section(look, "notes", "Notes and warnings", body)]
 
@@ -206,13 +197,13 @@ SHORT_HASH = 10
 
 
 def left_out_table(
-    look: ReportLook, left_out: list[LeftOut], width: float, most: int, most_names: int
+    look: ReportLook, reasons: list[LeftOut], width: float, most: int, most_names: int
 ) -> list[Flowable]:
     """Reasons, how often, and which: at most `most` reasons, and of each at most `most_names` names."""
-    if not left_out:
+    if not reasons:
         return []
     rows: list[list[Flowable]] = [heads(look, "Left out because", "how many", "which", numbers=(1,))]
-    for reason, names in left_out[:most]:
+    for reason, names in reasons[:most]:
         which = look.words.joined(names[:most_names])
         if len(names) > most_names:
             which += look.words(" and {n} more", n=grouped(len(names) - most_names))
@@ -225,19 +216,7 @@ def left_out_table(
         )
     table = ruled_table(rows, [0.4 * width, 0.12 * width, 0.48 * width])
     table.setStyle(TableStyle([("LEFTPADDING", (2, 0), (2, -1), 6)]))
-    return [table, *more_line(look, len(left_out) - most)]
-
-
-def left_out_of_calibration(content: ReportContent) -> list[LeftOut]:
-    """Views and poses the calibrations did without, by reason."""
-    reasons: dict[Message | str, list[str]] = {}
-    for view in content.camera.views:
-        if not view.used:
-            reasons.setdefault(view.reason or NO_REASON, []).append(view.name or "view without a name")
-    for pose in content.fan.poses:
-        if not pose.used:
-            reasons.setdefault(pose.reason or NO_REASON, []).append(pose.name)
-    return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
+    return [table, *more_line(look, len(reasons) - most)]
 
 
 def hash_table(look: ReportLook, hashes: Mapping[str, str], width: float, most: int) -> list[Flowable]:

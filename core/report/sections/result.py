@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Collection, Sequence
 
 import numpy as np
@@ -13,7 +12,9 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
 from core.messages import plural_message
 from core.report.content import ReportContent
-from core.report.layout.blocks import heads, plain_table, ruled_table
+from core.report.facts.fact import Reader, for_reader
+from core.report.facts.of_features import HEADS, characteristic_cells, characteristic_facts
+from core.report.layout.blocks import heads, plain_table, ruled_table, told
 from core.report.layout.control_frame import ControlFrameMark
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import (
@@ -40,13 +41,10 @@ from core.report.wording import (
     points_counted,
     shown_name,
     shown_unit,
-    tolerance_words,
     unbroken,
     uncertainty_sentence,
     value_parts,
-    with_unit,
 )
-from core.states import VERDICT
 
 PADDING = 5 * mm  # of the box, inside
 BADGE = 46 * mm  # width of the decision's mark
@@ -80,28 +78,22 @@ def result_box(look: ReportLook, content: ReportContent, width: float) -> Table:
     return Table([[rows]], colWidths=[width], style=style, hAlign="LEFT")
 
 
-def _facts(look: ReportLook, facts: dict[str, str], width: float) -> Table:
+def _facts(look: ReportLook, facts: dict[str, str], width: float) -> list[Flowable]:
+    if not facts:
+        return []
     cells = [[look.text(label, "label"), look.text(value, "fact")] for label, value in facts.items()]
     table = plain_table([cells], [width / len(cells)] * len(cells))
     table.setStyle(
         TableStyle([("LINEABOVE", (0, 0), (-1, 0), 0.5, color(HAIRLINE)), ("TOPPADDING", (0, 0), (-1, -1), 5)])
     )
-    return table
+    return [table]
 
 
 def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
-    words, (unit, factor) = look.words, shown_unit(one)
+    words = look.words
     headline = [look.text(headed_name(one, words), "label"), _value(look, one)]
     parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
-    decimals = max(decimals_of(factor * one.U), 0)
-    facts = {}
-    if one.limits is not None and one.deviation is not None:
-        facts[words("Nominal value")] = with_unit(words.general(factor * one.limits.nominal), unit)
-        deviation = words.fixed(factor * one.deviation, decimals, signed=True)
-        facts[words("Deviation from nominal")] = with_unit(deviation, unit)
-        facts[words("Tolerance")] = tolerance_words(one, words)
-    facts[words("Expanded uncertainty U")] = with_unit(words.fixed(factor * one.U, decimals_of(factor * one.U)), unit)
-    parts.append(_facts(look, facts, width))
+    parts += _facts(look, told(look, characteristic_facts(one)[1:-1]), width)  # value and verdict stand above
     if one.limits is not None and np.isfinite((one.deviation or 0.0) + one.U):
         parts += [Spacer(0, 1 * mm), ToleranceBar(look, one, width)]
     reason, meaning = decision_sentence(one, words), uncertainty_sentence(one.k, one.U, words)
@@ -142,29 +134,23 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
     return [
         *_headed(look, headline, verdict, width),
         Spacer(0, 2.5 * mm),
-        *([_facts(look, facts, width), Spacer(0, 2 * mm)] if facts else []),
+        *_facts(look, facts, width),
+        Spacer(0, 2 * mm),
         look.text(said),
     ]
 
 
 def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
-    cloud, words = content.cloud, look.words
-    parts: list[Flowable] = [look.say("Point cloud", "label"), look.text(words(points_counted(len(cloud))), "result")]
-    facts = {words("Triangles of the mesh"): grouped(len(content.mesh.triangles))}
-    known = cloud.sigma[np.isfinite(cloud.sigma)]
-    if len(known):
-        middle, most = np.quantile(known, [0.5, 0.95])
-        decimals = decimals_of(float(middle))
-        facts[words("σ of depth, median")] = f"{words.fixed(float(middle), decimals)} mm"
-        facts[words("σ of depth, 95 % below")] = f"{words.fixed(float(most), decimals)} mm"
-    if len(cloud):
-        size = np.ptp(cloud.points, axis=0)
-        digits = 0 if size.max() >= 10 else 2
-        facts[words("Extent x, y, z")] = " × ".join(words.fixed(float(value), digits) for value in size) + " mm"
+    parts: list[Flowable] = [
+        look.say("Point cloud", "label"),
+        look.text(look.words(points_counted(len(content.cloud))), "result"),
+    ]
+    _points, *rest = for_reader(content.scan_facts, Reader.TECHNICIAN)
+    facts = told(look, rest)
     sentence = look.say(
         "No pair of parallel faces was evaluated, so there is no thickness and no verdict: this report is of the cloud."
     )
-    return [*parts, Spacer(0, 2.5 * mm), _facts(look, facts, width), Spacer(0, 2 * mm), sentence]
+    return [*parts, Spacer(0, 2.5 * mm), *_facts(look, facts, width), Spacer(0, 2 * mm), sentence]
 
 
 WIDTHS = [size * mm for size in (15.5, 27, 19.5, 16.5, 8, 18.5, 32.5)]
@@ -183,10 +169,7 @@ def characteristics_table(
     look: ReportLook, content: ReportContent, shown: Sequence[Characteristic], keys: Sequence[str] = ()
 ) -> Table:
     """One row for each characteristic, its name leading to its key, if it has one."""
-    head = heads(
-        look, "Characteristic", "nominal", "permitted", "measured", "U", "k", "deviation", VERDICT,
-        numbers=range(1, 7),
-    )  # fmt: skip
+    head = heads(look, "Characteristic", *HEADS, numbers=range(1, 7))
     rows: list[list[Flowable | list[Flowable]]] = [[*head]]
     rows += [_row(look, content, one, key) for one, key in zip(shown, keys or [""] * len(shown), strict=True)]
     table = ruled_table(rows, [TEXT_WIDTH - sum(WIDTHS), *WIDTHS])
@@ -200,13 +183,8 @@ def budget_key(number: int) -> str:
 
 
 def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str) -> list[Flowable | list[Flowable]]:
-    words, (unit, factor) = look.words, shown_unit(one)
-    decimals = decimals_of(factor * one.U)
-    limits = one.limits
-    nominal = "" if limits is None else with_unit(words.general(factor * limits.nominal), unit)
-    known = one.deviation is not None and math.isfinite(one.deviation)
-    off = words.fixed(factor * (one.deviation or 0.0), decimals, signed=True)
-    deviation = with_unit(off, unit) if known else ""
+    words = look.words
+    *numbers, _ = characteristic_cells(one, words)
     name = shown_name(one, words)
     title = look.link(name, key, "small_strong") if key else look.text(name, "small_strong")
     below: list[Flowable] = [look.text(words.known(one.rule), "rule")] if one.rule else []
@@ -214,15 +192,6 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
         below.insert(0, look.say("Datum {letter}", "rule", letter=letter))
     if frame := content.control_frames.get(one.name):
         below.insert(0, ControlFrameMark(look, frame))
-    U = with_unit(words.fixed(factor * one.U, decimals), unit) if math.isfinite(one.U) else words("unknown")
-    numbers = (
-        nominal,
-        tolerance_words(one, words),
-        with_unit(words.fixed(factor * one.value, decimals), unit) if math.isfinite(one.value) else words("unknown"),
-        U,
-        words.general(one.k),
-        deviation,
-    )
     decided = f"{SIGNS[one.verdict]} {decision(one.verdict, words)}"
     return [
         [title, *below],

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping, Sequence
 
 from reportlab.lib.units import mm
@@ -10,8 +9,9 @@ from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, Spacer, TableStyle
 
 from core.inspect.results import GaugeResult
-from core.messages import label, plural_message
+from core.messages import capital, label, plural_message
 from core.report.content import ReportContent
+from core.report.facts.of_gauge import LOWER, UPPER, angle_fact, face_facts
 from core.report.layout.blocks import (
     Bookmark,
     Heading,
@@ -217,34 +217,23 @@ def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         "bin, what lies beyond counted in the last one.",
         "caption",
     )
-    body = [_faces(look, content.gauge), Spacer(0, 2 * mm), picture, caption]
+    body = [*_faces(look, content.gauge), Spacer(0, 2 * mm), picture, caption]
     return [section(look, "maps", "Residuals of both faces", body)]
 
 
-def _faces(look: ReportLook, gauge: GaugeResult) -> Flowable:
-    fixed = look.words.fixed
-    rows: list[list[Flowable]] = [
-        heads(
-            look,
-            "Face",
-            "points",
-            "rms of the residuals, mm",
-            "flatness ± U (k = 2), mm",
-            "angle between the faces, fitted freely",
-            numbers=(1, 2, 3, 4),
-        )
+def _faces(look: ReportLook, gauge: GaugeResult) -> list[Flowable]:
+    """How flat each face is and what it rests on, and the angle between them."""
+    words, faces = look.words, {UPPER: face_facts(gauge.upper), LOWER: face_facts(gauge.lower)}
+    columns = [fact.column(words) for fact in faces[UPPER]]
+    rows: list[list[Flowable]] = [heads(look, "Face", *columns, numbers=(1, 2, 3))]
+    for name, facts in faces.items():
+        numbers = (look.text(fact.parts(words)[0], "number") for fact in facts)
+        rows.append([look.text(capital(words(name)), "small"), *numbers])
+    angle = angle_fact(gauge)
+    return [
+        ruled_table(rows, [TEXT_WIDTH * share for share in (0.25, 0.25, 0.25, 0.25)]),
+        look.text(f"{capital(angle.title(words))}: {angle.text(words)}", "small"),
     ]
-    between = "–" if gauge.parallelism is None else f"{fixed(math.degrees(gauge.parallelism), 3)}°"
-    for name, face, angle in (
-        (look.words("Upper"), gauge.upper, between),
-        (look.words("Lower"), gauge.lower, ""),
-    ):
-        flatness = "–" if face.flatness_mm is None else fixed(face.flatness_mm, 3)
-        if face.flatness_u_mm is not None:
-            flatness = f"{flatness} ± {fixed(2 * face.flatness_u_mm, 3)}"
-        numbers = (grouped(len(face.indices)), fixed(face.rms_mm, 3), flatness, angle)
-        rows.append([look.text(name, "small"), *(look.text(number, "number") for number in numbers)])
-    return ruled_table(rows, [TEXT_WIDTH * share for share in (0.1, 0.12, 0.22, 0.28, 0.28)])
 
 
 def _deviations(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:

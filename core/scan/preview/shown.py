@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from enum import IntEnum
 
@@ -15,7 +14,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import LightPlane
 from core.model.arrays import Array
-from core.scan.features.frames import NO_REASON, FrameRecord
+from core.scan.features.frames import FrameRecord
 
 Float32 = NDArray[np.float32]
 Picture8 = NDArray[np.uint8]
@@ -226,14 +225,12 @@ class ShownScan:
         The record of every frame, and how many of them gave points.
     median_sigma_mm, sigma_95_mm
         Half and 95 % of the points have no larger σ; NaN without points.
-    left_out
-        Why frames gave no points, and how many each time, the most frequent reason first.
     share
         Covered share (0 … 1) of what was lit, as in `core.scan.surface.coverage_map`.
     stripe
         Width and contrast of the hand-held laser's stripe, as the measurement settled them.
     notes
-        Notes for the technician about the scan; that about `left_out` is not among it.
+        Notes for the technician about the scan; those about frames that gave no points are not among them.
     problems
         Why a result that exists cannot be shown: whole sentences.
     ground
@@ -249,7 +246,6 @@ class ShownScan:
     frames_used: int
     median_sigma_mm: float
     sigma_95_mm: float
-    left_out: tuple[tuple[Message, int], ...]
     share: float
     stripe: StripeSettings | None
     notes: tuple[Message, ...]
@@ -258,8 +254,3 @@ class ShownScan:
 
     def __len__(self) -> int:
         return len(self.points)
-
-
-def reasons_counted(frames: Iterable[FrameRecord]) -> tuple[tuple[Message, int], ...]:
-    """Count the frames without points by their reasons, the most frequent first."""
-    return tuple(Counter(frame.reason or NO_REASON for frame in frames if not frame.used).most_common())

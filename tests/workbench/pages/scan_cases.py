@@ -12,7 +12,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.messages import plain
 from core.pipeline.live.events import LiveView, ScanDetail, ScanStage
 from core.scan.features.frames import FrameRecord
-from core.scan.preview.shown import FramePreview, FrameStages, PreviewCloud, ShownScan, reasons_counted
+from core.scan.preview.shown import FramePreview, FrameStages, PreviewCloud, ShownScan
 
 FRAMES = 6
 SIZE = (64, 48)
@@ -54,7 +54,6 @@ def look(points: int = 1500) -> ShownScan:
         frames_used=FRAMES - 1,
         median_sigma_mm=0.021,
         sigma_95_mm=0.048,
-        left_out=reasons_counted(frames),
         share=0.63,
         stripe=StripeSettings(5.9, 91.5),
         notes=(plain("The relief fixes the scale well."),),

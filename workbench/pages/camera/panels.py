@@ -10,8 +10,9 @@ from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
+from workbench.pages.words import show_facts
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import heading, muted, say
+from workbench.views.layouts import muted, say
 from workbench.views.lists.value_rows import ValueRows
 
 TARGETS = ("checkerboard", "charuco", "circle_grid")
@@ -56,18 +57,17 @@ class CameraCard(CalibrationCard):
 
 
 class CameraResult(Result):
-    """How good the calibration is, its parameters, and what is to be noted."""
+    """How good the calibration is, and what is to be noted."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.quality, self.parameters, self.notes = ValueRows(), ValueRows(), muted()
-        self._add(self.quality, heading(tr("Parameters ± sd")), self.parameters, self.notes)
+        self.rows, self.notes = ValueRows(), muted()
+        self._add(self.rows, self.notes)
 
     def refresh(self) -> bool:
         work = self._presenter.work
         calibration = work.calibration
-        self.quality.set_rows(words.quality_rows(calibration, work.judgement))
-        self.parameters.set_rows(words.parameter_rows(calibration))
+        show_facts(self.rows, words.facts(calibration, work.judgement))
         say(self.notes, "\n".join(map(text_of, calibration.notes)) if calibration is not None else "")
         return calibration is not None
 

@@ -5,73 +5,24 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from core.calibrate.camera.changes import CameraChanges, parameter_values
+from core.calibrate.camera.changes import CameraChanges
 from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
-from core.calibrate.grades import TILT, VIEWS
-from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
+from core.calibrate.results import CameraCalibration, ViewQuality
+from core.report.facts.fact import Fact
+from core.report.facts.of_camera import camera_facts, parameter_fact, parameter_facts
+from core.report.wording import decimals_of
 from workbench.language import named, number, text_of, tr
-from workbench.pages.calibration.words import graded_row, history_row, used_row
-from workbench.pages.words import degrees, mm, percent, px
-from workbench.views.lists.value_rows import ValueRow
+from workbench.pages.calibration.words import history_row
+from workbench.pages.words import mm, px, wording
 
 
-def quality_rows(calibration: CameraCalibration | None, judgement: ViewsJudgement | None) -> list[ValueRow]:
-    """How good the calibration is: label, value with unit, tip, level."""
+def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | None) -> tuple[Fact, ...]:
+    """What is told of the calibration."""
     if calibration is None:
-        return []
-    rows: list[ValueRow] = [
-        (
-            tr("RMS"),
-            px(calibration.rms_px),
-            tr(
-                "Root mean square distance of the corners from where they should be; on the mean {mean}",
-                mean=px(calibration.mean_px),
-            ),
-            "",
-        ),
-        used_row(tr("Views"), calibration.views, tr("Views used, and all there are"), VIEWS),
-        (
-            tr("Coverage"),
-            percent(calibration.coverage),
-            tr("Share of the picture where there are corners"),
-            "",
-        ),
-        graded_row(
-            tr("Tilts"),
-            degrees(calibration.tilt_range, 0),
-            tr("Largest angle between the target's planes in two views"),
-            calibration.tilt_range,
-            TILT,
-            (degrees(TILT.good, 0), degrees(TILT.poor, 0)),
-        ),
-    ]
-    if judgement is not None and judgement.expected:
-        expected = judgement.expected[1]
-        tip = tr(
-            "Standard uncertainty (k = 1) of where a point lies, from the camera alone, at depth {depth}",
-            depth=mm(expected.depth_mm, 0),
-        )
-        if not math.isnan(calibration.cross_validation_mm):
-            tip += "\n" + tr(
-                "Cameras from the odd and from the even views differ by {distance} RMS over the work volume",
-                distance=mm(calibration.cross_validation_mm),
-            )
-        text = tr("{median}, worst {worst}", median=mm(expected.median_mm), worst=mm(expected.worst_mm))
-        rows.append((tr("Expected error"), text, tip, ""))
-    return rows
-
-
-def parameter_rows(calibration: CameraCalibration | None) -> list[ValueRow]:
-    """The parameters, each ± its standard deviation."""
-    if calibration is None:
-        return []
-    return [
-        (label, with_sd(value, calibration.sd[name], unit), f"{tip} (± sd)", "")
-        for (name, value) in zip(CAMERA_PARAMETERS, parameter_values(calibration), strict=True)
-        for label, unit, tip in [_parameters()[name]]
-        if value or calibration.sd[name]
-    ]
+        return ()
+    expected = judgement.expected[1] if judgement is not None and judgement.expected else None
+    return (*camera_facts(calibration, expected), *parameter_facts(calibration))
 
 
 def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
@@ -85,16 +36,16 @@ def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
     for one in changes.parameters:
         if not (one.first or one.second):
             continue
-        label, unit, _ = _parameters()[one.name]
-        digits = _digits(one.sd)
+        fact = parameter_fact(one.name, one.second, one.sd)
+        digits = decimals_of(one.sd)
         mark = "  ▲" if one.unlikely else ""
         rows.append(
             (
-                f"{label} ({unit})" if unit else label,
-                number(one.first, f".{digits}f"),
-                number(one.second, f".{digits}f"),
-                number(one.change, f"+.{digits}f") + mark,
-                number(one.sd, f".{digits}f"),
+                fact.column(wording()),
+                wording().fixed(one.first, digits),
+                wording().fixed(one.second, digits),
+                wording().fixed(one.change, digits, signed=True) + mark,
+                wording().fixed(one.sd, digits),
             )
         )
     return rows
@@ -144,29 +95,3 @@ def missing_sentence(judgement: ViewsJudgement | None) -> str:
     if judgement is None:
         return ""
     return "\n".join(map(text_of, judgement.missing)) or tr("Nothing is missing: the views cover enough.")
-
-
-def with_sd(value: float, sd: float, unit: str) -> str:
-    """A value ± its standard deviation, to two digits of it."""
-    spec = f".{_digits(sd)}f"
-    text = number(value, spec) + (f" ± {number(sd, spec)}" if sd > 0 else "")
-    return f"{text} {unit}".strip()
-
-
-def _digits(sd: float) -> int:
-    return min(max(1 - math.floor(math.log10(sd)), 0), 8) if sd > 0 else 3
-
-
-def _parameters() -> dict[str, tuple[str, str, str]]:
-    return {
-        "alpha": ("α (fx)", "px", tr("Focal length across")),
-        "beta": ("β (fy)", "px", tr("Focal length down")),
-        "gamma": ("γ", "px", tr("Skew of the pixel's axes")),
-        "u0": ("u₀", "px", tr("Principal point across")),
-        "v0": ("v₀", "px", tr("Principal point down")),
-        "k1": ("k₁", "", tr("Radial distortion")),
-        "k2": ("k₂", "", tr("Radial distortion, fourth power")),
-        "p1": ("p₁", "", tr("Tangential distortion")),
-        "p2": ("p₂", "", tr("Tangential distortion")),
-        "k3": ("k₃", "", tr("Radial distortion, sixth power")),
-    }

@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
+from core.report.facts.of_gauge import gauge_facts
 from core.report.wording import verdict_sentence
 from workbench.language import sentence, text_of, tr
 from workbench.pages.inspect import words
@@ -25,7 +26,7 @@ from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
 from workbench.pages.inspect.picks import Mode, Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import PicksFacts, picks_buttons
-from workbench.pages.words import wording
+from workbench.pages.words import show_facts, wording
 from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
@@ -217,7 +218,7 @@ class ResultPanel(QWidget):
             return
         self._shown = (p.scan.serial, outdated)
         self._show_verdict(gauge, outdated)
-        self.rows.set_rows(words.result_rows(gauge))
+        show_facts(self.rows, gauge_facts(gauge))
         self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
         self.budget.set_rows(words.budget_rows(gauge))
         say_notes(gauge.notes, self.alarm, self.notes)

@@ -13,6 +13,10 @@ from core.messages import capital
 from core.report.facts.fact import Fact
 from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
 from workbench.language import text_of, time_of, tr
+from core.report.wording import decimals_of, thickness_line, with_uncertainty
+from core.states import DECISIONS, SPREAD
+from core.study.repeats import RepeatStatistics
+from workbench.language import number, text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
 from workbench.views.lists.value_rows import ValueRow, VerdictKind
@@ -36,46 +40,6 @@ def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
         "not proven": "not proven",
     }
     return "" if result is None else kinds.get(result.verdict, "")
-
-
-def result_rows(gauge: GaugeResult) -> list[ValueRow]:
-    """The thickness and all that is said of the faces."""
-    decimals = max(decimals_of(gauge.U_mm), 0)
-    value, expanded = with_uncertainty(gauge.thickness_mm, gauge.U_mm, wording())
-    rows: list[ValueRow] = [
-        (tr("Thickness"), f"{value} mm", tr("Distance of the two parallel planes fitted to both faces"), ""),
-        (
-            tr("U (k = {k:g})", k=gauge.k),
-            f"± {expanded} mm",
-            tr("Expanded uncertainty: k times the standard uncertainty u"),
-            "",
-        ),
-    ]
-    if gauge.deviation_mm is not None:
-        nominal = tr("Measured thickness less the nominal value of {nominal:g} mm", nominal=gauge.nominal_mm)
-        rows.append((tr("Deviation"), f"{wording().fixed(gauge.deviation_mm, decimals, signed=True)} mm", nominal, ""))
-    flatness = tr("Width of the zone that holds the face's form, free of its points' noise, and its U (k = 2)")
-    upper, lower = gauge.points_used
-    return [
-        *rows,
-        (tr("Flatness, upper face"), _flatness(gauge.upper), flatness, ""),
-        (tr("Flatness, lower face"), _flatness(gauge.lower), flatness, ""),
-        (
-            tr("Angle of the faces"),
-            tr("not known") if gauge.parallelism is None else f"{wording().fixed(math.degrees(gauge.parallelism), 3)}°",
-            tr("Angle between the two faces when each is fitted by itself"),
-            "",
-        ),
-        (tr("Points used, upper face"), grouped(upper), tr("Points the upper plane rests on"), ""),
-        (tr("Points used, lower face"), grouped(lower), tr("Points the lower plane rests on"), ""),
-    ]
-
-
-def _flatness(face: Face) -> str:
-    if face.flatness_mm is None:
-        return tr("not known")
-    beside = "" if face.flatness_u_mm is None else f" ± {wording().fixed(2 * face.flatness_u_mm, 3)} mm"
-    return f"{wording().fixed(face.flatness_mm, 3)} mm{beside}"
 
 
 def budget_rows(gauge: GaugeResult) -> list[ValueRow]:

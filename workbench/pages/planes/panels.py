@@ -7,7 +7,9 @@ from typing import Any
 
 from PySide6.QtWidgets import QCheckBox, QVBoxLayout, QWidget
 
-from workbench.language import sentences, tr
+from core.report.facts.of_planes import planes_facts
+from core.report.facts.pictures import left_out
+from workbench.language import sentences, text_of, tr
 from workbench.pages.calibration.card import CalibrationCard
 from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
@@ -15,6 +17,7 @@ from workbench.pages.channels import add_channel
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
 from workbench.pages.stripes import add_stripe, set_stripe_editable
+from workbench.pages.words import show_facts
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
@@ -144,22 +147,17 @@ class PlanesResult(Result):
 
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.quality, self.angles = ValueRows(), ValueRows()
-        self.left_out, self.verdict, self.notes = muted(), muted(), muted()
-        self._left_out_heading, self._angles_heading = heading(tr("Left out")), heading(tr("Angles"))
-        self._angles_heading.setToolTip(tr("Between neighbouring light planes"))
-        self._add(self.quality, self._left_out_heading, self.left_out)
-        self._add(self._angles_heading, self.angles, self.verdict, self.notes)
+        self.rows, self.left_out, self.verdict, self.notes = ValueRows(), muted(), muted(), muted()
+        self._left_out_heading = heading(tr("Left out"))
+        self._add(self.rows, self._left_out_heading, self.left_out, self.verdict, self.notes)
 
     def refresh(self) -> bool:
         work = self._presenter.work
         calibration = work.calibration
-        self.quality.set_rows(words.quality_rows(calibration))
-        self.angles.set_rows(words.angle_rows(calibration))
+        show_facts(self.rows, planes_facts(calibration) if calibration is not None else ())
         say(self.verdict, words.verdict_sentence(calibration))
         say(self.notes, words.notes(calibration))
-        lines = words.left_out_lines(calibration.poses if calibration is not None else work.poses or ())
-        say(self.left_out, "\n".join(lines))
-        self._left_out_heading.setVisible(bool(lines))
-        self._angles_heading.setVisible(calibration is not None and len(calibration.free_angles) > 0)
-        return calibration is not None or bool(lines)
+        why = left_out(calibration.poses if calibration is not None else work.poses or ())
+        say(self.left_out, "\n".join(text_of(one.line()) for one in why))
+        self._left_out_heading.setVisible(bool(why))
+        return calibration is not None or bool(why)

@@ -7,53 +7,16 @@ from collections.abc import Sequence
 from typing import Any
 
 from core.calibrate.fan.left_out import note_on_left_out
-from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
-from workbench.language import joined, named, number, sentence, text_of, tr
-from workbench.pages.calibration.words import history_row, used_row
-from workbench.pages.words import degrees, mm, px
-from workbench.views.colours import Level
-from workbench.views.lists.value_rows import ValueRow
-
-
-def quality_rows(calibration: FanCalibration | None) -> list[ValueRow]:
-    """How well the stripes lie on their planes."""
-    if calibration is None:
-        return []
-    rows: list[ValueRow] = [
-        (
-            tr("Line {line}, RMS", line=line),
-            mm(rms),
-            tr("Root mean square distance of the points on this line from its plane"),
-            "",
-        )
-        for line, rms in enumerate(calibration.rms_mm, start=1)
-    ]
-    rows.append(used_row(tr("Poses"), calibration.poses, tr("Poses used, and all there are"), POSES))
-    if not math.isnan(calibration.stripe_sd_mm):
-        tip = tr("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
-        off = calibration.stripe_sd_mm
-        rows.append((tr("Stripes beyond noise"), mm(off) if off >= 0.0005 else tr("below 0.001 mm"), tip, ""))
-    return rows
-
-
-def left_out_lines(poses: Sequence[PlanePose | PoseFeatures]) -> list[str]:
-    """Which poses do not count and why, one line a reason: how many first, then their names."""
-    reasons: dict[str, list[str]] = {}
-    for pose in poses:
-        if pose.reason:
-            reasons.setdefault(text_of(pose.reason), []).append(pose.name)
-    return [
-        named(f"{len(names)} × {reason}", joined(names))
-        for reason, names in sorted(reasons.items(), key=lambda entry: -len(entry[1]))
-    ]
+from core.report.facts.of_planes import planes_sentences
+from workbench.language import joined, number, sentence, text_of, tr
+from workbench.pages.calibration.words import history_row
+from workbench.pages.words import mm, px
 
 
 def verdict_sentence(calibration: FanCalibration | None) -> str:
-    """Whether the laser is the pencil it is said to be, as a sentence."""
-    verdict = text_of((calibration and calibration.verdict) or "")
-    return sentence(verdict) if verdict else ""
+    """Whether the laser is the pencil it is said to be, and what was moved since, a sentence a line."""
+    return "\n".join(map(text_of, planes_sentences(calibration))) if calibration is not None else ""
 
 
 def notes(calibration: FanCalibration | None) -> str:
@@ -70,24 +33,6 @@ def short_names(names: Sequence[str]) -> list[str]:
     words = {name.rstrip("0123456789") for name in names}
     numbered = len(words) == 1 and not words & set(names)
     return [name.removeprefix(*words) for name in names] if numbered else list(names)
-
-
-def angle_rows(calibration: FanCalibration | None) -> list[ValueRow]:
-    """The angles between neighbouring planes, held to one pencil and free."""
-    if calibration is None or not calibration.free_angles:
-        return []
-    suits: Level = "" if calibration.constraint_suits is None else "good" if calibration.constraint_suits else "warn"
-    rows: list[ValueRow] = []
-    angles = zip(calibration.angles, calibration.free_angles, calibration.free.angle_sds, strict=True)
-    for line, (held, free, sd) in enumerate(angles, start=1):
-        name = tr("Angle {line}–{next}", line=line, next=line + 1)
-        text = tr("{held} held, {free} ± {sd} free", held=degrees(held), free=degrees(free), sd=degrees(sd))
-        tip = tr("Between neighbouring planes: held to one pencil, and each plane calibrated on its own")
-        rows.append((name, text, tip, suits))
-    if not math.isnan(calibration.pencil_gap_mm):
-        tip = tr("Largest distance of the free planes from those of one pencil, within the work volume")
-        rows.append((tr("Off one axis"), mm(calibration.pencil_gap_mm), tip, suits))
-    return rows
 
 
 def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from itertools import chain
 from pathlib import Path
 
 from PySide6.QtCore import QEvent
@@ -13,26 +14,27 @@ from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import CheckChart, PastCheck, RigHistory
 from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
-from core.report.wording import with_uncertainty
+from core.report.facts.fact import Fact, named
+from core.report.facts.of_checks import GRADES, artefact_facts, check_facts
+from core.report.facts.pictures import left_out
 from core.states import CHECKS, STEP_STATES
-from core.study.artefact_check import KINDS, ArtefactCheck
+from core.study.artefact_check import ArtefactCheck
+from core.study.control_chart import ControlChart
 from workbench.language import joined, number, sentences, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.stage import CheckButtons, CheckFacts, check_buttons
-from workbench.pages.words import mm, px, wording
+from workbench.pages.words import show_facts
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
 from workbench.views.common import IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
 from workbench.views.layouts import enable, heading, in_column, in_row, muted, rename, say
-from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRow, ValueRows
+from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRows
 from workbench.views.plots.control import ControlPlot
-
-LEVELS: dict[str, Level] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
 
 
 class CheckCard(QFrame):
@@ -45,6 +47,7 @@ class CheckCard(QFrame):
         self.setObjectName("card")
         self._check, self._artefacts, self._live, self._seen = check, artefacts, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
+        self.word.setWordWrap(True)
         self.chart, self.charted = ControlPlot(), QComboBox()
         self.charted.setAccessibleName(tr("What the chart shows"))
         self.charted.activated.connect(self._choose_chart)
@@ -89,10 +92,11 @@ class CheckCard(QFrame):
         say(self.sentence, sentence)
         shown = check.look if stage in (CheckStage.CHECKED, CheckStage.OUTDATED) and not taking else None
         past = check.past if shown is not None else None
-        rows = figures(shown, limits(check.history, past)) + artefact_rows(() if taking else self._artefacts.checks)
-        self.rows.set_rows(rows)
+        limits = check.history.chart(past) if check.history is not None and past is not None else None
+        told = facts(shown, limits, () if taking else self._artefacts.checks)
+        show_facts(self.rows, told)
         self._show_chart({} if taking else self._charts(check.history, past))
-        self.rows.setVisible(bool(rows))
+        self.rows.setVisible(bool(told))
         checking = stage is CheckStage.CHECKING
         rename(self.take, tr("Stop") if taking else tr("Take pictures"))
         self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
@@ -200,9 +204,13 @@ class CheckCard(QFrame):
         verdict, found = check.look.verdict, [check.look.sentence]
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:
-            verdict, found = "failed" if verdict == "failed" else "doubtful", [*found, outside]
+            found = [*(found if verdict != "passed" else []), outside]
+            verdict = "failed" if verdict == "failed" else "doubtful"
+        reasons = [text_of(one.line()) for one in left_out(check.look.poses)]
+        if verdict == "passed":  # its sentence begins with the word
+            return GRADES[verdict], text_of(check.look.sentence), "\n".join(filter(None, (check.refusal, *reasons)))
         said = sentences(*map(text_of, found), check.refusal)
-        return LEVELS[verdict], capital(tr(CHECKS[verdict])), said
+        return GRADES[verdict], capital(tr(CHECKS[verdict])), "\n".join((said, *reasons))
 
     def _charts(self, history: RigHistory | None, past: PastCheck | None) -> Mapping[str, CheckChart]:
         """What there are two or more of with these calibrations, by its name: pictures, and each artefact."""
@@ -261,82 +269,12 @@ def _tip(check: PastCheck) -> str:
     """When, how warm and, of an artefact, E_n."""
     warm = [] if check.celsius is None else [f"{number(check.celsius, '.1f')} °C"]
     normalised = [f"E_n = {number(check.e_n, '.2f')}"] if check.artefact else []
-    return joined([when(check), *warm, *normalised])
+    return joined([time_of(check.taken_at), *warm, *normalised])
 
 
-def when(check: PastCheck | InterimCheck) -> str:
-    """When its pictures were taken."""
-    return time_of(check.taken_at)
-
-
-def limits(history: RigHistory | None, past: PastCheck | None) -> list[ValueRow]:
-    """Where a step's error is to lie by the rig's history."""
-    if history is None or past is None:
-        return []
-    chart = history.chart(past)
-    tip = (
-        tr("Mean ± 3 standard deviations of the {n} checks before with these calibrations", n=chart.n)
-        if chart.own
-        else tr("Three standard uncertainties of what is stated or assumed of the rig's stability; after eight checks "
-                "their own scatter takes its place")
-    )  # fmt: skip
-    text = tr("{lower} … {upper} mm", lower=number(chart.lower, "+.3f"), upper=number(chart.upper, "+.3f"))
-    return [
-        (
-            tr("Allowed by its history") if chart.own else tr("Allowed by its stability"),
-            text,
-            tip,
-            "" if history.beyond(past) is None else "warn",
-        )
-    ]
-
-
-def figures(look: InterimCheck | None, allowed: Sequence[ValueRow]) -> list[ValueRow]:
-    """How far off, and what is `allowed`: label, value with unit, tip, level."""
-    if look is None:
-        return []
-    step = tr("{step:g} mm", step=look.step_mm)
-    rows: list[ValueRow] = [
-        (tr("Stripes off by"), px(look.offset_px), tr("RMS distance from where the calibrations have them"), ""),
-        (tr("At the part"), mm(look.offset_mm), tr("The same in mm on the plane target"), ""),
-        (
-            tr("A step of {step} is off by", step=step),
-            mm(look.error_mm),
-            tr("By how much it would be measured too high now; nothing is corrected by it"),
-            "",
-        ),
-        *allowed,
-        (
-            tr("A step of {step} may be off by", step=step),
-            mm(look.unseen_mm),
-            tr("An error up to this could have been overlooked (k = 2)"),
-            "",
-        ),
-        (tr("Pictures taken"), when(look), tr("The newest of them"), ""),
-    ]
-    rows += [
-        (pose.name, tr("left out"), capital(text_of(pose.reason)), "warn")
-        for pose in look.poses
-        if pose.reason is not None
-    ]
-    return rows
-
-
-def artefact_rows(artefacts: Sequence[ArtefactCheck]) -> list[ValueRow]:
-    """What was measured of known artefacts with the same calibrations, and what their certificates say."""
-    rows: list[ValueRow] = []
-    for one in artefacts:
-        known = one.artefact
-        measured = " ± ".join(with_uncertainty(one.measured_mm, 2 * one.u_mm, wording()))
-        certified = " ± ".join(with_uncertainty(known.value_mm, known.U_mm, wording()))
-        due = tr("not stated") if known.due is None else known.due.isoformat()
-        certificate = " ".join(filter(None, (known.certificate, f"k = {number(known.k, 'g')}")))
-        level = "" if one.verdict == "passed" else LEVELS[one.verdict]
-        said = f"{text_of(one.sentence)} {one.day.isoformat()}"
-        compared = one.characteristic or tr(KINDS[known.kind])
-        rows += [
-            (tr("{artefact} measured", artefact=known.id), f"{measured} mm", f"{capital(compared)}. {said}", ""),
-            (tr("{artefact} certified", artefact=known.id), f"{certified} mm", certificate, ""),
-            (tr("E_n; valid until"), joined((number(one.e_n, ".2f"), due), ";"), said, level),
-        ]
-    return rows
+def facts(
+    look: InterimCheck | None, chart: ControlChart | None, artefacts: Sequence[ArtefactCheck]
+) -> tuple[Fact, ...]:
+    """What is told of the check, and of known artefacts measured with the same calibrations."""
+    of_artefacts = (named(one.artefact.id, artefact_facts(one)) for one in artefacts)
+    return (*(check_facts(look, chart) if look is not None else ()), *chain(*of_artefacts))

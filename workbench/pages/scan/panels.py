@@ -10,7 +10,9 @@ from PySide6.QtWidgets import QGridLayout, QLabel, QVBoxLayout, QWidget
 
 from core.messages import capital
 from core.pipeline.live.events import ScanDetail
+from core.report.facts.pictures import left_out
 from core.scan.preview.hints import HintLimits
+from core.scan.preview.shown import ShownScan
 from workbench.language import sentences, text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
@@ -19,10 +21,10 @@ from workbench.pages.scan.stage import Stage
 from workbench.pages.scan_form import add_scan_settings
 from workbench.pages.stripes import set_stripe_editable
 from workbench.pages.whole import EVERYTHING
-from workbench.pages.words import count, mm
+from workbench.pages.words import count, mm, show_facts
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import alarm, heading, in_column, muted, say_notes
+from workbench.views.layouts import alarm, heading, in_column, muted, say, say_notes
 from workbench.views.lists.value_rows import ValueRows
 from workbench.views.plots.meters import HintBar, Meter
 from workbench.views.stage_card import CardButton, StageCard
@@ -205,22 +207,24 @@ class ResultPanel(QWidget):
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.quality, self.reasons, self.notes = ValueRows(), ValueRows(), muted()
+        self.rows, self.reasons, self.notes = ValueRows(), muted(), muted()
         self.alarm = alarm()
+        self._shown: ShownScan | None = None
         self._why = heading(tr("Frames without points"))
         column = QVBoxLayout(self)
         column.setContentsMargins(0, 0, 0, 0)
-        for widget in (self.alarm, self.quality, self._why, self.reasons, self.notes):
+        for widget in (self.alarm, self.rows, self._why, self.reasons, self.notes):
             column.addWidget(widget)
 
     def refresh(self) -> None:
         """Show the result."""
         look = self._presenter.work.look
-        self.quality.set_rows(words.quality_rows(look))
-        reasons = words.reason_rows(look)
-        self.reasons.set_rows(reasons)
-        for widget in (self._why, self.reasons):
-            widget.setVisible(bool(reasons))
+        if look is not self._shown:
+            self._shown = look
+            show_facts(self.rows, words.facts(look))
+            lines = [text_of(one.line()) for one in left_out(look.frames)] if look is not None else []
+            say(self.reasons, "\n".join(lines))
+            self._why.setVisible(bool(lines))
         said = (*look.notes, *look.problems) if look is not None else ()
         no_gauge = self._presenter.run.no_gauge
         say_notes((*said, *([no_gauge] if no_gauge is not None else [])), self.alarm, self.notes)

@@ -4,51 +4,24 @@ from __future__ import annotations
 
 import math
 
-from core.messages import Message, capital
+import numpy as np
+
+from core.messages import Message
+from core.report.facts.fact import Fact
+from core.report.facts.of_scan import scan_facts
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import named, sentence, text_of, tr
 from workbench.pages.words import count, mm, percent
-from workbench.views.lists.value_rows import ValueRow
 
 
-def quality_rows(look: ShownScan | None) -> list[ValueRow]:
-    """How good the result is: label, value with unit, tip, level."""
+def facts(look: ShownScan | None) -> tuple[Fact, ...]:
+    """What is told of the scan."""
     if look is None:
-        return []
-    return [
-        (tr("Points"), count(len(look)), tr("Measured points, each with its own σ"), ""),
-        (tr("Triangles"), count(look.triangles), tr("Of the mesh made from the points"), ""),
-        (
-            tr("Frames used"),
-            tr("{used} of {total}", used=look.frames_used, total=len(look.frames)),
-            tr("Frames that gave points, and all there are"),
-            "",
-        ),
-        (
-            tr("Median σ"),
-            mm(look.median_sigma_mm),
-            tr("Half of the points have a smaller standard uncertainty of depth; without what is common to the scan"),
-            "",
-        ),
-        (tr("95 % of σ"), mm(look.sigma_95_mm), tr("95 % of the points have a smaller σ"), ""),
-        (
-            tr("Covered"),
-            tr("{share} of what was lit", share=percent(look.share)),
-            tr("Share of the picture between all laser light in which there are points"),
-            "",
-        ),
-    ]
-
-
-def reason_rows(look: ShownScan | None) -> list[ValueRow]:
-    """Why frames gave no points, and how many."""
-    if look is None:
-        return []
-    return [
-        (capital(text_of(reason)), str(frames), tr("Frames left out for this reason"), "")
-        for reason, frames in look.left_out
-    ]
+        return ()
+    extent = np.ptp(look.points, axis=0) if len(look) else None
+    sigma = (look.median_sigma_mm, look.sigma_95_mm) if len(look) else None
+    return scan_facts(look.frames, len(look), look.triangles, sigma, look.share, extent)
 
 
 def frame_line(record: FrameRecord | None, seen: tuple[int, Message | None] | None, *, marked: bool = False) -> str:

@@ -45,6 +45,11 @@ class PoseFeatures:
     moved_px: float = math.nan
 
     @property
+    def used(self) -> bool:
+        """Whether it can be used."""
+        return self.reason is None
+
+    @property
     def target_moved(self) -> bool:
         """Whether the target is known to have moved too far between its pictures."""
         return self.moved_px >= MOVED_PX

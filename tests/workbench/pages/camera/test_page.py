@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QApplication
 
 from core.messages import plain
 from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
+from core.report.facts.of_camera import parameter_fact
 from core.translations import language
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.places import moved, places
@@ -18,6 +19,7 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
 from workbench.pages.camera.page import CameraPage
 from workbench.pages.camera.presenter import CameraPresenter
+from workbench.pages.words import fact_row
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -156,7 +158,7 @@ def test_what_is_missing_is_told_in_words(solved):
 
 
 def test_parameters_are_shown_with_their_standard_deviation_and_unit(solved):
-    focal = solved.result.parameters.text_of("α (fx)")
+    focal = solved.result.rows.text_of("α (fx)")
     assert "±" in focal and focal.endswith(" px")
 
 
@@ -297,7 +299,7 @@ def test_while_it_is_solved_it_cannot_be_calibrated(solved, monkeypatch):
 
 
 def test_each_grade_of_a_calibration_is_told_with_its_limits(solved):
-    rows = {row[0]: row[1:] for row in words.quality_rows(solved.presenter.work.calibration, None)}
+    rows = {row[0]: row[1:] for row in map(fact_row, words.facts(solved.presenter.work.calibration, None))}
     text, tip, level = rows["Views"]
     used = int(text.split(" of ")[0])
     assert level == ("good" if used >= 10 else "warn") and tip.endswith("Good from 10 on, poor below 5")
@@ -307,6 +309,6 @@ def test_each_grade_of_a_calibration_is_told_with_its_limits(solved):
 def test_a_parameter_is_written_with_the_decimal_sign_of_the_language(qapp: QApplication) -> None:
     choose(language("de"), qapp)
     try:
-        assert words.with_sd(-2495.187, 0.132, "px") == "−2495,19 ± 0,13 px"
+        assert fact_row(parameter_fact("alpha", -2495.187, 0.132))[1] == "−2495,19 ± 0,13 px"
     finally:
         choose(language("en"), qapp)

@@ -210,10 +210,10 @@ def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
     assert shown.card.title.text() == "50.012\u00a0mm ±\u00a00.024\u00a0mm (k\u00a0=\u00a02)"
     assert shown.result.verdict.text == "Conforming"
     rows = shown.result.rows
-    assert rows.text_of("Thickness") == "50.012 mm" and rows.text_of("U (k = 2)") == "± 0.024 mm"
+    assert rows.text_of("Thickness (k = 2)") == "50.012 ± 0.024 mm"
     assert rows.text_of("Deviation") == "+0.012 mm" and rows.text_of("Angle of the faces") == "0.029°"
-    assert rows.text_of("Flatness, upper face") == "0.031 mm" and rows.text_of("Flatness, lower face") == "0.042 mm"
-    assert rows.text_of("Points used, upper face") == "300"
+    assert rows.text_of("Upper face, flatness") == "0.031 mm" and rows.text_of("Lower face, flatness") == "0.042 mm"
+    assert rows.text_of("Upper face, points") == "300"
     assert shown.result.rule.text() == "Rule: distance of two parallel planes."
     assert shown.result.budget.text_of("Camera calibration") == "0.0020 mm"
     assert shown.result.budget.text_of("u, all together") == "0.0120 mm"

@@ -193,12 +193,12 @@ def test_unchecking_a_pose_leaves_it_out_of_result_and_count(solved: PlanesPage,
     solved.refreshing.at_once()
     assert solved.presenter.model.undo_stack.undoText() == "leave out pose01"
     assert (pose_row(solved, "pose01").used, pose_row(solved, "pose01").reason) == (False, "left out by hand")
-    assert solved.result.quality.text_of("Poses") == "5 of 7"
+    assert solved.result.rows.text_of("Poses") == "5 of 7"
     assert solved.result.left_out.text().splitlines() == ["1 × left out by hand: pose01", f"1 × {NO_PLATE}: pose06"]
     solved.presenter.model.undo_stack.undo()
     solved.refreshing.at_once()
     assert pose_row(solved, "pose01").used
-    assert solved.result.quality.text_of("Poses") == "6 of 7"
+    assert solved.result.rows.text_of("Poses") == "6 of 7"
 
 
 def test_several_chosen_poses_are_left_out_by_one_key_and_one_undo(solved: PlanesPage, qtbot: Any) -> None:

@@ -18,6 +18,8 @@ from core.files.project.keys import finished, left_to_do
 from core.files.results.fan_file import read_fan, write_fan
 from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
+from core.report.facts.of_planes import planes_facts
+from core.report.facts.pictures import left_out
 from tests.calibrate.fan_scenes import CAMERA
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
@@ -25,6 +27,7 @@ from workbench.bench import Bench
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
+from workbench.pages.words import fact_row
 from workbench.step_state import State
 from workbench.work import jobs
 
@@ -193,14 +196,15 @@ def test_several_poses_are_left_out_by_one_edit(found: PlanesPresenter, qtbot: A
 def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot: Any, tmp_path: Path) -> None:
     found.set_used(["pose01", "pose03"], False)
     settled(qtbot, found)
-    assert words.left_out_lines(found.views()) == ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
+    lines = ["2 × left out by hand: pose01, pose03", f"1 × {NO_PLATE}: pose06"]
+    assert [str(one.line()) for one in left_out(found.views())] == lines
     calibration = found.work.calibration
     assert calibration is not None
     write_fan(tmp_path / "planes.json", calibration, CAMERA)
     for one in (calibration, read_fan(tmp_path / "planes.json", CAMERA)):
         assert any(str(note).startswith("3 of 7 poses left out: ") for note in one.notes)
         assert "left out" not in words.notes(one), "said once"
-    rows = {row[0]: row[1] for row in words.quality_rows(found.work.calibration)}
+    rows = {row[0]: row[1] for row in map(fact_row, planes_facts(calibration))}
     assert rows["Poses"] == "4 of 7"
 
 
@@ -209,7 +213,8 @@ def test_too_few_poses_are_told_and_undone(found: PlanesPresenter, qtbot: Any) -
     settled(qtbot, found)
     assert stage(found) is Stage.FAILED
     assert "only one pose can be used" in found.work.problem
-    assert words.left_out_lines(found.work.poses or ()) == [f"1 × {NO_PLATE}: pose06"]
+    lines = [str(one.line()) for one in left_out(found.work.poses or ())]
+    assert lines == [f"1 × {NO_PLATE}: pose06"]
     found.model.undo_stack.undo()
     assert stage(found) is Stage.SOLVED
 
@@ -287,9 +292,9 @@ def test_another_laser_is_solved_at_once_from_the_same_poses(
     assert found.work.calibration is not None
     assert "as asked" in words.verdict_sentence(found.work.calibration)
     assert planes.measuring.ran == ran
-    (angle, *_), gap = words.angle_rows(found.work.calibration)[:2], words.angle_rows(found.work.calibration)[-1]
-    assert angle[1].startswith("5.000° held, 5.00")
-    assert (angle[3], gap[0]) == ("good", "Off one axis")
+    rows = {row[0]: row[1:] for row in map(fact_row, planes_facts(found.work.calibration))}
+    assert rows["Line 1, to the next"][0] == "5.000°" and rows["Line 1, to the next, free"][0].startswith("5.00")
+    assert (rows["Line 1, to the next"][2], rows["Off one axis"][2]) == ("good", "good")
 
 
 def test_another_plate_must_be_measured_again_and_comes_back_from_memory(

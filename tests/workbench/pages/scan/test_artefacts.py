@@ -118,7 +118,7 @@ def test_the_thickness_is_compared_with_the_chosen_artefact_and_the_card_shows_t
     lane.finish(check)
     qtbot.waitUntil(lambda: not quick.busy)
     measured.refresh()
-    assert measured.check.rows.text_of("GB 50-7 measured") == "50.050 ± 0.018 mm"
+    assert measured.check.rows.text_of("GB 50-7, measured") == "50.050 ± 0.018 mm"
     assert measured.check.compare.isEnabled()
     said = bench.notices.all[-1]
     assert said.level is Level.WARNING and "look for what changed" in said.text

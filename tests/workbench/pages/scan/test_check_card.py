@@ -22,7 +22,7 @@ from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.check_cases import TAKEN, chart, check, nowhere
 from tests.workbench.hand_lane import HandLane
 from workbench.pages.scan.check import CheckStage
-from workbench.pages.scan.check_card import artefact_rows
+from workbench.pages.scan.check_card import facts
 from workbench.views import ask
 from workbench.work import jobs
 
@@ -89,7 +89,7 @@ def test_chosen_pictures_are_checked_at_once_and_can_be_given_up(chosen, qtbot):
 @pytest.mark.parametrize(
     ("look", "word", "symbol", "todo"),
     [
-        (check(0.4), "In order", "mdi6.check-circle-outline", "where they were calibrated"),
+        (check(0.4), "In order. A 50 mm step may be off by 0.05 mm.", "mdi6.check-circle-outline", "not seen"),
         (check(0.005, 0.3), "In doubt", "mdi6.alert-outline", "check again"),
         (check(1e-9, 1.5), "Changed", "mdi6.close-octagon-outline", "calibrate again"),
         (nowhere(), "Changed", "mdi6.close-octagon-outline", "calibrate again"),
@@ -108,11 +108,17 @@ def test_it_shows_how_far_off_and_what_could_be_overlooked(chosen, measuring, qt
     measuring.finish(check())
     rows = shown(chosen, qtbot, CheckStage.CHECKED).rows
     assert rows.text_of("Stripes off by") == "0.050 px"
-    assert rows.text_of("At the part") == "0.010 mm"
-    assert rows.text_of("A step of 50 mm is off by") == "0.012 mm"
-    assert rows.text_of("A step of 50 mm may be off by") == "0.050 mm"
-    assert rows.text_of("check/c") == "left out"
+    assert rows.text_of("Stripes off on the target by") == "0.010 mm"
+    assert rows.text_of("A step of 50 mm is off by") == "+0.012 ± 0.050 mm"
+    assert rows.text_of("Pictures") == "2 of 3"
     assert rows.isVisible()
+
+
+def test_why_a_picture_says_nothing_stands_on_a_line_of_its_own(chosen, measuring, qtbot):
+    measuring.finish(check(0.005))
+    lines = shown(chosen, qtbot, CheckStage.CHECKED).sentence.text().splitlines()
+    assert lines[0].startswith("Camera or laser may have changed")
+    assert lines[1:] == ["1 × the target is not seen: check/c"]
 
 
 def test_a_result_is_out_of_date_with_another_calibration_and_back_with_undo(chosen, measuring, qtbot):
@@ -240,9 +246,9 @@ def with_history(page, measuring, qtbot, look, before):
 
 def test_a_check_within_its_history_stays_green_and_is_charted(chosen, measuring, qtbot):
     card = with_history(chosen, measuring, qtbot, check(), 9)
-    assert card.word.text() == "In order"
+    assert card.word.text().startswith("In order. ")
     assert card.chart.isVisible() and card.chart.axis_text("left") == "step off by [mm]"
-    assert card.rows.text_of("Allowed by its history") == "+0.005 … +0.017 mm"
+    assert card.rows.text_of("Allowed by its history") == "+0.005 mm to +0.017 mm"
 
 
 def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring, qtbot):
@@ -253,7 +259,7 @@ def test_a_drift_that_the_pictures_alone_do_not_show_is_amber(chosen, measuring,
 
 @pytest.mark.parametrize(
     ("measured_mm", "due", "level"),
-    [(50.004, None, ""), (50.004, date(2026, 1, 31), "warn"), (50.04, None, "bad")],
+    [(50.004, None, "good"), (50.004, date(2026, 1, 31), "warn"), (50.04, None, "bad")],
     ids=["in order", "lapsed", "wrong"],
 )
 def test_artefacts_of_the_same_calibrations_are_shown_with_their_certificates(
@@ -266,12 +272,13 @@ def test_artefacts_of_the_same_calibrations_are_shown_with_their_certificates(
     qtbot.waitUntil(lambda: page.presenter.artefacts.checks == (measured,))
     card = shown(page, qtbot, CheckStage.NONE)
     assert card.rows.isVisible(), "an artefact needs no pictures of the day"
-    assert card.rows.text_of("GB 50-7 measured") == f"{measured_mm:.3f} ± 0.018 mm"
-    assert card.rows.text_of("GB 50-7 certified") == "50.00030 ± 0.00040 mm"
-    assert card.rows.text_of("E_n; valid until") == f"{measured.e_n:.2f}; {'2026-01-31' if due else 'not stated'}"
-    rows = {label: (tip, how) for label, _, tip, how in artefact_rows([measured])}
-    assert rows["E_n; valid until"][1] == level
-    assert "D-K-15070 2026-03" in rows["GB 50-7 certified"][0]
+    assert card.rows.text_of("GB 50-7, measured") == f"{measured_mm:.3f} ± 0.018 mm"
+    assert card.rows.text_of("GB 50-7, certified") == "50.00030 ± 0.00040 mm"
+    assert card.rows.text_of("GB 50-7, E_n") == f"{measured.e_n:.2f}"
+    assert card.rows.text_of("GB 50-7, valid until") == ("2026-01-31" if due else "not stated")
+    assert card.rows.text_of("GB 50-7, certificate") == "D-K-15070 2026-03"
+    (verdict,) = (fact for fact in facts(None, None, [measured]) if fact.grade and fact.level == 1)
+    assert verdict.grade == level
 
 
 def charted_block(page, qtbot, count):
@@ -310,7 +317,7 @@ def test_of_pictures_and_artefacts_one_chart_is_chosen(chosen, measuring, qtbot)
 def test_a_first_check_is_held_to_what_is_stated_without_a_chart(chosen, measuring, qtbot):
     card = with_history(chosen, measuring, qtbot, check(), 0)
     assert card.chart.isHidden()
-    assert card.rows.text_of("Allowed by its stability") == "−0.117 … +0.117 mm"
+    assert card.rows.text_of("Allowed by its stability") == "−0.117 mm to +0.117 mm"
 
 
 def test_that_nobody_checked_today_stays_in_sight_while_it_is_scanned(page, lane, qtbot):

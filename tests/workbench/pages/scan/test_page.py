@@ -250,12 +250,12 @@ def test_a_recording_can_be_looked_through_before_it_is_measured(recorded):
 
 
 def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(measured):
-    quality, reasons = measured.result.quality, measured.result.reasons
-    assert quality.text_of("Points") == "1\u2009500" and quality.text_of("Triangles") == "2\u2009800"
+    quality, reasons = measured.result.rows, measured.result.reasons
+    assert quality.text_of("Points") == "1\u00a0500" and quality.text_of("Triangles") == "2\u00a0800"
     assert quality.text_of("Frames used") == "5 of 6"
     assert quality.text_of("Median σ") == "0.021 mm"
-    assert quality.text_of("Covered") == "63 % of what was lit"
-    assert reasons.text_of("Its light plane is too uncertain for any point to pass the σ cut") == "1"
+    assert quality.text_of("Covered of what was lit") == "63 %"
+    assert reasons.text() == ("1 × its light plane is too uncertain for any point to pass the σ cut: frame0005.png")
     assert "relief" in measured.result.notes.text()
     assert measured.result_fold.isExpanded()
     assert not any(button.property("primary") for button in measured.card.buttons.values())

@@ -37,7 +37,7 @@ def idle(page, qtbot):
 def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window(page, qtbot):
     p = page.presenter
     assert p.stage is Stage.MEASURED and p.blocker() == ""
-    assert page.result.quality.text_of("Frames used").endswith(f"of {len(p.work.names)}")
+    assert page.result.rows.text_of("Frames used").endswith(f"of {len(p.work.names)}")
     p.set_used([p.work.names[0]], False)
     assert p.stage is Stage.OUTDATED
     drawn = []
@@ -48,7 +48,6 @@ def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window
         idle(page, qtbot)
     assert drawn
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
-    assert p.work.look.left_out[0][0] or p.work.look.frames_used
     assert p.record_of(p.work.names[0]).reason == LEFT_OUT
     assert {"scan", "gauge"} <= set(p.model.results)
     assert [notice.text for notice in p.bench.notices.all if notice.level != "info"] == []

@@ -9,7 +9,8 @@ from core.inspect.conformity import Verdict
 from core.inspect.plan.control_frame import control_frames, datum_letters
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_of, results_of
-from core.report.wording import decision_sentence, grouped, name_within, short_value, shown_name, value_line
+from core.report.facts.of_features import characteristic_facts
+from core.report.wording import decision_sentence, grouped, name_within, shown_name, value_line
 from workbench.language import named, number, text_of, tr
 from workbench.pages.words import wording
 from workbench.views.control_frames import Frame
@@ -39,7 +40,7 @@ def source_of_none(spec: FeatureSpec) -> str:
 
 def value(row: Characteristic) -> str:
     """'50.012 ± 0.024 mm'."""
-    return short_value(row, wording()) if math.isfinite(row.U) else value_line(row, wording())
+    return characteristic_facts(row)[0].text(wording()) if math.isfinite(row.U) else value_line(row, wording())
 
 
 def tip(row: Characteristic) -> str:

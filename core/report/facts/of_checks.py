@@ -1,0 +1,163 @@
+"""What is told of an interim check, of a re-adjustment, and of a known artefact that was measured."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from datetime import datetime
+from typing import Protocol
+
+from core.calibrate.results import ProposedReadjustment
+from core.messages import Message, label
+from core.report.facts.fact import Fact, Grade, Reader
+from core.report.facts.pictures import Picture, used_fact
+from core.report.wording import decimals_of
+from core.states import CHECKS, VERDICT
+from core.study.artefact_check import KINDS, ArtefactCheck
+from core.study.control_chart import ControlChart
+
+GRADES: dict[str, Grade] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
+PROBABILITY = label("Probability that noise and the calibrations' uncertainty alone would set the stripes as far off")
+STRIPES_OFF, CHANCE = label("stripes off by"), label("chance")
+
+
+class Check(Protocol):
+    """An interim check, as `core.files.results.check_file.InterimCheck`."""
+
+    @property
+    def calibration_id(self) -> str: ...
+    @property
+    def taken_at(self) -> datetime: ...
+    @property
+    def p(self) -> float: ...
+    @property
+    def poses(self) -> Sequence[Picture]: ...
+    @property
+    def step_mm(self) -> float: ...
+    @property
+    def error_mm(self) -> float: ...
+    @property
+    def unseen_mm(self) -> float: ...
+    @property
+    def offset_px(self) -> float: ...
+    @property
+    def offset_mm(self) -> float: ...
+    @property
+    def sentence(self) -> Message: ...
+
+
+def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, ...]:
+    """How far off camera and laser are; `chart` are the limits for it by the rig's history."""
+    facts = [
+        used_fact(label("pictures"), check.poses, label("Pictures that say something, and all there are")),
+        Fact(
+            Message("told.step_off", "a step of {step_mm:g} mm is off by", step_mm=check.step_mm),
+            _known(check.error_mm), "mm", 3,
+            label("How much too high it would be measured now; not corrected. ± could have been overlooked (k = 2)"),
+            Reader.AUDITOR, sd=_known(check.unseen_mm), signed=True,
+        ),
+        *(_allowed(check, chart) if chart is not None else ()),
+        Fact(
+            STRIPES_OFF, _known(check.offset_px), "px", 3,
+            label("RMS distance from where the calibrations have them"), Reader.AUDITOR,
+        ),
+        Fact(
+            label("stripes off on the target by"), _known(check.offset_mm), "mm", 3, label("The same in mm"),
+            Reader.METROLOGIST,
+        ),
+        Fact(CHANCE, float(f"{check.p:.2g}"), "", None, PROBABILITY, Reader.AUDITOR),
+        Fact(
+            label("pictures taken"), Message("told.time", "{at}", at=check.taken_at.astimezone()),
+            tip=label("The newest of them"), level=Reader.AUDITOR,
+        ),
+    ]  # fmt: skip
+    return tuple(facts)
+
+
+def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
+    """Where a step's error is to lie by the rig's history, or by what is stated or assumed of it."""
+    tip: Message | str = label(
+        "Three standard uncertainties of what is stated or assumed of the rig's stability; after eight checks their "
+        "own scatter takes its place"
+    )
+    if chart.own:
+        tip = Message(
+            "told.tip_charted",
+            "Mean ± 3 standard deviations of the {n} checks before with these calibrations",
+            n=chart.n,
+        )
+    span = Message("told.span", "{lower:+.3f} mm to {upper:+.3f} mm", lower=chart.lower, upper=chart.upper)
+    name = label("allowed by its history") if chart.own else label("allowed by its stability")
+    grade: Grade = "" if math.isnan(check.error_mm) or chart.holds(check.error_mm) else "warn"
+    return (Fact(name, span, tip=tip, level=Reader.AUDITOR, grade=grade),)
+
+
+def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
+    """What a re-adjustment changes, how sure that is, and what it does."""
+    record, (before, after) = done.record, done.offset_px
+    was = Message("told.was", "Before: {value:.3f} {unit}", value=before, unit="px")
+    was_chance = Message("told.was_chance", "{what}; before: {p:.2g}", what=PROBABILITY, p=record.p_before)
+    return (
+        Fact(label("poses"), record.poses, tip=label("Pictures that say something"), level=Reader.AUDITOR),
+        Fact(STRIPES_OFF, after, "px", 3, was),
+        Fact(
+            Message("told.step_larger", "a step of {step_mm:g} mm is measured larger by", step_mm=done.step_mm),
+            done.correction_mm, "mm", 3, label("± is what camera and fan leave uncertain of it (k = 2)"),
+            sd=2 * done.u_mm, signed=True,
+        ),
+        Fact(CHANCE, float(f"{record.p_after:.2g}"), tip=was_chance, level=Reader.AUDITOR),
+        *_changes(done),
+    )  # fmt: skip
+
+
+def _changes(done: ProposedReadjustment) -> tuple[Fact, ...]:
+    """Each part of the change with its standard uncertainty."""
+    x, y, z = (label("about x"), label("about y"), label("about z"))
+    along = (label("along x"), label("along y"), label("along z"))
+    turned, moved, drifted = label("fan turned"), label("fan moved"), label("picture moved")
+    parts = [
+        *((turned, axis, 1e6, "µrad") for axis in (x, y, z)),
+        *((moved, axis, 1e3, "µm") for axis in along),
+        *((drifted, axis, 1.0, "px") for axis in along[:2]),
+        (label("focal length"), label("as a share"), 1e6, "·10⁻⁶"),
+    ]
+    about = label("± is the standard uncertainty (k = 1)")
+    return tuple(
+        Fact(
+            Message("told.named", "{of}, {name}", of=of, name=axis), by * float(change), unit,
+            decimals_of(by * float(sd)), about, Reader.AUDITOR, sd=by * float(sd), signed=True,
+        )
+        for (of, axis, by, unit), change, sd in zip(parts, done.record.change, done.record.sd, strict=True)
+    )  # fmt: skip
+
+
+def artefact_facts(check: ArtefactCheck) -> tuple[Fact, ...]:
+    """What was measured of an artefact, and how that agrees with its certificate."""
+    known, U = check.artefact, 2 * check.u_mm
+    due = label("not stated") if known.due is None else known.due.isoformat()
+    return (
+        Fact(VERDICT, CHECKS[check.verdict], tip=check.sentence, grade=GRADES[check.verdict]),
+        Fact(
+            label("error"), check.error_mm, "mm", decimals_of(2 * check.u_error_mm),
+            label("Measured − certified. ± is U (k = 2) of both together: a smaller error is not detected"),
+            sd=2 * check.u_error_mm, signed=True,
+        ),
+        Fact(
+            label("measured"), check.measured_mm, "mm", decimals_of(U),
+            Message("told.tip_compared", "{what}; ± is U (k = 2)", what=check.characteristic or KINDS[known.kind]),
+            sd=U,
+        ),
+        Fact(
+            label("certified"), known.value_mm, "mm", decimals_of(known.U_mm),
+            Message("told.tip_certified", "By its certificate; ± is U (k = {k:g})", k=known.k), Reader.AUDITOR,
+            sd=known.U_mm,
+        ),
+        Fact("E_n", check.e_n, digits=2, tip=label("Error over the U of both together"), level=Reader.AUDITOR),
+        Fact(label("certificate"), known.certificate or label("not stated"), level=Reader.AUDITOR),
+        Fact(label("valid until"), due, level=Reader.AUDITOR, grade="warn" if check.lapsed else ""),
+        Fact(label("measured on"), check.day.isoformat(), level=Reader.AUDITOR),
+    )  # fmt: skip
+
+
+def _known(value: float) -> float | None:
+    return value if math.isfinite(value) else None

@@ -1,0 +1,101 @@
+"""What is told of the fan's light planes: how well the stripes lie on them, and whether they are one pencil."""
+
+from __future__ import annotations
+
+import math
+from itertools import chain
+
+from core.calibrate.grades import POSES
+from core.calibrate.results import FanCalibration
+from core.messages import Message, label
+from core.report.facts.fact import Fact, Grade, Reader, named
+from core.report.facts.pictures import used_fact
+
+LEAST_MM = 0.0005
+"""What is less is not told in figures, which have three decimals."""
+BELOW = label("below 0.001 mm")
+
+
+def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
+    """How well the stripes lie on their planes, the planes, and all else that is told of them."""
+    lines = (named(line_name(n), cells) for n, cells in enumerate(plane_cells(calibration), start=1))
+    return (*chain(*lines), *rest_of_planes(calibration))
+
+
+def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
+    """What is told of all planes together."""
+    facts = [used_fact(label("poses"), calibration.poses, label("Poses used, and all there are"), POSES)]
+    if math.isfinite(calibration.pencil_gap_mm):
+        tip = label("Largest distance of the free planes from those of one pencil, within the work volume")
+        facts.append(
+            Fact(
+                label("off one axis"),
+                calibration.pencil_gap_mm,
+                "mm",
+                3,
+                tip,
+                Reader.AUDITOR,
+                grade=_suits(calibration),
+            )
+        )
+    if math.isfinite(calibration.cross_validation_mm):
+        tip = label("RMS distance of the stripes of each pose from the planes that the other poses give")
+        facts.append(Fact(label("poses predicted to"), calibration.cross_validation_mm, "mm", 3, tip, Reader.AUDITOR))
+    if math.isfinite(calibration.stripe_sd_mm):
+        tip = label("How far a whole stripe is off its plane beyond its own noise: flatness of the plate, the lens")
+        off = calibration.stripe_sd_mm
+        facts.append(
+            Fact(
+                label("stripes beyond noise"), off if off >= LEAST_MM else BELOW, "mm", 3, tip, Reader.METROLOGIST,
+            )
+        )  # fmt: skip
+    return tuple(facts)
+
+
+def line_name(number: int) -> Message:
+    """What a line of the fan and its light plane are called."""
+    return Message("told.line", "line {number}", number=number)
+
+
+def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
+    """Of each light plane its fit, normal and distance, and the angles to the next plane, which the last one lacks."""
+    about = label("Root mean square distance of the points on this line from its plane")
+    held = label("Angle between neighbouring planes that are held to one pencil")
+    free = label("The same where each plane is calibrated on its own (± standard deviation)")
+    sds = () if calibration.free.covariance is None else calibration.free.angle_sds
+    rows: list[tuple[Fact, ...]] = []
+    for place, plane in enumerate(calibration.fan.planes):
+        rms = calibration.rms_mm[place] if place < len(calibration.rms_mm) else math.nan
+        x, y, z = (float(part) for part in plane.normal)
+        normal = Message("told.normal", "{x:.5f}; {y:.5f}; {z:.5f}", x=x, y=y, z=z)
+        row = [
+            Fact(label("RMS"), rms, "mm", 3, about),
+            Fact(label("normal (x, y, z)"), normal, tip=label("As the camera sees it"), level=Reader.AUDITOR),
+            Fact(label("d"), plane.d_mm, "mm", 3, label("Distance of the plane from the camera"), Reader.AUDITOR),
+        ]
+        if place < len(calibration.free_angles):
+            angle, sd = calibration.free_angles[place], sds[place] if sds else None
+            if place < len(calibration.angles):
+                kept = math.degrees(calibration.angles[place])
+                row.append(Fact(label("to the next"), kept, "°", 3, held, Reader.AUDITOR, grade=_suits(calibration)))
+            row.append(
+                Fact(
+                    label("to the next, free"), math.degrees(angle), "°", 3, free, Reader.AUDITOR,
+                    sd=None if sd is None else math.degrees(sd),
+                )
+            )  # fmt: skip
+        rows.append(tuple(row))
+    return tuple(rows)
+
+
+def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:
+    """Whether the laser is the pencil it is said to be, and what a check has moved."""
+    verdict = calibration.verdict
+    moved = () if calibration.readjusted is None else (calibration.readjusted.note,)
+    return (*(() if verdict is None else (Message("told.sentence", "{what:capital}.", what=verdict),)), *moved)
+
+
+def _suits(calibration: FanCalibration) -> Grade:
+    if calibration.constraint_suits is None:
+        return ""
+    return "good" if calibration.constraint_suits else "warn"

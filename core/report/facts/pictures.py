@@ -1,0 +1,80 @@
+"""What is told of pictures: how many were used, whether they are enough, and why others were left out."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import NamedTuple, Protocol
+
+from core.calibrate import grades
+from core.calibrate.grades import Limit
+from core.messages import Message
+from core.report.facts.fact import Fact, Grade
+from core.scan.features.frames import NO_REASON
+
+_GRADES: dict[grades.Grade, Grade] = {
+    grades.Grade.GOOD: "good", grades.Grade.FAIR: "warn", grades.Grade.POOR: "bad",
+}  # fmt: skip
+NAMES_SHOWN = 3
+"""So many pictures left out for one reason are named in a line."""
+
+
+class Picture(Protocol):
+    """A view, pose or frame; one that was left out may say why."""
+
+    @property
+    def name(self) -> str:
+        """What it is called."""
+
+    @property
+    def used(self) -> bool:
+        """Whether it counts."""
+
+    @property
+    def reason(self) -> Message | None:
+        """Why it was left out."""
+
+
+class LeftOut(NamedTuple):
+    """A reason, and the names of the pictures left out for it."""
+
+    reason: Message
+    names: list[str]
+
+    def line(self, most: int = NAMES_SHOWN) -> Message:
+        """How many, why, and which: at most so many names."""
+        names = (*self.names[:most], *(["…"] if len(self.names) > most else []))
+        return Message(
+            "told.left_out", "{count} × {reason}: {names}",
+            count=len(self.names), reason=self.reason, names=names,
+        )  # fmt: skip
+
+
+def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
+    """Why pictures were left out, the commonest reason first."""
+    reasons: dict[Message, list[str]] = {}
+    for picture in pictures:
+        if not picture.used:
+            reasons.setdefault(picture.reason or NO_REASON, []).append(picture.name)
+    return sorted((LeftOut(*item) for item in reasons.items()), key=lambda one: -len(one.names))
+
+
+def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | None = None) -> Fact:
+    """How many pictures are used, and whether they are enough."""
+    used = sum(picture.used for picture in pictures)
+    value = Message("told.used", "{used} of {all}", used=used, all=len(pictures))
+    if limit is None:
+        return Fact(name, value, tip=tip)
+    return Fact(name, value, tip=limits_tip(tip, limit.good, limit.poor), grade=grade(limit, used))
+
+
+def grade(limit: Limit, value: float) -> Grade:
+    """Whether a value is good by the limit of a calibration."""
+    return _GRADES[limit.grade(value)]
+
+
+def limits_tip(tip: str, good: float, poor: float, unit: str = "") -> Message:
+    """What a value means, and from where on it is good and below which it is poor."""
+    return Message(
+        "told.limits", "{what}. Good from {good:.0f}{unit} on, poor below {poor:.0f}{unit}",
+        what=tip, good=good, poor=poor, unit=unit,
+    )  # fmt: skip
