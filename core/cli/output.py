@@ -26,16 +26,14 @@ from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.findings.table import gravest_first, is_grave
 from core.inspect.conformity import Verdict
-from core.inspect.results import Face, GaugeResult
+from core.inspect.results import GaugeResult
 from core.messages import Message, as_json, plain, plural_message, visible
-from core.report.facts.fact import Fact, Reader, for_reader
-from core.report.facts.table import FactTable, tables_for_reader
-from core.report.wording import Words, decimals_of, grouped, thickness_line, with_uncertainty
 from core.report.facts.fact import Fact, Reader, for_reader, named
 from core.report.facts.of_checks import artefact_facts, check_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_studies import verdict_fact
 from core.report.facts.pictures import Picture, left_out
+from core.report.facts.table import FactTable, tables_for_reader
 from core.report.wording import Words
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
@@ -84,9 +82,7 @@ def print_rows(rows: Rows, notes: Sequence[Message] = (), files: Mapping[str, Pa
         out.print(visible(tr("note: {note}", note=note)), style=style, soft_wrap=True)
 
 
-def fact_rows(
-    facts: Iterable[Fact], tables: Iterable[FactTable] = (), reader: Reader = Reader.AUDITOR
-) -> Rows:
+def fact_rows(facts: Iterable[Fact], tables: Iterable[FactTable] = (), reader: Reader = Reader.AUDITOR) -> Rows:
     """What a reader is told of a result; with ``--verbose`` all that there is."""
     reader = Reader.METROLOGIST if is_verbose() else reader
     rows = [(fact.title(words()), fact.text(words())) for fact in for_reader(facts, reader)]

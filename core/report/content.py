@@ -6,9 +6,8 @@ import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import datetime, timedelta
-from typing import Literal, NamedTuple
 from itertools import chain
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,13 +21,13 @@ from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
-from core.report.facts.of_studies import study_facts, study_tables
 from core.report.facts.fact import Fact, named
 from core.report.facts.of_camera import camera_facts, parameter_facts
 from core.report.facts.of_checks import Check, artefact_facts, check_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_planes import planes_facts
 from core.report.facts.of_scan import scan_facts, sigma_of
+from core.report.facts.of_studies import study_facts, study_tables
 from core.report.template import SECTIONS, Paper, ReportTemplate
 from core.report.wording import result_name
 from core.scan.results import FrameRecord

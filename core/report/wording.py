@@ -240,18 +240,22 @@ def permitted(one: Characteristic) -> Message | None:
     if one.limits is None:
         return None
     low, high = factor * one.limits.lower, factor * one.limits.upper
-    values = {"low": low, "high": high, "unit": with_unit("", unit)}
+    end = with_unit("", unit)
     if math.isinf(low) and math.isinf(high):
         return None
-    if math.isinf(low):  # of a form: the largest there may be
-        if not one.limits.nominal:
-            return Message("told.at_most", "at most {high:g}{unit}", **values)
-        return Message("told.below", "at most {high:+g}{unit}", **values)
+    if math.isinf(low):
+        if not one.limits.nominal:  # of a form: the largest there may be
+            return Message("told.at_most", "at most {limit:g}{unit}", limit=high, unit=end)
+        return Message("told.below", "at most {limit}{unit}", limit=_signed(high), unit=end)
     if math.isinf(high):
-        return Message("told.above", "at least {low:+g}{unit}", **values)
+        return Message("told.above", "at least {limit}{unit}", limit=_signed(low), unit=end)
     if math.isclose(-low, high):
-        return Message("told.within", "±{high:g}{unit}", **values)
-    return Message("told.between", "{low:+g} to {high:+g}{unit}", **values)
+        return Message("told.within", "±{limit:g}{unit}", limit=high, unit=end)
+    return Message("told.between", "{low} to {high}{unit}", low=_signed(low), high=_signed(high), unit=end)
+
+
+def _signed(value: float) -> Message:
+    return Message("told.signed", "{value:+g}", value=value) if value else plain("0")
 
 
 def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: str, words: Words) -> str:

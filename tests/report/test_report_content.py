@@ -7,6 +7,7 @@ import pytest
 from core.findings.proof import OF_SCAN
 from core.messages import ENGLISH, plain
 from core.report.content import Overlay
+from core.report.facts.pictures import left_out
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import ACCENT, ALARM, ReportLook, color, prepare_reportlab
 from core.report.pdf import LIMITS
@@ -44,7 +45,7 @@ def test_order_of_the_hashes_does_not_matter(content):
 
 
 def test_frames_left_out_come_by_reason_commonest_first(content):
-    reasons = content.frames_left_out
+    reasons = left_out(content.frames)
     assert reasons[0] == (plain("no sweep stripe found"), ["frame_017.png", "frame_018.png"])
     assert len(reasons) == 3
 

@@ -12,7 +12,7 @@ from PySide6.QtWidgets import QApplication
 
 from core.cli import output
 from core.files.exchange.xlsx import write_xlsx
-from core.messages import Message, capital
+from core.messages import Message
 from core.report.content import ReportContent
 from core.report.facts.fact import Reader, for_reader
 from core.report.pdf import build_report
@@ -56,9 +56,9 @@ def test_each_reader_tells_the_facts_of_its_level_in_the_same_words(
     shown = ValueRows()
     show_facts(shown, facts)
     for fact in in_full:
-        assert shown.text_of(capital(fact.title(WORDS))) == fact.text(WORDS)
+        assert shown.text_of(fact.heading(WORDS)) == fact.text(WORDS)
     for fact in in_short:
-        name = fact.label.values["name"] if isinstance(fact.label, Message) and fact.label.values else fact.label
+        name = fact.label.values.get("name", fact.label) if isinstance(fact.label, Message) else fact.label
         for part in (WORDS.known(name), *fact.parts(WORDS)):
             assert squeezed(part) in printed, (fact.title(WORDS), part)
     write_xlsx(tmp_path / "r.xlsx", content)

@@ -137,7 +137,8 @@ def heading(name: str) -> str:
     >>> heading("largest error"), heading("s (n − 1)")
     ('Largest error', 's (n − 1)')
     """
-    return name if len(name.partition(" ")[0]) == 1 else capital(name)
+    symbol = len(name.partition(" ")[0].rstrip("₀₁₂₃")) == 1
+    return name if symbol else capital(name)
 
 
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:

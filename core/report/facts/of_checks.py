@@ -51,7 +51,7 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
     facts = [
         used_fact(label("pictures"), check.poses, label("Pictures that say something, and all there are")),
         Fact(
-            Message("told.step_off", "a step of {step_mm:g} mm is off by", step_mm=check.step_mm),
+            Message("told.step_off", "step of {step_mm:g} mm off by", step_mm=check.step_mm),
             _known(check.error_mm), "mm", 3,
             label("How much too high it would be measured now; not corrected. ± could have been overlooked (k = 2)"),
             Reader.AUDITOR, sd=_known(check.unseen_mm), signed=True,
@@ -101,7 +101,7 @@ def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
         Fact(label("poses"), record.poses, tip=label("Pictures that say something"), level=Reader.AUDITOR),
         Fact(STRIPES_OFF, after, "px", 3, was),
         Fact(
-            Message("told.step_larger", "a step of {step_mm:g} mm is measured larger by", step_mm=done.step_mm),
+            Message("told.step_larger", "step of {step_mm:g} mm larger by", step_mm=done.step_mm),
             done.correction_mm, "mm", 3, label("± is what camera and fan leave uncertain of it (k = 2)"),
             sd=2 * done.u_mm, signed=True,
         ),

@@ -67,11 +67,11 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
     for place, plane in enumerate(calibration.fan.planes):
         rms = calibration.rms_mm[place] if place < len(calibration.rms_mm) else math.nan
         x, y, z = (float(part) for part in plane.normal)
-        normal = Message("told.normal", "{x:.5f}; {y:.5f}; {z:.5f}", x=x, y=y, z=z)
+        normal = Message("told.normal", "{x:.4f}; {y:.4f}; {z:.4f}", x=x, y=y, z=z)
         row = [
             Fact(label("RMS"), rms, "mm", 3, about),
             Fact(label("normal (x, y, z)"), normal, tip=label("As the camera sees it"), level=Reader.AUDITOR),
-            Fact(label("d"), plane.d_mm, "mm", 3, label("Distance of the plane from the camera"), Reader.AUDITOR),
+            Fact(label("d"), plane.d_mm, "mm", 2, label("Distance of the plane from the camera"), Reader.AUDITOR),
         ]
         if place < len(calibration.free_angles):
             angle, sd = calibration.free_angles[place], sds[place] if sds else None

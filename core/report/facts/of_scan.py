@@ -55,8 +55,11 @@ def scan_facts(
         facts.append(Fact(label("triangles"), triangles, tip=tip_mesh, level=Reader.AUDITOR))
     if extent_mm is not None:
         x, y, z = (float(one) for one in extent_mm)
-        text = "{x:.0f} × {y:.0f} × {z:.0f} mm" if max(x, y, z) >= SMALL_MM else "{x:.2f} × {y:.2f} × {z:.2f} mm"
-        facts.append(Fact(label("extent x, y, z"), Message("told.extent", text, x=x, y=y, z=z), level=Reader.AUDITOR))
+        size = {"x": x, "y": y, "z": z}
+        large = Message("told.extent", "{x:.0f} × {y:.0f} × {z:.0f} mm", **size)
+        small = Message("told.extent_small", "{x:.2f} × {y:.2f} × {z:.2f} mm", **size)
+        whole = large if max(x, y, z) >= SMALL_MM else small
+        facts.append(Fact(label("extent x, y, z"), whole, level=Reader.AUDITOR))
     return tuple(facts)
 
 

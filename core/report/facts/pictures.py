@@ -61,7 +61,7 @@ def left_out(pictures: Iterable[Picture]) -> list[LeftOut]:
 def used_fact(name: str, pictures: Sequence[Picture], tip: str, limit: Limit | None = None) -> Fact:
     """How many pictures are used, and whether they are enough."""
     used = sum(picture.used for picture in pictures)
-    value = Message("told.used", "{used} of {all}", used=used, all=len(pictures))
+    value = Message("told.used", "{used:,} of {all:,}", used=used, all=len(pictures))
     if limit is None:
         return Fact(name, value, tip=tip)
     return Fact(name, value, tip=limits_tip(tip, limit.good, limit.poor), grade=grade(limit, used))

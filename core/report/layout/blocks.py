@@ -231,16 +231,16 @@ def more_line(look: ReportLook, left: int, where: str = "run.json") -> list[Flow
     return [look.say("and {n} more, listed in {where}", "label", n=grouped(left), where=look.words.known(where))]
 
 
-def figures(look: ReportLook, facts: Iterable[Fact]) -> Table:
-    """What an auditor reads of a result: values with units below their names, six a row."""
+def figures(look: ReportLook, facts: Iterable[Fact], columns: int = 6) -> Table:
+    """What an auditor reads of a result: values with units below their names, so many a row."""
     words, told = look.words, for_reader(facts, Reader.AUDITOR)
     rows: list[list[Cell]] = []
-    for start in range(0, len(told), 6):
-        shown = told[start : start + 6]
-        padding = [look.text("")] * (6 - len(shown))
-        rows.append([*(look.text(fact.title(words), "label") for fact in shown), *padding])
+    for start in range(0, len(told), columns):
+        shown = told[start : start + columns]
+        padding = [look.text("")] * (columns - len(shown))
+        rows.append([*(look.text(fact.heading(words), "label") for fact in shown), *padding])
         rows.append([*(look.text(fact.text(words), "small_strong") for fact in shown), *padding])
-    return plain_table(rows, [TEXT_WIDTH / 6] * 6)
+    return plain_table(rows, [TEXT_WIDTH / columns] * columns)
 
 
 def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Flowable]:
@@ -266,3 +266,8 @@ def _fact_table(look: ReportLook, table: FactTable) -> Table:
     made = ruled_table([head, *body], widths)
     made.setStyle([("LEFTPADDING", (place, 0), (place, -1), 6) for place in places[1:] if place not in numeric])
     return made
+
+
+def told(look: ReportLook, facts: Iterable[Fact]) -> dict[str, str]:
+    """What an auditor reads of a result: value with unit by what it is called."""
+    return {fact.heading(look.words): fact.text(look.words) for fact in for_reader(facts, Reader.AUDITOR)}

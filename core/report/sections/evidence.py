@@ -9,7 +9,7 @@ from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
 from core.findings.table import is_grave
-from core.messages import capital, plural_message
+from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.facts.of_camera import camera_facts
 from core.report.facts.of_checks import artefact_facts, check_facts
@@ -33,6 +33,7 @@ from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_table, fan_table, marks_table
 from core.report.wording import grouped
+from core.study.artefact_check import KINDS
 
 
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -41,13 +42,14 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
         return []
     words = look.words
     tables = [artefact_facts(one) for one in content.artefacts]
-    columns = [capital(fact.column(words)) for fact in tables[0]]
+    columns = [fact.column(words) for fact in tables[0]]
     rows: list[list[Flowable]] = [heads(look, "Artefact", *columns, numbers=(2, 3, 4, 5))]
     for one, facts in zip(content.artefacts, tables, strict=True):
         shown = [" ± ".join(filter(None, fact.parts(words))) for fact in facts]
         cells = [look.text(text, "number" if 1 <= place <= 4 else "small") for place, text in enumerate(shown)]
-        rows.append([look.text(one.artefact.id, "small"), *cells])
-    shares = (0.1, 0.09, 0.13, 0.14, 0.16, 0.06, 0.12, 0.1, 0.1)
+        title = f"{one.artefact.id} ({words(KINDS[one.artefact.kind])})"
+        rows.append([look.text(title, "small"), *cells])
+    shares = (0.12, 0.09, 0.11, 0.13, 0.19, 0.05, 0.11, 0.1, 0.1)
     note = look.say(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
         "was measured and of the error with k = 2. E_n is the error over the U of both together; above 1 nothing is "
@@ -99,14 +101,16 @@ def _check(look: ReportLook, content: ReportContent) -> list[Flowable]:
         Spacer(0, 2 * mm),
         look.say("Check of camera and laser", "small_strong"),
         look.text(look.words(content.check.sentence), "small"),
-        figures(look, told(look, check_facts(content.check))),
+        figures(look, check_facts(content.check), 5),
     ]
 
 
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Frames and calibration pictures used, and why others were not."""
     used = [frame.name for frame in content.frames if frame.used]
-    parts: list[Flowable] = [figures(look, told(look, content.scan_facts))]
+    parts: list[Flowable] = [figures(look, content.scan_facts)]
+    if not content.frames:
+        parts.append(look.say("No frame was given.", "small"))
     if used:
         parts.append(look.say("From {first} to {last}.", "small", first=used[0], last=used[-1]))
     out = [*left_out(content.frames), *left_out((*content.camera.views, *content.fan.poses))]

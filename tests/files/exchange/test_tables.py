@@ -49,7 +49,7 @@ def test_a_spreadsheet_reads_a_line_for_each_characteristic(tmp_path, content):
 def test_the_workbook_has_result_budget_frames_and_settings_with_full_numbers(tmp_path, content):
     write_xlsx(tmp_path / "r.xlsx", content)
     book = load_workbook(tmp_path / "r.xlsx")
-    assert book.sheetnames == ["result", "budget", "frames", "settings"]
+    assert book.sheetnames == ["result", "budget", "frames", "facts", "settings"]
     result = [dict(zip([c.value for c in book["result"][1]], [c.value for c in row], strict=True))
               for row in book["result"].iter_rows(min_row=2)]  # fmt: skip
     assert [row["value"] for row in result[:2]] == [50.0123, 0.031]

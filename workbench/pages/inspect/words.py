@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, NamedTuple
@@ -11,19 +10,15 @@ from core.files.csv_text import harmless
 from core.files.project.data import Repeat
 from core.messages import capital
 from core.report.facts.fact import Fact
-from core.report.wording import decimals_of, grouped, thickness_line, with_uncertainty
-from workbench.language import text_of, time_of, tr
 from core.report.wording import decimals_of, thickness_line, with_uncertainty
-from core.states import DECISIONS, SPREAD
-from core.study.repeats import RepeatStatistics
-from workbench.language import number, text_of, time_of, tr
+from workbench.language import text_of, time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
 from workbench.views.lists.value_rows import ValueRow, VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.result_list import ResultList
-    from core.inspect.results import Face, GaugeResult
+    from core.inspect.results import GaugeResult
     from core.inspect.shown.view_frame import ViewFrame
 
 

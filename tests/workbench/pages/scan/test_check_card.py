@@ -109,7 +109,7 @@ def test_it_shows_how_far_off_and_what_could_be_overlooked(chosen, measuring, qt
     rows = shown(chosen, qtbot, CheckStage.CHECKED).rows
     assert rows.text_of("Stripes off by") == "0.050 px"
     assert rows.text_of("Stripes off on the target by") == "0.010 mm"
-    assert rows.text_of("A step of 50 mm is off by") == "+0.012 ± 0.050 mm"
+    assert rows.text_of("Step of 50 mm off by") == "+0.012 ± 0.050 mm"
     assert rows.text_of("Pictures") == "2 of 3"
     assert rows.isVisible()
 
