@@ -113,9 +113,9 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
     gauge, verdict = result.gauge, result.results.verdict
     rows: output.Rows = output.gauge_rows(gauge, verdict) if gauge else [(tr("thickness"), tr("not measured"))]
     for of, facts in ((label("camera"), camera_facts(result.camera)), (label("planes"), planes_facts(result.fan))):
-        rows += output.fact_rows(named(of, facts), Reader.TECHNICIAN)
+        rows += output.fact_rows(named(of, facts), reader=Reader.TECHNICIAN)
     scan = scan_facts(result.frames, result.points, result.triangles)
-    rows += [*output.fact_rows(scan, Reader.TECHNICIAN), *output.left_out_rows(result.frames)]
+    rows += [*output.fact_rows(scan, reader=Reader.TECHNICIAN), *output.left_out_rows(result.frames)]
     values = {
         **output.gauge_json(gauge, verdict),
         **output.frames_json(result.frames, result.points),

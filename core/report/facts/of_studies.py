@@ -66,7 +66,12 @@ def study_facts(study: Study) -> tuple[Fact, ...]:
             facts = _of_series(study)
         case AcceptanceCheck():
             facts = []
-    return (Fact(VERDICT, _decision(study.verdict) or NO_LIMIT, grade=_GRADES.get(study.verdict, "")), *facts)
+    return (verdict_fact(study.verdict), *facts)
+
+
+def verdict_fact(verdict: str) -> Fact:
+    """What was decided, on a part or by a study."""
+    return Fact(VERDICT, _decision(verdict) or NO_LIMIT, grade=_GRADES.get(verdict, ""))
 
 
 def study_tables(study: Study) -> tuple[FactTable, ...]:
