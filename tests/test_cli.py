@@ -193,7 +193,7 @@ def test_a_picture_that_is_not_there_cannot_be_left_out_and_no_result_is_touched
 def test_a_table_for_people(simulated, measured, tmp_path):
     said = trisect("camera", simulated, "--out", copy_of(measured, tmp_path / "out"), "--quiet")
     assert said.code == 0
-    assert "reprojection" in said.out
+    assert "corners off by" in said.out
     assert "camera.json" in said.out
     assert said.err == ""
 

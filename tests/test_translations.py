@@ -133,8 +133,8 @@ def test_texts_in_calls_within_calls_and_either_way_of_a_condition_are_found():
 def test_german_is_read_with_its_numbers_lists_and_plurals():
     german = language("de")
     assert german(Message("", "{x:.2f}; {names:and}", x=-0.5, names=["a", "b", "c"])) == "−0,50; a, b und c"
-    said = [german(plural_message("report.views", "{n:,} view", "{n:,} views", n=n)) for n in (1, 1204)]
-    assert said == ["1 Ansicht", "1\u00a0204 Ansichten"]
+    said = [german(plural_message("report.days", "{n:,} day", "{n:,} days", n=n)) for n in (1, 1204)]
+    assert said == ["1 Tag", "1\u00a0204 Tage"]
     assert german.label("thickness") == "Dicke"
 
 
