@@ -140,7 +140,7 @@ def evaluate(
             scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
         nominal = "" if spec.deviation is None else nominal_keys.get(spec.deviation.nominal, "")
         key = _key(plan, spec, scene, scan_key + nominal, framed=framed)
-        if key in known:
+        if key in known and not (known[key].chosen_by_nominal and known[key].spec.limits != spec.limits):
             result = _with_limits_of(known[key], spec)
         else:
             result = _measured(plan, spec, scene, frame_is_known=not (framed and frame_problem))
@@ -248,11 +248,11 @@ def _key(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, of: str, *, fram
     frame = (plan.frame, [scene.found[name].key for name in plan.frame.names]) if framed and plan.frame else None
     master = plan.master if plan.master is not None and spec.name in plan.master.features else None
     measured = replace(spec, limits=(), nominal_heights=())
-    meant = spec.limits_of("thickness")  # of several pairs of faces, that nearest to the nominal is taken
     brought = brought_kinds().get(spec.kind)
     origin = None if brought is None else brought[1]  # another version of a package measures anew
-    rests = (plan.k, plan.temperature, master, rests_on, frame, None if meant is None else meant.nominal)
-    said = repr((*([] if origin is None else [origin]), of, measured, *rests))
+    said = repr(
+        (*([] if origin is None else [origin]), of, measured, plan.k, plan.temperature, master, rests_on, frame)
+    )
     return hashlib.sha256(said.encode()).hexdigest()[:32]
 
 

@@ -7,11 +7,14 @@ import pytest
 
 from core.errors import InputError
 from core.inspect import faces
-from core.inspect.conformity import Verdict
+from core.inspect.conformity import Limits, Verdict
+from core.inspect.evaluate import evaluate
 from core.inspect.face_region import Region
 from core.inspect.faces import faces_in_polygons, find_faces
 from core.inspect.fit.plane_search import FoundPlane
 from core.inspect.gauge import measure_gauge
+from core.inspect.plan.feature_spec import FeatureSpec
+from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
@@ -185,3 +188,15 @@ def test_of_two_blocks_that_near_the_nominal_is_measured_and_proves_nothing() ->
         u, v = gauge.candidates[0].upper_px
         amid = cloud.uv[gauge.upper.indices].mean(axis=0)
         assert (u, v) == pytest.approx(tuple(amid), abs=20.0)
+
+
+def test_another_nominal_chooses_another_pair_of_a_plan_again() -> None:
+    cloud, covariance = two_blocks()
+    before = None
+    for nominal in (40.0, 25.0):
+        limits = (("thickness", Limits(nominal, -1.0, 1.0)),)
+        plan = InspectionPlan((FeatureSpec("block", "thickness", limits=limits),))
+        before = evaluate(plan, cloud, errors=PointErrors(covariance), previous=before)
+        (row,) = before.characteristics
+        assert row.value == pytest.approx(nominal, abs=0.1)
+        assert row.verdict == Verdict.NOT_PROVEN

@@ -59,6 +59,8 @@ class FeatureResult:
         Of a section, a deviation map.
     notes
         What is told of it where it has no row of its own: with what is derived from it.
+    chosen_by_nominal
+        Whether its nominal value has chosen between several faces, so that other limits may choose others.
     problem
         Why it could not be measured; then there are no characteristics. None if it was.
     """
@@ -74,6 +76,7 @@ class FeatureResult:
     profile: Profile | None = None
     deviations: DeviationMap | None = None
     notes: tuple[Message, ...] = ()
+    chosen_by_nominal: bool = False
     problem: Message | None = None
 
 

@@ -35,6 +35,7 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
         indices=indices[order],
         residuals=np.concatenate([face.residuals for face in faces])[order],
         part=part[order],
+        chosen_by_nominal=bool(gauge.candidates),
     )
 
 

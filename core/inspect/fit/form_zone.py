@@ -31,7 +31,7 @@ from scipy.spatial.distance import cdist
 from core.inspect.fit.generalised import SILENT_SD, SMALLEST_FORM_MM, Generalised
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
-from core.inspect.uncertainty.causes import FORM_NOISE
+from core.inspect.uncertainty.causes import FORM_NOISE, FORM_SMOOTHED
 from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
 from core.model.directions import square_to
@@ -42,9 +42,12 @@ CLOSER = 1.5
 """Its bumps are so many times closer to each other than that length."""
 PRIOR = 10.0
 """Standard deviation of the field before the points are seen, over the rms of all residuals: it holds no form down."""
+SMOOTHED = 0.12
+"""Share of a form that smoothing may take at the rim and of its peaks, as a standard uncertainty: a fifth at most."""
 DRAWS = 400
 """Of the noise: they give the ends of an interval of 95 % to 4 % of its half width."""
 COVERED = 0.95
+"""Of what may be, by the interval."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -97,7 +100,8 @@ def form_zone(
     pattern = to_places @ (of_field @ misfit)
     seen = max(float(np.ptp(pattern)), 1e-12)
     value, farthest = _zone(seen, predict @ (field @ (of_field @ misfit)) / seen, predict @ _drawn(sources, fit))
-    return FormZone(value, (Contribution(FORM_NOISE, farthest / 2),), length)
+    rows = Contribution(FORM_NOISE, farthest / 2), Contribution(FORM_SMOOTHED, SMOOTHED * value)
+    return FormZone(value, rows, length)
 
 
 def _bumps(at: Array, length: float) -> tuple[Array, NDArray[np.intp]]:

@@ -22,8 +22,8 @@ from core.inspect.fit.shapes import Parts, Shape
 from core.messages import Message
 from core.model.arrays import Array
 
-SPANNED_SIGMAS = 10.0
-"""Of points of one stripe the ratio is 0.2 to 3, of two stripes a few mm apart 50 and more."""
+SPANNED_SIGMAS = 5.0
+"""Of points of one stripe the ratio is 0.2 to 3, of a section 1 mm wide 8, of two stripes a few mm apart 50."""
 _STEP_MM = 1e-4
 """By which points are moved to see how the design follows."""
 _SINGULAR = 1e-12

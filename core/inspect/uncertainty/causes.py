@@ -21,6 +21,7 @@ LIGHT_FROM_BELOW_ASSUMED = Message(
     "light from below the surface, as far as nothing excludes it (material assumed)",
 )
 FORM_NOISE = Message("inspection.cause_form_noise", "noise of points, light planes and calibrations in the form")
+FORM_SMOOTHED = Message("inspection.cause_form_smoothed", "peaks of the form that smoothing takes")
 FACETS = Message("inspection.cause_facets", "flat triangles in place of the nominal surface's curved faces")
 FACE_TILT = Message("inspection.cause_face_tilt", "tilt of the faces against the light plane")
 
