@@ -7,7 +7,6 @@ from dataclasses import replace
 
 from numpy.typing import ArrayLike
 
-from core.findings.table import note_of
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.gauge import measure_gauge
 from core.inspect.plan.feature_spec import FeatureSpec
@@ -20,9 +19,6 @@ from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 from trisect.scan import SolvedScan
-
-POINTS_ALONE = note_of("api.points_alone")
-"""Why nothing measured on points alone proves conformity."""
 
 
 def measure_thickness(
@@ -132,4 +128,4 @@ def measure_features(
 
 
 def _points_of(scan: SolvedScan | Cloud) -> tuple[Cloud, PointErrors]:
-    return (scan, PointErrors(doubts=(POINTS_ALONE,))) if isinstance(scan, Cloud) else (scan.cloud, scan.errors)
+    return (scan, PointErrors()) if isinstance(scan, Cloud) else (scan.cloud, scan.errors)

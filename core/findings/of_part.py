@@ -82,11 +82,7 @@ ROWS = (
             "No thickness was measured: {reason}"),
     Finding("inspection.no_frame", Weight.GRAVE, Effect.NO_RESULT,
             "There are no part coordinates: {why}"),
-    Finding("gauge.missing_in_u", Weight.CAUTION, Effect.NONE,
-            "The stated uncertainty does not hold {missing}."),
-    Finding("inspection.missing_in_u", Weight.CAUTION, Effect.NONE,
-            "The stated uncertainties do not hold {missing}: they are less than is known."),
-    Finding("inspection.missing_in_u_proves_nothing", Weight.GRAVE, Effect.NO_PROOF,
+    Finding("inspection.missing_in_u", Weight.GRAVE, Effect.NO_PROOF,
             "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing."),
     Finding("inspection.light_is_skewed", Weight.GRAVE, Effect.NO_PROOF,
             "The laser's light is skewed in depth on what was measured: part of it comes from below the surface "
@@ -95,7 +91,4 @@ ROWS = (
     Finding("inspection.rig_not_checked", Weight.CAUTION, Effect.WIDENS_U,
             "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
             "Take 3 pictures of the plane target in the fan (1 min)."),
-    Finding("api.points_alone", Weight.GRAVE, Effect.NO_PROOF,
-            "Only points were given: the uncertainty holds neither calibrations nor what points have in common, so "
-            "nothing proves conformity."),
 )  # fmt: skip

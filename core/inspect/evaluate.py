@@ -107,7 +107,8 @@ def evaluate(
     cloud, mesh
         The scan, and the surface over it for comparisons with nominal ones; without it the points are compared.
     errors
-        How the points' errors hang together; what it does not know is not in the uncertainties, and a note says so.
+        How the points' errors hang together; what it does not know is not in the uncertainties, which then prove
+        nothing.
     progress
         Called with how far it is; may raise Cancelled.
     previous
@@ -149,7 +150,7 @@ def evaluate(
         scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
     progress("features", len(ordered), len(ordered))
     results = tuple(scene.found[spec.name] for spec in plan.features)
-    notes = (*scene.errors.all_doubts, *([frame_problem] if frame_problem else []), *_missing(scene.errors))
+    notes = (*scene.errors.all_doubts, *([frame_problem] if frame_problem else []))
     notes += _of_part(plan, scene.errors.part)
     inspection = Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
     return replace(inspection, notes=(*notes, *_of_plugins(inspection)))
@@ -295,13 +296,3 @@ def _of_part(plan: InspectionPlan, part: Part | None) -> tuple[Message, ...]:
         *assumed,
         note_of("part.thicknesses_alone"),
     )
-
-
-def _missing(errors: PointErrors) -> tuple[Message, ...]:
-    """What the stated uncertainties do not hold."""
-    missing = errors.missing()
-    if not missing:
-        return ()
-    if errors.sweep_covariance is not None:
-        return (note_of("inspection.missing_in_u", missing=missing),)
-    return (note_of("inspection.missing_in_u_proves_nothing", missing=missing),)

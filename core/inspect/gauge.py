@@ -142,7 +142,7 @@ def measure_gauge(
     cloud
         The measured points.
     errors
-        How their errors hang together; what it does not know is not in the uncertainty, and a note says so.
+        How their errors hang together; what it does not know is not in the uncertainty, which then proves nothing.
     regions
         As for `fit_gauge`.
     nominal_mm, tolerance_mm
@@ -160,10 +160,6 @@ def measure_gauge(
     errors = errors or PointErrors()
     fit = fit_gauge(cloud, errors=errors, regions=regions, nominal_mm=nominal_mm, progress=progress)
     u, factor = combined(fit.budget), student_factor(k, fit.budget)
-    missing = errors.missing()
-    notes: tuple[Message, ...] = ()
-    if missing:
-        notes = (note_of("gauge.missing_in_u", missing=missing),)
     gauge = GaugeResult(
         thickness_mm=fit.thickness_mm,
         u_mm=u,
@@ -176,7 +172,7 @@ def measure_gauge(
         tolerance_mm=tolerance_mm,
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
-        notes=notes + _notes_on_form(cloud, fit, errors),
+        notes=_notes_on_form(cloud, fit, errors),
         doubts=_doubts(fit),
         candidates=fit.pair.candidates,
     )

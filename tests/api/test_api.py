@@ -136,7 +136,7 @@ def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
 def test_points_alone_prove_nothing(solved):
     gauge = trisect.measure_thickness(solved.cloud, nominal_mm=50.0, tolerance_mm=5.0)
     assert str(gauge.verdict) == "not proven"
-    assert gauge.notes[0].code == "api.points_alone"
+    assert gauge.notes[0].code == "inspection.missing_in_u"
     inspection = trisect.measure_features(solved.cloud, [trisect.Feature("block", "thickness")])
     assert not any(one.complete for one in inspection.characteristics)
 

@@ -12,6 +12,12 @@ from tests.simulated import CUT, copy_of, trisect
 
 LIMITS = "\n[gauge]\nnominal_mm = 50.0\ntolerance_mm = 20.0\n"
 """So wide that what the small set measures conforms."""
+TOP = """
+[[feature]]
+name = "block"
+kind = "thickness"
+limits.thickness = { nominal_mm = 50, tolerance_mm = 20 }
+"""
 
 
 @pytest.fixture(scope="module")
@@ -81,6 +87,19 @@ def test_with_all_notes_stripped_from_all_files_the_verdict_is_as_before(wide, o
 def test_a_fact_of_the_planes_takes_away_the_proof_and_so_does_its_lack(facts, wide, out):
     changed(out / "planes.json", **facts)
     assert again(wide[0], out, "scan", "gauge") == "not proven"
+
+
+def test_what_u_does_not_contain_takes_away_the_proof_in_every_file(wide, out):
+    """A camera of another program without its covariance: U lacks what the camera adds."""
+    changed(out / "camera.json", covariance=None)
+    assert again(wide[0], out, "scan", "gauge") == "not proven"
+    notes = json.loads((out / "gauge.json").read_text(encoding="utf-8"))["notes"]
+    assert "inspection.missing_in_u" in [note["code"] for note in notes]
+    (out / "plan.toml").write_text(TOP, encoding="utf-8")
+    said = trisect("inspect", out, "--plan", out / "plan.toml", "--out", out)
+    assert said.code == 1, said.err
+    (row,) = json.loads((out / "inspection.json").read_text(encoding="utf-8"))["characteristics"]
+    assert (row["verdict"], row["complete"]) == ("not proven", False)
 
 
 @pytest.mark.parametrize("holds", [True, None])

@@ -8,6 +8,9 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from core.inspect.uncertainty.point_errors import PointErrors
+from core.scan.common_errors import CommonErrors
+from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import FAN, Cloud
 
 FOCAL = 2495.0
@@ -78,6 +81,25 @@ class BlockScan:
     def covariance(self):
         """(3S, 3S) of the sweeps' π."""
         return self.factor @ self.factor.T
+
+    def errors(self, stretch_px=13.0, *, plane_errors=True, common=None):
+        """All that makes its points wrong; camera and fan are exact where nothing else is said."""
+        covariance = self.covariance if plane_errors else np.zeros_like(self.covariance)
+        common = self.common_errors(camera=1.0, fan=1.0) if common is None else common
+        empty = np.zeros(0, dtype=np.int64)
+        speckle = FanSpeckle(np.zeros((0, 2)), empty, empty, empty, np.zeros((0, 1)), np.zeros((len(covariance), 0)))
+        return PointErrors(covariance, common, stretch_px, stretch_px, speckle)
+
+    def common_errors(self, **scales):
+        """Calibrations that are one standard uncertainty off once they have scaled all of space by that much."""
+        camera = [FOCAL, FOCAL, 0.0, *CENTRE, 0.0, 0.0, 0.0, 0.0, 0.0]
+        return CommonErrors(
+            (1920, 1374),
+            tuple(scales),
+            [camera] * (1 + len(scales)),
+            [self.fan_pis / scale for scale in (1.0, *scales.values())],
+            [self.pis / scale for scale in (1.0, *scales.values())],
+        )
 
     @property
     def polygons(self):

@@ -21,12 +21,11 @@ from core.inspect.plan.feature_spec import (
 )
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.causes import POINT_NOISE
-from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
 
 BLOCK = BlockScan(sweeps=24)
-ERRORS = PointErrors(BLOCK.covariance)
+ERRORS = BLOCK.errors(12.0)
 TOP, TABLE = (Polygon(tuple((float(u), float(v)) for u, v in polygon)) for polygon in BLOCK.polygons)
 PLANES = (FeatureSpec("top", "plane", (TOP,)), FeatureSpec("table", "plane", (Auto(1),)))
 DERIVED = (

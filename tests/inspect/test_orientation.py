@@ -12,12 +12,11 @@ from core.inspect.evaluate import evaluate
 from core.inspect.fit.surface_fit import range_of
 from core.inspect.plan.feature_spec import Auto, FeatureSpec, Filters, InSphere, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.uncertainty.point_errors import PointErrors
 from tests.inspect.block_scan import HALF, NORMAL, TABLE_MM, BlockScan, axes, cloud_at
 from tests.inspect.shape_scan import PIN, PIN_AXIS, ShapeScan
 
 BLOCK = BlockScan(sweeps=24)
-ERRORS = PointErrors(BLOCK.covariance)
+ERRORS = BLOCK.errors(12.0)
 TOP = Polygon(tuple((float(u), float(v)) for u, v in BLOCK.polygons[0]))
 CELLS = Filters(cell_mm=5.0)
 PLANES = (FeatureSpec("top", "plane", (TOP,), filters=CELLS), FeatureSpec("table", "plane", (Auto(1),)))

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.deviations import FANS, UNEXPLAINED, Source
 from core.findings.proof import SIZE_UNCONFIRMED, ScanFacts
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.inspect.uncertainty.part import Part
@@ -73,16 +74,20 @@ class PointErrors:
     """How many numbers describe a sweep: more than 3 where planes change with the rows."""
     image_rows: int = 1
     """Rows of a picture."""
+    swept: bool = True
+    """Whether any points lie on the light planes of sweeps; False: all are the fan's."""
 
     @property
     def complete(self) -> bool:
         """Whether uncertainties hold all that is known to act on the points; else they prove nothing."""
-        return self.sweep_covariance is not None and not self.all_doubts
+        return not self.all_doubts
 
     @property
     def all_doubts(self) -> tuple[Message, ...]:
-        """The doubts, and that of the target's size."""
-        return (*self.doubts, SIZE_UNCONFIRMED) if self.size_unconfirmed else self.doubts
+        """The doubts, with that of the target's size and of what uncertainties do not hold."""
+        missing = self.missing()
+        size = (SIZE_UNCONFIRMED,) if self.size_unconfirmed else ()
+        return (*self.doubts, *size, *([note_of("inspection.missing_in_u", missing=missing)] if missing else []))
 
     def doubted_by(self, facts: ScanFacts) -> PointErrors:
         """The same errors with the doubts of their scan; a size that is not known is unconfirmed."""
@@ -110,7 +115,7 @@ class PointErrors:
     @classmethod
     def of_fan(cls, pieces: Sequence[Centreline], common: CommonErrors) -> PointErrors:
         """Of the points of the fan alone: `pieces` are its centrelines, averaged along themselves."""
-        return cls(common=common, speckle_px=_correlation_px(pieces))
+        return cls(common=common, speckle_px=_correlation_px(pieces), swept=False)
 
     @property
     def calibrations(self) -> tuple[Message, ...]:
@@ -135,9 +140,9 @@ class PointErrors:
     def missing(self) -> tuple[Message, ...]:
         """What an uncertainty made of them does not hold, as the object of a sentence."""
         lacking = []
-        if self.sweep_covariance is None:
+        if self.swept and self.sweep_covariance is None:
             lacking.append(Message("gauge.without_sweeps", "that of the sweeps' light planes"))
-        elif self.speckle is None:
+        elif self.swept and self.speckle is None:
             lacking.append(Message("gauge.without_speckle", "what the sweeps owe to the fan's speckle"))
         if not self.knows("camera"):
             lacking.append(Message("gauge.without_camera", "that of the camera"))

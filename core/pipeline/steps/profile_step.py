@@ -139,7 +139,7 @@ def profile_step(
         facts = facts_of(facts_of_the_day(work, calibration), change, section)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
-        for doubt in reversed(facts.all_doubts):
+        for doubt in reversed(steps[0].errors.doubted_by(facts).all_doubts):
             gauge = doubted(gauge, doubt)
         notes = (
             *channel.notes("scan"),

@@ -14,7 +14,6 @@ from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.plan.temperature import temperature_of
 from core.inspect.uncertainty.part import MATERIALS, TARGET_AT_20, Part, TargetTemperature
-from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.pipeline.steps.gauge_step import of_part
 from tests.inspect.block_scan import BlockScan
@@ -39,7 +38,7 @@ def gauge_of(scan):
     def gauge(part):
         return measure_gauge(
             cloud,
-            errors=replace(PointErrors(scan.covariance, None, 13.0, 13.0), part=part),
+            errors=replace(scan.errors(), part=part),
             regions=FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper)),
             nominal_mm=50.0,
             tolerance_mm=5.0,
@@ -123,7 +122,7 @@ def test_a_target_that_was_warm_makes_what_is_measured_with_it_longer(gauge_of):
 
 def test_an_inspection_reckons_with_the_part_unless_its_plan_states_a_temperature(scan):
     cloud = scan.measure(np.random.default_rng(3))
-    errors = replace(PointErrors(scan.covariance, None, 13.0, 13.0), part=Part(material="steel"))
+    errors = replace(scan.errors(), part=Part(material="steel"))
     plan = InspectionPlan((FeatureSpec("block", "thickness"),))
     (row,) = evaluate(plan, cloud, errors=errors).characteristics
     assert "inspection.cause_part_temperature_assumed" in {one.source.code for one in row.budget}
@@ -136,7 +135,7 @@ def test_an_inspection_reckons_with_the_part_unless_its_plan_states_a_temperatur
 
 def test_light_from_below_two_faces_does_not_cancel_in_their_distance(scan):
     cloud = scan.measure(np.random.default_rng(3))
-    errors = replace(PointErrors(scan.covariance, None, 13.0, 13.0), part=Part())
+    errors = replace(scan.errors(), part=Part())
     faces = (FeatureSpec("top", "plane", (Auto(2),)), FeatureSpec("table", "plane", (Auto(1),)))
     plan = InspectionPlan((*faces, FeatureSpec("height", "distance", of=("top", "table"))))
     found = {row.name: row for row in evaluate(plan, cloud, errors=errors).characteristics}

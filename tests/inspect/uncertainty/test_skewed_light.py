@@ -10,7 +10,6 @@ from core.inspect.faces import FacePair
 from core.inspect.gauge import measure_gauge
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
-from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import (
     MeanSkewness,
     doubt_of_light,
@@ -37,7 +36,7 @@ def gauge_of(scan, upper, lower=0.0, noise=0.03):
     cloud = replace(cloud, skewness=skewness, spread_mm=np.full(len(cloud), 0.7))
     return measure_gauge(
         cloud,
-        errors=PointErrors(scan.covariance, None, 13.0, 13.0),
+        errors=scan.errors(common=scan.common_errors(camera=1.0004, fan=1.0002)),
         regions=FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper)),
         nominal_mm=50.0,
         tolerance_mm=5.0,
@@ -47,7 +46,7 @@ def gauge_of(scan, upper, lower=0.0, noise=0.03):
 def test_nothing_changes_where_sections_are_symmetric_within_their_scatter(scan):
     plain = measure_gauge(
         scan.measure(np.random.default_rng(3)),
-        errors=PointErrors(scan.covariance, None, 13.0, 13.0),
+        errors=scan.errors(common=scan.common_errors(camera=1.0004, fan=1.0002)),
         regions=FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper)),
         nominal_mm=50.0,
         tolerance_mm=5.0,
