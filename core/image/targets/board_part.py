@@ -149,6 +149,12 @@ def _ends(picture: NDArray[np.uint8], side: Array, contrast: float) -> bool:
     return bool(even.mean() >= LEAST_EVEN)
 
 
+def ends_all_round(picture: NDArray[np.uint8], grid: Array) -> bool:
+    """Whether the board of the corners `grid` (R, C, 2) ends at all four sides: it has no more of them."""
+    contrast = contrast_of(picture, grid)
+    return all(_ends(picture, np.rot90(grid, turn), contrast) for turn in range(4))
+
+
 def _levels(picture: NDArray[np.uint8], uv: Array) -> Array:
     """Mean grey levels (N,) of 3 × 3 pixels around `uv` (N, 2), NaN outside the picture."""
     height, width = picture.shape

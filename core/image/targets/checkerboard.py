@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from core.image.targets.board_part import (
     Place,
+    ends_all_round,
     nearest_to_middle,
     on_board,
     places,
@@ -21,7 +22,7 @@ from core.image.targets.corners import corner_sigma, is_even, oriented, refined,
 from core.image.targets.kinds import Checkerboard
 from core.image.targets.picture import Picture, as_8bit, as_refinable, noise_of
 from core.image.targets.pose import estimate_pose
-from core.image.targets.target_view import LEAVE_OUT_OR_RETAKE, TargetNotFound, TargetView
+from core.image.targets.target_view import LEAVE_OUT_OR_RETAKE, OtherBoard, TargetNotFound, TargetView
 from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -224,7 +225,8 @@ def _failure(board: Checkerboard, full: NDArray[np.uint8], seen: list[Found], na
             where=name,
             todo=Message("advice.show_whole_board", "move the board so that the whole of it is seen, with its margin"),
         )
-    return TargetNotFound(
+    kind = OtherBoard if ends_all_round(full, largest.grid) else TargetNotFound
+    return kind(
         Message("target.other_board", "the board shows {n} inner corners, not {all}", n=shown, all=wanted),
         where=name,
         todo=Message(

@@ -65,4 +65,8 @@ class TargetNotFound(InputError):
     """The picture does not show the whole target; the message tells what it shows instead."""
 
 
+class OtherBoard(TargetNotFound):
+    """The picture shows the whole of a board of another size: all its ends are seen."""
+
+
 LEAVE_OUT_OR_RETAKE = Message("advice.leave_out_or_retake", "leave the picture out or take it again")

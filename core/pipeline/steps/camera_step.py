@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
+from itertools import chain, islice
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,14 +19,14 @@ from core.calibrate.results import CameraCalibration, ViewQuality
 from core.errors import InputError
 from core.files.pictures import Picture
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.recording_set import require_camera
+from core.files.recording.recording_set import RecordingSet, require_camera
 from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
 from core.image.hot_pixels import hot_pixels, standing_out
 from core.image.repeated import REPEATED
-from core.image.targets import detect
-from core.image.targets.target_view import TargetView
+from core.image.targets import Target, detect
+from core.image.targets.target_view import OtherBoard, TargetView
 from core.messages import Field, Message
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
@@ -34,6 +36,8 @@ from core.threads import ordered_map
 
 FEWEST_VIEWS = 3
 """Views a camera is solved from at least: three determine all five entries of its matrix (Zhang, 2000)."""
+_LOOKED_AT_FIRST = 3
+"""Pictures that are looked at quickly before the others: where all show the whole of one other board, it is that."""
 FEWEST_HOT_SHARE = 3e-5
 """Share of hot pixels that is told: one in thirty of the patches of 31 × 31 px around corners has one."""
 
@@ -76,6 +80,7 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
     """
     recording_set = pictures.recording_set
     require_camera(recording_set)
+    target = recording_set.rig.camera_target
 
     def look(item: tuple[str, Picture | Message]) -> tuple[SeenView, NDArray[np.int64] | None]:
         name, picture = item
@@ -84,9 +89,8 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
         size = (picture.shape[1], picture.shape[0])
         try:
             with stage(progress, "camera views"):
-                return SeenView(name, detect(recording_set.rig.camera_target, picture, name), size=size), standing_out(
-                    picture
-                )
+                view = known.get(name) or detect(target, picture, name)
+                return SeenView(name, view, size=size), standing_out(picture)
         except InputError as error:
             return SeenView(name, reason=error.what, size=size), None
 
@@ -94,15 +98,45 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
     bright: list[NDArray[np.int64]] = []
     total = len(recording_set.camera)
     progress("camera views", 0, total)
-    looked = ordered_map(
-        look, pictures.stream(recording_set.camera), idle=lambda: progress("camera views", len(seen), total)
-    )
+    streamed = pictures.stream(recording_set.camera)
+    first = list(islice(streamed, _LOOKED_AT_FIRST))
+    known = _require_this_board(target, first, recording_set)
+    looked = ordered_map(look, chain(first, streamed), idle=lambda: progress("camera views", len(seen), total))
     for one, places in looked:
         seen.append(one)
         if places is not None:
             bright.append(places)
         progress("camera views", len(seen), total)
     return SeenViews(tuple(seen), str(recording_set.where("camera")), len(hot_pixels(bright)))
+
+
+def _require_this_board(
+    target: Target, first: Sequence[tuple[str, Picture | Message]], found: RecordingSet
+) -> dict[str, TargetView]:
+    """InputError if the first pictures all show the whole of one board of another size: the others will, too.
+
+    To look for the one that was stated in every way takes ten times as long as to find it. Where the first picture
+    shows it, the others are not looked at here; what was found is returned by its name.
+    """
+    shown: list[OtherBoard] = []
+    for name, picture in first:
+        if isinstance(picture, Message):
+            return {}
+        try:
+            return {name: detect(target, picture, name, thorough=False)}
+        except OtherBoard as error:
+            shown.append(error)
+        except InputError:
+            return {}  # told of that picture when all are looked at
+        if shown[-1].what != shown[0].what:
+            return {}
+    if len(shown) == _LOOKED_AT_FIRST:
+        raise InputError(
+            Message("camera.other_board", "in the first {n} pictures {reason}", n=len(shown), reason=shown[0].what),
+            where=found.where("camera"),
+            todo=shown[0].todo,
+        )
+    return {}
 
 
 def solve_camera(
