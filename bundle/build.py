@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import os
 import platform
-import re
 import shutil
 import subprocess
 import sys
@@ -16,6 +15,7 @@ from pathlib import Path
 from contents import EXTRAS, ROOT
 from deb import build_deb
 from icons import write_icons
+from libraries import lessen
 from sizes import sizes
 
 from core import __version__, compiled, sources
@@ -26,12 +26,6 @@ FOLDER = BUILD / "dist" / "trisect"
 """The folder itself."""
 INSIDE = FOLDER / "_internal"
 """Where PyInstaller puts all but the two programs."""
-WORTH_STRIPPING = 100_000
-"""Bytes of a library whose names for a debugger are worth taking out: of all libraries together they are a sixth."""
-LIBRARY = re.compile(r"\.so(\.\d+)*$")
-"""How the name of a shared library ends."""
-PAGE = 4096
-"""Bytes of a page of memory."""
 
 NOTE = """
 This folder was built by PyInstaller, whose start program is in it: GPL-2.0-or-later with an exception that allows to
@@ -51,7 +45,7 @@ def main() -> None:
     run(sys.executable, "-m", "PyInstaller", "--noconfirm", "--log-level", "WARN", *places, spec)
     put_notices()
     if sys.platform == "linux":
-        strip()
+        lessen(INSIDE, BUILD)
         (FOLDER / "trisect-workbench").hardlink_to(FOLDER / "trisect")
     (BUILD / "sizes.txt").write_text(sizes(FOLDER), encoding="utf-8")
     pack()
@@ -97,41 +91,15 @@ def pythons_licence() -> str:
     raise SystemExit("bundle: Python's own licence was not found beside it")
 
 
-def strip() -> None:
-    """Take the names for a debugger out of the libraries that bring them.
-
-    What was changed after it was linked, as many libraries in wheels were, may be spoilt by it: it is left as it is.
-    """
-    stripped = BUILD / "stripped"
-    for library in sorted(path for path in INSIDE.rglob("*") if LIBRARY.search(path.name) and not path.is_symlink()):
-        if library.stat().st_size < WORTH_STRIPPING or ".symtab" not in readelf("-S", library):
-            continue
-        run("strip", "--strip-unneeded", "-o", str(stripped), str(library))
-        if can_be_mapped(stripped):
-            shutil.copyfile(stripped, library)
-    stripped.unlink(missing_ok=True)
-
-
-def can_be_mapped(library: Path) -> bool:
-    """Whether each loaded part of a library lies in the file where its pages can be mapped from."""
-    loaded = [line.split() for line in readelf("-l", library).splitlines() if line.split()[:1] == ["LOAD"]]
-    return all((int(offset, 16) - int(address, 16)) % PAGE == 0 for _, offset, address, *_ in loaded)
-
-
-def readelf(what: str, library: Path) -> str:
-    """What a shared library says of its sections (-S) or of what is loaded of it (-l)."""
-    return subprocess.run(["readelf", "-W", what, str(library)], capture_output=True, text=True, check=True).stdout
-
-
 def pack() -> None:
     """The folder as one file for each way to install it."""
     name = f"trisect-{__version__}-{sys.platform}-{platform.machine().lower()}"
     if sys.platform == "linux":
+        build_deb(FOLDER, BUILD, __version__)
         packed = BUILD / f"{name}.tar.xz"
         packed.unlink(missing_ok=True)
-        tar = ("tar", "--owner=0", "--group=0", "--sort=name", "-C", str(FOLDER.parent), "-I", "xz -T0 -6", "-cf")
+        tar = ("tar", "--owner=0", "--group=0", "--sort=name", "-C", str(FOLDER.parent), "-I", "xz -T0 -9", "-cf")
         run(*tar, str(packed), FOLDER.name)
-        build_deb(FOLDER, BUILD, __version__)
     else:
         shutil.make_archive(
             str(BUILD / name), "zip", FOLDER.parent, "Trisect.app" if sys.platform == "darwin" else "trisect"
