@@ -38,7 +38,7 @@ from core.report.wording import Words
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
 from core.states import CHECKS, VERDICT
-from core.study.artefact_check import ArtefactCheck
+from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
 
 Rows = list[tuple[str, str]]
@@ -156,7 +156,12 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
 
 def artefact_rows(check: ArtefactCheck) -> Rows:
     """What was measured of an artefact, and how that agrees with its certificate."""
-    return [*fact_rows(named(check.artefact.id, artefact_facts(check))), ("", told(check.sentence))]
+    compared = check.characteristic or tr(KINDS[check.artefact.kind])
+    return [
+        (tr("compared"), compared),
+        *fact_rows(named(check.artefact.id, artefact_facts(check))),
+        ("", told(check.sentence)),
+    ]
 
 
 def artefact_json(check: ArtefactCheck) -> dict[str, Any]:

@@ -118,7 +118,7 @@ def test_remarks_without_end_are_shortened_and_say_so(quick):
 def test_repeats_are_listed_with_their_statistics(whole):
     text = words(whole)
     assert (
-        "Repeated scans repeats mean s (n − 1) nominal bias largest error "
+        "Repeated scans Repeats Mean s (n − 1) Nominal Bias Largest error "
         "10 50.012 mm 0.014 mm 50 mm +0.012 mm 0.027 mm" in text.replace("\u00a0", " ")
     )
     assert "1 scan-01 2026-03-14 14:00 49.991 0.024 2 −0.009 c3f1a09b22d4" in text

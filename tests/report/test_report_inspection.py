@@ -167,11 +167,11 @@ def test_names_of_ones_own_stay_as_they_are_though_the_catalogue_has_the_words(c
 
 def test_studies_are_printed_with_figures_and_notes(data):
     text = words(data)
-    assert "Type-1 study verdict Cg (95 %) Cgk bias (95 %) s (n − 1) repeats" in text
+    assert "Type-1 study Verdict Cg (95 %) Cgk Bias (95 %) s (n − 1) Repeats" in text
     assert "source of variation σ, mm share of σ², % of the total, % of T, %" in text
-    assert "Gauge R&R verdict %GRR of T (95 %) %GRR of the total (95 %) categories (ndc)" in text
+    assert "Gauge R&R Verdict %GRR of T (95 %) %GRR of the total (95 %) Categories (ndc)" in text
     assert "is pooled with the error" in text
-    assert "Repeats: thickness verdict repeats mean s (n − 1) nominal bias conforming 12 50.00" in text
+    assert "Repeats: thickness Verdict Repeats Mean s (n − 1) Nominal Bias conforming 12 50.00" in text
     assert "contribution to U of the mean u, mm share of u², %" in text
     assert "quantity positions largest error, mm at limit, mm verdict" in text
     assert "probing error, form 10 +0.0290 p9 0.05 conforming" in text

@@ -44,6 +44,7 @@ NOISE_FOR_ASSUMED = 1.2
 HALVINGS = 8
 """Of the interval in which the share of what is assumed is looked for, from LEAST_SHARE to 1 by its logarithm."""
 LEAST_SHARE = 1e-3
+"""Of its assumed size: with less it takes no part."""
 ROUNDS = 10
 """Of weights and variance components, at most; it ends as soon as the form changes by less than a twentieth."""
 PRIOR_FREEDOM = 10.0

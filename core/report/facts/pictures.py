@@ -42,7 +42,8 @@ class LeftOut(NamedTuple):
 
     def line(self, most: int = NAMES_SHOWN) -> Message:
         """How many, why, and which: at most so many names."""
-        names = (*self.names[:most], *(["…"] if len(self.names) > most else []))
+        shown = [name.rpartition("/")[2] for name in self.names[:most]]
+        names = (*shown, *(["…"] if len(self.names) > most else []))
         return Message(
             "told.left_out", "{count} × {reason}: {names}",
             count=len(self.names), reason=self.reason, names=names,

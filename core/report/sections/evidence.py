@@ -49,7 +49,7 @@ def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
         cells = [look.text(text, "number" if 1 <= place <= 4 else "small") for place, text in enumerate(shown)]
         title = f"{one.artefact.id} ({words(KINDS[one.artefact.kind])})"
         rows.append([look.text(title, "small"), *cells])
-    shares = (0.11, 0.085, 0.125, 0.14, 0.185, 0.05, 0.11, 0.095, 0.1)
+    shares = (0.115, 0.08, 0.13, 0.135, 0.17, 0.05, 0.11, 0.105, 0.105)
     note = look.say(
         "Measured like a part with the calibrations of this result. ± is U, of the certificate with its own k, of what "
         "was measured and of the error with k = 2. E_n is the error over the U of both together; above 1 nothing is "

@@ -16,6 +16,7 @@ from core.pipeline.project.details import accepted_calibration, show_scan
 from core.pipeline.project.results import load_results
 from core.pipeline.project.thumbnails import display_picture
 from core.pipeline.project.watched_scan import WatchReporter, measure_watched
+from core.report.facts.pictures import left_out
 from core.scan.features.frames import MOVED, left_out_notes
 from tests.simulated import copy_of
 
@@ -77,7 +78,7 @@ def test_the_look_of_a_scan_says_what_the_measurement_said(done):
     assert look.points.dtype == look.sigma.dtype == np.float32
     assert look.frames == done.summary.frames
     assert look.frames_used == sum(frame.used for frame in done.summary.frames)
-    assert look.frames_used + sum(number for _, number in look.left_out) == len(look.frames)
+    assert look.frames_used + sum(len(one.names) for one in left_out(look.frames)) == len(look.frames)
     assert look.median_sigma_mm == pytest.approx(np.median(look.sigma), rel=1e-5)
     assert look.median_sigma_mm < look.sigma_95_mm <= done.project.options.sigma_cut_mm
     assert 0 < look.share < 1 and look.stripe.width_px > 1

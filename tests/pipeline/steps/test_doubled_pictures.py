@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from core.files.pictures import read_picture
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.set_listing import pictures_in
 from core.files.recording.step_settings import ScanSettings
@@ -91,6 +92,6 @@ def test_a_pose_of_the_check_that_is_one_picture_twice_counts_once(tiny_set, bot
     shutil.copytree(folder / "planes", folder / "check")
     shutil.copy(folder / "check" / "pose00.png", folder / "check" / "pose99.png")
     found = open_set(folder)
-    poses = measure_check(found, camera.camera, COARSE)
+    poses = measure_check(PictureReader(found), camera.camera)
     assert [pose.name for pose in poses if pose.reason == REPEATED] == ["pose99"]
-    assert not any(pose.reason == REPEATED for pose in measure_poses(found, camera.camera))
+    assert not any(pose.reason == REPEATED for pose in measure_poses(PictureReader(found), camera.camera))

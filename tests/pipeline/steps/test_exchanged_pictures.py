@@ -3,6 +3,7 @@
 import pytest
 
 from core.errors import InputError
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.image.stripes.exchanged import EXCHANGED
 from core.pipeline.steps.planes_step import measure_poses
@@ -25,7 +26,7 @@ def exchanged(folder, to, names):
 def test_where_all_are_exchanged_that_is_said_and_no_pose_is_blamed(tiny_set, tmp_path):
     found = exchanged(tiny_set, tmp_path / "set", [f"pose{k:02d}" for k in range(4)])
     with pytest.raises(InputError) as told:
-        measure_poses(found, CAMERA)
+        measure_poses(PictureReader(found), CAMERA)
     assert str(told.value) == (
         f"{found.folders['planes']}: {EXCHANGED}; give each NAME its NAME_off's name, and the other way round."
     )
@@ -33,4 +34,4 @@ def test_where_all_are_exchanged_that_is_said_and_no_pose_is_blamed(tiny_set, tm
 
 def test_one_exchanged_pose_is_left_out_for_that_reason(tiny_set, tmp_path):
     found = exchanged(tiny_set, tmp_path / "set", ["pose02"])
-    assert [pose.reason for pose in measure_poses(found, CAMERA)] == [None, None, EXCHANGED, None]
+    assert [pose.reason for pose in measure_poses(PictureReader(found), CAMERA)] == [None, None, EXCHANGED, None]

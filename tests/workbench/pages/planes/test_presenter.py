@@ -435,7 +435,7 @@ def test_planes_whose_file_tells_too_little_are_accepted_again_and_what_rests_on
 ) -> None:
     id_ = accepted.candidate
     planes.kept[:] = [SimpleNamespace(**{**vars(entry), "facts_known": False}) for entry in planes.kept]
-    for step in ("scan", "inspect", "report"):
+    for step in ("scan", "gauge", "report"):
         accepted.model.record(step, finished(step, accepted.project, accepted.model.results))
     assert not left_to_do(accepted.project, accepted.model.results)
     accepted.history.refresh()
@@ -446,7 +446,7 @@ def test_planes_whose_file_tells_too_little_are_accepted_again_and_what_rests_on
     settled(qtbot, accepted)
     assert (accepted.project.accepted.fan, stage(accepted)) == (id_, Stage.ACCEPTED)
     assert accepted.can_accept == "These laser planes are accepted already."
-    assert left_to_do(accepted.project, accepted.model.results) == ("scan", "inspect", "report")
+    assert left_to_do(accepted.project, accepted.model.results) == ("scan", "gauge", "report")
     assert "laser planes" in accepted.model.states["scan"].sentence
 
 
