@@ -3,6 +3,7 @@
 import pytest
 
 from core.errors import InputError
+from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.image.targets import checkerboard
 from core.pipeline.steps.camera_step import see_views
@@ -24,7 +25,7 @@ def test_the_first_pictures_tell_and_no_long_search_is_made(tiny_set, tmp_path, 
     rig = folder / "rig.toml"
     rig.write_text(rig.read_text().replace("[17, 12]", str(list(counted))))
     with pytest.raises(InputError) as told:
-        see_views(open_set(folder))
+        see_views(PictureReader(open_set(folder)))
     columns, rows = counted
     assert str(told.value).startswith(
         f"{folder / 'camera'}: in the first 3 pictures the board shows 17 × 12 inner corners, not {columns} × {rows}; "
@@ -37,6 +38,6 @@ def test_the_right_count_is_found_in_each_picture_once(tiny_set, searches, monke
     looked = []
     quick = checkerboard.quick_search
     monkeypatch.setattr(checkerboard, "quick_search", lambda full: looked.append(full) or quick(full))
-    seen = see_views(open_set(tiny_set))
+    seen = see_views(PictureReader(open_set(tiny_set)))
     assert len(seen.found) == len(looked) == 6
     assert not searches
