@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 
+from core.files.step_graph import MAIN
 from core.pipeline.project.verify import CHANGING
 from tests.workbench.technician import Technician
 from workbench.work.tasks import Task
@@ -87,9 +88,9 @@ def test_cancel_acts_within_a_second_and_the_job_can_be_done_afterwards(
         t.window.go_to(page)
         t.idle()
         cancel(t, button, stage)
-    made_at = t.model.results[page].at
+    made_at = t.model.results[MAIN[page]].at
     t.press(button)
-    t.until(lambda: t.model.results[page].at > made_at, f"{page} to be measured after it was cancelled")
+    t.until(lambda: t.model.results[MAIN[page]].at > made_at, f"{page} to be measured after it was cancelled")
     t.idle()
 
 

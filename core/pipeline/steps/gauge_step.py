@@ -70,6 +70,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         log.settings.update({"nominal_mm": spec.nominal_mm, "tolerance_mm": spec.tolerance_mm, "rule": rule})
         log.settings[PART] = part_table(part)
         log.notes.extend(gauge.notes)
+        progress("faces", 1, 1)  # the last moment at which it can be cancelled: nothing is written yet
         write_gauge(log.path("gauge"), gauge, calibration.id)
     return read_gauge(work.path("gauge"), cloud)
 

@@ -12,14 +12,13 @@ from core.inspect.gauge import measure_gauge
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec, InBox
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.uncertainty.point_errors import PointErrors
 from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
 from tests.inspect.block_scan import BlockScan
 from tests.inspect.shape_scan import BALL, PIN, ShapeScan
 
 BLOCK = BlockScan(height=30.0, sweeps=24)
-ERRORS = PointErrors(BLOCK.covariance)
+ERRORS = BLOCK.errors()
 SHAPES = ShapeScan()
 WHOLE = InBox((-200.0, -200.0, 0.0), (200.0, 200.0, 1000.0))
 

@@ -118,7 +118,7 @@ def test_why_a_picture_says_nothing_stands_on_a_line_of_its_own(chosen, measurin
     measuring.finish(check(0.005))
     lines = shown(chosen, qtbot, CheckStage.CHECKED).sentence.text().splitlines()
     assert lines[0].startswith("Camera or laser may have changed")
-    assert lines[1:] == ["1 × the target is not seen: check/c"]
+    assert lines[1:] == ["1 × the target is not seen: c"]
 
 
 def test_a_result_is_out_of_date_with_another_calibration_and_back_with_undo(chosen, measuring, qtbot):
