@@ -267,20 +267,3 @@ class ProposedReadjustment:
         """What would be done."""
         assert self.fan.readjusted is not None
         return self.fan.readjusted
-
-    @property
-    def sentence(self) -> Message:
-        """What it would change."""
-        return Message(
-            "readjust.proposed",
-            "The stripes would be off by {after_px:.2f} px in place of {before_px:.2f} px ({after_mm:.3f} mm in place "
-            "of {before_mm:.3f} mm), and a step of {step_mm:g} mm measured {correction_mm:+.3f} mm larger, ± "
-            "{U_mm:.3f} mm by camera and fan (k = 2).",
-            before_px=self.offset_px[0],
-            after_px=self.offset_px[1],
-            before_mm=self.offset_mm[0],
-            after_mm=self.offset_mm[1],
-            step_mm=self.step_mm,
-            correction_mm=self.correction_mm,
-            U_mm=2 * self.u_mm,
-        )

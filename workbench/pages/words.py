@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from core.report.facts.fact import Fact, Reader, heading
+from core.report.facts.fact import Fact, Reader, for_reader, heading
 from core.report.facts.table import FactTable
 from core.report.wording import Words
 from workbench.language import chosen, number
@@ -55,6 +55,15 @@ def show_facts(rows: ValueRows, facts: Iterable[Fact], tables: Iterable[FactTabl
     folded = [fact_row(fact) for fact in facts if fact.level > Reader.TECHNICIAN]
     lines: list[ValueRow] = [(heading(name), text, "", "") for table in tables for name, text in table.lines(words)]
     rows.set_rows(in_sight, folded + lines)
+
+
+def fact_lines(facts: Iterable[Fact]) -> str:
+    """What a technician needs of them, a line each, where there is no room for rows."""
+    words = wording()
+    return "\n".join(
+        words("{name}: {value}", name=fact.heading(words), value=fact.text(words))
+        for fact in for_reader(facts, Reader.TECHNICIAN)
+    )
 
 
 def fact_row(fact: Fact) -> ValueRow:

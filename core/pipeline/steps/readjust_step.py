@@ -122,7 +122,7 @@ def readjust_step(
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))
         write_fan(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)
-        log.notes.extend((proposed.record.note, proposed.sentence))
+        log.notes.append(proposed.record.note)
     return proposed
 
 

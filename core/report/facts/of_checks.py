@@ -9,7 +9,7 @@ from typing import Protocol
 
 from core.calibrate.results import ProposedReadjustment
 from core.messages import Message, label
-from core.report.facts.fact import Fact, Grade, Reader
+from core.report.facts.fact import Fact, Grade, Reader, named
 from core.report.facts.pictures import Picture, used_fact
 from core.report.wording import decimals_of
 from core.states import CHECKS, VERDICT
@@ -18,7 +18,8 @@ from core.study.control_chart import ControlChart
 
 GRADES: dict[str, Grade] = {"passed": "good", "doubtful": "warn", "failed": "bad"}
 PROBABILITY = label("Probability that noise and the calibrations' uncertainty alone would set the stripes as far off")
-STRIPES_OFF, CHANCE = label("stripes off by"), label("chance")
+STRIPES_OFF, STRIPES_OFF_MM = label("stripes off by"), label("stripes off on the target by")
+CHANCE = label("chance")
 
 
 class Check(Protocol):
@@ -62,8 +63,7 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
             label("RMS distance from where the calibrations have them"), Reader.AUDITOR,
         ),
         Fact(
-            label("stripes off on the target by"), _known(check.offset_mm), "mm", 3, label("The same in mm"),
-            Reader.METROLOGIST,
+            STRIPES_OFF_MM, _known(check.offset_mm), "mm", 3, label("The same in mm"), Reader.METROLOGIST,
         ),
         Fact(CHANCE, float(f"{check.p:.2g}"), "", None, PROBABILITY, Reader.AUDITOR),
         Fact(
@@ -94,12 +94,12 @@ def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
 
 def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
     """What a re-adjustment changes, how sure that is, and what it does."""
-    record, (before, after) = done.record, done.offset_px
-    was = Message("told.was", "Before: {value:.3f} {unit}", value=before, unit="px")
+    record = done.record
     was_chance = Message("told.was_chance", "{what}; before: {p:.2g}", what=PROBABILITY, p=record.p_before)
     return (
         Fact(label("poses"), record.poses, tip=label("Pictures that say something"), level=Reader.AUDITOR),
-        Fact(STRIPES_OFF, after, "px", 3, was),
+        *named(STRIPES_OFF, _before_and_after(done.offset_px, "px", Reader.TECHNICIAN)),
+        *named(STRIPES_OFF_MM, _before_and_after(done.offset_mm, "mm", Reader.AUDITOR)),
         Fact(
             Message("told.step_larger", "step of {step_mm:g} mm larger by", step_mm=done.step_mm),
             done.correction_mm, "mm", 3, label("± is what camera and fan leave uncertain of it (k = 2)"),
@@ -108,6 +108,11 @@ def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
         Fact(CHANCE, float(f"{record.p_after:.2g}"), tip=was_chance, level=Reader.AUDITOR),
         *_changes(done),
     )  # fmt: skip
+
+
+def _before_and_after(lengths: tuple[float, float], unit: str, level: Reader) -> tuple[Fact, Fact]:
+    before, after = lengths
+    return Fact(label("before"), before, unit, 3, level=level), Fact(label("after"), after, unit, 3, level=level)
 
 
 def _changes(done: ProposedReadjustment) -> tuple[Fact, ...]:

@@ -15,7 +15,7 @@ from core.files.results.rig_history import CheckChart, PastCheck, RigHistory
 from core.messages import capital
 from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.facts.fact import Fact, named
-from core.report.facts.of_checks import GRADES, artefact_facts, check_facts
+from core.report.facts.of_checks import GRADES, artefact_facts, check_facts, readjustment_facts
 from core.report.facts.pictures import left_out
 from core.states import CHECKS, STEP_STATES
 from core.study.artefact_check import ArtefactCheck
@@ -26,7 +26,7 @@ from workbench.pages.scan.artefact_dialog import ArtefactDialog
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.stage import CheckButtons, CheckFacts, check_buttons
-from workbench.pages.words import show_facts
+from workbench.pages.words import fact_lines, show_facts
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
@@ -156,7 +156,7 @@ class CheckCard(QFrame):
 
     def _ask_to_readjust(self, proposal: ProposedReadjustment) -> None:
         """Accepted, or left as it is."""
-        text = f"{text_of(proposal.record.note)}\n\n{text_of(proposal.sentence)}"
+        text = f"{text_of(proposal.record.note)}\n\n{fact_lines(readjustment_facts(proposal))}"
         answers = [tr("Accept the re-adjustment"), tr("Reject")]
         if ask.ask(self, tr("Re-adjust camera and laser?"), text, answers) == 0:
             self._check.accept_readjustment(proposal)
