@@ -50,6 +50,7 @@ from core.progress import Progress, silent
 from core.report.facts.fact import Reader, named
 from core.report.facts.of_camera import camera_facts, parameter_facts
 from core.report.facts.of_checks import readjustment_facts
+from core.report.facts.of_gauge import pictures_fact, pictures_table
 from core.report.facts.of_planes import planes_facts, planes_sentences
 from core.report.facts.of_scan import scan_facts, sigma_of
 from core.second_process import SecondProcess
@@ -222,7 +223,8 @@ def run_profile(
     with alone_with(folder, out, chosen.part, chosen.channel) as work:
         measured = profile_step(work, chosen.for_scan, tilt, progress)
         gauge, pictures, verdict = measured.gauge, measured.pictures, read_results(work.out).verdict
-        rows = [*output.gauge_rows(gauge, verdict), *output.picture_rows(pictures)]
+        of_pictures = output.fact_rows((pictures_fact(pictures),), (pictures_table(pictures),))
+        rows = [*output.gauge_rows(gauge, verdict), *of_pictures, *output.left_out_rows(pictures)]
         values = {**output.gauge_json(gauge, verdict), **output.pictures_json(pictures)}
         return verdict, _shown(work, "profile", rows, values, "profile", "profile_table", "profiles", "gauge")
 

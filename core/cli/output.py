@@ -27,9 +27,9 @@ from core.files.results.rig_history import PastCheck, RigHistory
 from core.findings.table import gravest_first, is_grave
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.messages import Message, as_json, plain, plural_message, visible
+from core.messages import Message, as_json, plain, visible
 from core.report.facts.fact import Fact, Reader, for_reader, named
-from core.report.facts.of_checks import artefact_facts, check_facts
+from core.report.facts.of_checks import artefact_facts, check_facts, history_fact, history_table
 from core.report.facts.of_gauge import gauge_facts
 from core.report.facts.of_studies import verdict_fact
 from core.report.facts.pictures import Picture, left_out
@@ -37,7 +37,7 @@ from core.report.facts.table import FactTable, tables_for_reader
 from core.report.wording import Words
 from core.scan.features.frames import NO_REASON
 from core.scan.results import FrameRecord
-from core.states import CHECKS, VERDICT
+from core.states import VERDICT
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
 
@@ -182,50 +182,14 @@ def artefact_json(check: ArtefactCheck) -> dict[str, Any]:
 
 def history_rows(history: RigHistory) -> Rows:
     """Each check of a rig: when, what came of it, by how much a step was off, and within which limits."""
-    if not history.checks:
-        return [(tr("rig"), tr("{name}: never checked on this computer", name=history.name))]
-    return [
-        (tr("rig"), history.name),
-        *((spoken().time(one.taken_at.astimezone()), _past_check(one, history.chart(one))) for one in history.checks),
-    ]
-
-
-def _past_check(check: PastCheck, chart: ControlChart) -> str:
-    where = tr("within" if chart.holds(check.error_mm) else "outside")
-    by_itself = tr("by its uncertainty") if check.artefact else tr("by its stated stability")
-    rule = tr("by {n} checks before", n=chart.n) if chart.own else by_itself
-    warm = "" if check.celsius is None else f", {spoken().number(check.celsius, 'g')} °C"
-    by = tr("{px:.2f} px, {mm:.3f} mm, p = {p:.2g}", px=check.offset_px, mm=check.offset_mm, p=check.p)
-    if check.artefact:
-        by = tr("{artefact}: E_n = {e_n:.2f}", artefact=check.artefact, e_n=check.e_n)
-    off = tr(
-        "{step:g} mm off by {error:+.3f} mm, {where} {lower:+.3f} … {upper:+.3f} mm {rule}",
-        step=check.step_mm, error=check.error_mm, where=where, lower=chart.lower, upper=chart.upper, rule=rule,
-    )  # fmt: skip
-    return spoken().joined([spoken().joined([tr(CHECKS[check.verdict]), by]), f"{off}{warm}"], ";")
+    charted = ((one, history.chart(one)) for one in history.checks)
+    return fact_rows((history_fact(history.name, len(history.checks)),), (history_table(charted),))
 
 
 def past_check_json(check: PastCheck, chart: ControlChart) -> dict[str, Any]:
     """The same for programs."""
     limits = {"lower_mm": chart.lower, "upper_mm": chart.upper, "own": chart.own, "n": chart.n}
     return {**check.values, "limits": limits}
-
-
-def picture_rows(pictures: Sequence[PictureStep]) -> Rows:
-    """The step of each picture of the fan alone, or why it gave none."""
-    used = sum(one.reason is None for one in pictures)
-    said = plural_message(
-        "cli.pictures_used", "{used} of {n:,} picture used", "{used} of {n:,} pictures used", n=len(pictures), used=used
-    )
-    rows = [(tr("pictures"), told(said))]
-    for one in pictures:
-        step = (
-            tr("{thickness:.3f} mm, own u {own:.3f} mm", thickness=one.thickness_mm, own=one.own_mm)
-            if one.reason is None
-            else told(one.reason)
-        )
-        rows.append(("", tr("{name}: {value}", name=one.name, value=step)))
-    return rows
 
 
 def pictures_json(pictures: Sequence[PictureStep]) -> dict[str, Any]:

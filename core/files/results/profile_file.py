@@ -41,6 +41,11 @@ class PictureStep:
     reason: OptionalMessage = None
     __pydantic_config__ = RESULT
 
+    @property
+    def used(self) -> bool:
+        """Whether it gave a step."""
+        return self.reason is None
+
     @classmethod
     def none(cls, index: int, name: str, reason: Message) -> PictureStep:
         """Of a picture that gave no step."""

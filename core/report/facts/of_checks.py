@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from datetime import datetime
 from typing import Protocol
 
 from core.calibrate.results import ProposedReadjustment
-from core.messages import Message, label
-from core.report.facts.fact import Fact, Grade, Reader, named
+from core.messages import Message, label, plain
+from core.report.facts.fact import Fact, Grade, Reader, Value, named
 from core.report.facts.pictures import Picture, used_fact
+from core.report.facts.table import Column, FactTable
 from core.report.wording import decimals_of
 from core.states import CHECKS, VERDICT
 from core.study.artefact_check import KINDS, ArtefactCheck
@@ -72,6 +73,78 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
         ),
     ]  # fmt: skip
     return tuple(facts)
+
+
+class PastCheck(Protocol):
+    """A check of a rig's history, as `core.files.results.rig_history.PastCheck`."""
+
+    @property
+    def taken_at(self) -> datetime: ...
+    @property
+    def verdict(self) -> str: ...
+    @property
+    def p(self) -> float: ...
+    @property
+    def step_mm(self) -> float: ...
+    @property
+    def error_mm(self) -> float: ...
+    @property
+    def offset_px(self) -> float: ...
+    @property
+    def offset_mm(self) -> float: ...
+    @property
+    def celsius(self) -> float | None: ...
+    @property
+    def artefact(self) -> str: ...
+    @property
+    def e_n(self) -> float: ...
+
+
+def history_fact(rig: str, checks: int) -> Fact:
+    """Whose history it is, and how many checks are in it."""
+    of = Message("told.rig", "{name}: {count:,} checks", name=rig, count=checks)
+    never = Message("told.never_checked", "{name}: never checked on this computer", name=rig)
+    return Fact(label("rig"), of if checks else never)
+
+
+def history_table(checks: Iterable[tuple[PastCheck, ControlChart]]) -> FactTable:
+    """Each check of a rig, and the limits of its chart: what came of it, and by how much a step was off."""
+    columns = (
+        Column(label("pictures taken")),
+        Column(VERDICT),
+        Column(label("artefact")),
+        Column("E_n", digits=2),
+        Column(STRIPES_OFF, "px", 3, level=Reader.AUDITOR),
+        Column(STRIPES_OFF_MM, "mm", 3, level=Reader.METROLOGIST),
+        Column(CHANCE, significant=2, level=Reader.AUDITOR),
+        Column(label("step"), "mm"),
+        Column(label("off by"), "mm", 3, signed=True),
+        Column(label("allowed from"), "mm", 3, signed=True),
+        Column(label("allowed to"), "mm", 3, signed=True),
+        Column(label("allowed by")),
+        Column(label("air"), "°C"),
+    )
+    return FactTable(columns, tuple(_past_cells(one, chart) for one, chart in checks))
+
+
+def _past_cells(check: PastCheck, chart: ControlChart) -> tuple[Value, ...]:
+    seen = (check.offset_px, check.offset_mm, check.p)
+    allowed: Value = label("its uncertainty") if check.artefact else label("its stability")
+    if chart.own:
+        allowed = Message("told.by_history", "{n} checks before", n=chart.n)
+    return (
+        Message("told.time", "{at}", at=check.taken_at.astimezone()),
+        CHECKS[check.verdict],
+        plain(check.artefact) if check.artefact else None,
+        check.e_n if check.artefact else None,
+        *(None if check.artefact else _known(value) for value in seen),
+        check.step_mm,
+        _known(check.error_mm),
+        chart.lower,
+        chart.upper,
+        allowed,
+        check.celsius,
+    )
 
 
 def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:

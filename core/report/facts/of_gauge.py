@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from typing import Protocol
 
 from core.inspect.characteristic import thickness_characteristic
 from core.inspect.results import Face, GaugeResult
-from core.messages import label
+from core.messages import label, plain
 from core.report.facts.fact import Fact, Reader, named
 from core.report.facts.of_features import characteristic_facts
+from core.report.facts.pictures import Picture, used_fact
+from core.report.facts.table import Column, FactTable
 
 UPPER, LOWER = label("upper face"), label("lower face")
 
@@ -40,3 +44,24 @@ def face_facts(face: Face) -> tuple[Fact, ...]:
         Fact(label("points"), len(face.indices), tip=label("Points the plane rests on"), level=Reader.AUDITOR),
         Fact(label("RMS of the residuals"), face.rms_mm, "mm", 3, label("Of the points used"), Reader.METROLOGIST),
     )
+
+
+class PictureStep(Picture, Protocol):
+    """What one picture of the fan alone gave, as `core.files.results.profile_file.PictureStep`."""
+
+    @property
+    def thickness_mm(self) -> float: ...
+    @property
+    def own_mm(self) -> float: ...
+
+
+def pictures_fact(pictures: Sequence[PictureStep]) -> Fact:
+    """How many pictures of the fan alone gave a step."""
+    return used_fact(label("pictures"), pictures, label("Pictures that gave a thickness, and all there are"))
+
+
+def pictures_table(pictures: Sequence[PictureStep]) -> FactTable:
+    """The step of each picture of the fan alone that gave one."""
+    own = label("Standard uncertainty that is the picture's own (k = 1)")
+    columns = (Column(label("picture")), Column(label("thickness"), "mm", 3), Column(label("own u"), "mm", 3, own))
+    return FactTable(columns, tuple((plain(one.name), one.thickness_mm, one.own_mm) for one in pictures if one.used))

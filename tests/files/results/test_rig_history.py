@@ -193,7 +193,7 @@ def test_a_day_that_there_is_not_is_told():
 def test_the_printed_history_has_the_temperature_where_it_is_known():
     lines = dict(history_rows(RigHistory("bench", (replace(FIRST, celsius=None), later(1)))))
     told = list(lines.values())[1:]
-    assert [line.endswith(", 21.5 °C") for line in told] == [False, True]
+    assert [line.endswith(", air 21.5 °C") for line in told] == [False, True]
     assert "°C" not in told[0]
 
 
@@ -231,4 +231,5 @@ def test_the_printed_history_says_of_an_artefact_its_error_and_by_what_it_is_hel
     history = artefact_history(STEADY_UM)
     told = [line for _, line in history_rows(history) if "GB 50-7" in line]
     assert len(told) == len(STEADY_UM)
-    assert "E_n = 0.22" in told[0] and "off by +0.004 mm" in told[0] and "by its uncertainty, 20.5 °C" in told[0]
+    assert "E_n 0.22" in told[0] and "off by +0.004 mm" in told[0]
+    assert "allowed by its uncertainty, air 20.5 °C" in told[0]

@@ -11,11 +11,12 @@ from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from core.files.project.results import ProfilesSummary
 from core.files.recording.options import StatedTilt
-from core.report.wording import thickness_line
+from core.report.facts.of_gauge import gauge_facts, pictures_fact
+from core.report.facts.pictures import left_out
 from workbench.bench import Bench
-from workbench.language import named, text_of, tr
+from workbench.language import text_of, tr
 from workbench.pages.scan.stage import ProfilesFacts, why_not_profiles
-from workbench.pages.words import wording
+from workbench.pages.words import fact_lines
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import enable, muted
@@ -106,11 +107,9 @@ class ProfilesPanel(QWidget):
         if task is not self._task:
             return  # of the project before
         self._ended(task)
-        used = [one for one in summary.pictures if one.reason is None]
         lines = [
-            thickness_line(summary.gauge, wording()),
-            tr("{n} of {m} pictures used", n=len(used), m=len(summary.pictures)),
-            *(named(one.name, text_of(one.reason)) for one in summary.pictures if one.reason is not None),
+            fact_lines((*gauge_facts(summary.gauge), pictures_fact(summary.pictures))),
+            *(text_of(one.line()) for one in left_out(summary.pictures)),
             *(text_of(note) for note in summary.gauge.notes),
         ]
         self._say("\n".join(lines), summary.report)

@@ -70,9 +70,9 @@ def test_the_result_is_told_with_every_picture_that_gave_none(
     assert panel.measure.isEnabled()
     assert panel.open.isVisible()
     told = panel.said.text()
-    assert "20.004\u00a0mm ±\u00a00.020\u00a0mm" in told
-    assert "1 of 2 pictures used" in told
-    assert "scan/b.png: no face" in told
+    assert "20.004\u00a0±\u00a00.020\u00a0mm" in told
+    assert "Pictures: 1 of 2" in told
+    assert "1 × no face: b.png" in told
     assert "The part was at rest." in told
 
 
