@@ -11,6 +11,7 @@ from core.files.results.comparison_file import read_comparison
 from core.files.results.mesh_export import write_stl
 from core.files.results.ply import read_cloud, write_cloud
 from core.files.results.ply_format import parse_ply
+from core.messages import plain
 from core.pipeline.steps.report_step import results_content
 from core.scan.surface.fused_surface import Mesh
 from core.simulate.scene.objects import gauge_block
@@ -60,8 +61,9 @@ def test_wear_is_told_written_and_reported(results, before):
     assert np.array_equal(significant, beyond)
     assert np.array_equal(points["significant"].astype(bool), significant)
     content = results_content(results)
-    assert content.compared is not None
-    assert "before.ply" in str(content.compared)
+    told = {str(fact.label): fact for fact in content.compared}
+    assert told["compared with"].value == plain("before.ply")
+    assert told["detectable from"].value == read_comparison(results / "comparison.json").lod95_mm
     assert read_comparison(results / "comparison.json").alignment == "as measured"
 
 

@@ -21,14 +21,12 @@ from core.files.folder_lock import alone_in
 from core.files.plan.plan_file import read_plan
 from core.files.project.folder import is_project
 from core.files.project.report_template import read_report_template, section_set
-from core.files.results.comparison_file import ComparisonFile
 from core.files.results.export_list import EXPORTS
 from core.files.results.folder_results import read_results
 from core.files.results.inspection_file import inspection_values
 from core.inspect.comparison import ComparisonScales
 from core.inspect.conformity import Verdict
 from core.inspect.evaluate import Inspection
-from core.inspect.shown.shown_comparison import ALIGNED
 from core.messages import Message, label, visible
 from core.pipeline.project.comparison import compare_project
 from core.pipeline.project.export import export_results, import_camera, with_template
@@ -38,6 +36,7 @@ from core.pipeline.steps.mesh_step import MeshOptions, mesh_step
 from core.pipeline.steps.report_step import report_step, with_studies
 from core.progress import Progress
 from core.report.content import ReportContent
+from core.report.facts.of_comparison import comparison_facts
 from core.report.facts.of_features import HEADS, characteristic_cells
 from core.report.template import LANGUAGES, PAPERS, Paper
 from core.report.wording import grouped, shown_name
@@ -106,29 +105,7 @@ def run_compare(
     else:
         with alone_in(results) if results.is_dir() else nullcontext():
             made, written = compare_step(results, other, align, scales, to, progress)
-    return Shown(_compared_rows(made.summary), made.summary.values(), files=written)
-
-
-def _compared_rows(found: ComparisonFile) -> output.Rows:
-    """What a comparison came to, for people."""
-    words = output.words()
-    rows = [
-        (tr("compared with"), f"{found.other} ({told(ALIGNED[found.alignment])})"),
-        (tr("places"), tr("{n:,}, each over {diameter:g} mm", n=found.core_points, diameter=found.diameter_mm)),
-    ]
-    for name, part in ((tr("less material"), found.lower), (tr("more material"), found.higher)):
-        said = tr("nowhere significant")
-        if part.share:
-            said = tr(
-                "{share:.1f} % of the places, mean {mean} mm, at most {extreme} mm",
-                share=100 * part.share,
-                mean=words.fixed(part.mean_mm, 3, signed=True),
-                extreme=words.fixed(part.extreme_mm, 3, signed=True),
-            )
-        rows.append((name, said))
-    rows.append((tr("detectable"), tr("from {lod:.3f} mm on (95 %, median)", lod=found.lod95_mm)))
-    rows.append((tr("registration"), tr("{registration:.3f} mm", registration=found.registration_mm)))
-    return rows
+    return Shown(output.fact_rows(comparison_facts(made.summary)), made.summary.values(), files=written)
 
 
 def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:

@@ -203,7 +203,7 @@ class ReportContent:
     deviations
         Comparisons with nominal surfaces.
     compared
-        What a comparison with another scan or surface came to; None where none was made.
+        What a comparison with another scan or surface came to; nothing where none was made.
     studies
         Studies of the way of measuring, and of series of parts.
     check
@@ -269,7 +269,7 @@ class ReportContent:
     seen_at: Mapping[str, str] = field(default_factory=dict)
     sections: Mapping[str, Array] = field(default_factory=dict)
     deviations: tuple[Deviations, ...] = ()
-    compared: Message | None = None
+    compared: tuple[Fact, ...] = ()
     studies: tuple[Study, ...] = ()
     check: Check | None = None
     artefacts: tuple[ArtefactCheck, ...] = ()
@@ -370,7 +370,7 @@ class ReportContent:
             "template": self.template.words,
             "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
             "artefacts": self.artefacts,
-            "compared": None if self.compared is None else str(self.compared),
+            "compared": self.compared,
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]
@@ -422,6 +422,7 @@ class ReportContent:
             "artefact": tuple(chain(*artefacts)),
             "scan": self.scan_facts,
             "thickness": () if self.gauge is None else gauge_facts(self.gauge),
+            "comparison": self.compared,
         }
 
     @property

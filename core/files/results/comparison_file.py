@@ -17,7 +17,7 @@ from core.files.reading import read_json
 from core.files.results.ply_format import Ply, ply_bytes
 from core.files.tables import RESULT, Finite, OrNan, Probability
 from core.inspect.comparison import Comparison
-from core.inspect.shown.shown_comparison import ALIGNED, Alignment, Changed
+from core.inspect.shown.shown_comparison import Alignment, Changed
 from core.messages import Command, Message
 
 NAME = "comparison.json"
@@ -51,19 +51,6 @@ class ChangedPart:
     def of(cls, changed: Changed) -> ChangedPart:
         """As it is written."""
         return cls(changed.share, changed.mean_mm, changed.extreme_mm)
-
-    @property
-    def in_words(self) -> Message:
-        """As a part of a sentence."""
-        if not self.share:
-            return Message("comparison.nowhere", "nowhere")
-        return Message(
-            "comparison.changed_part",
-            "at {percent:.1f} % of them, {mean_mm:+.3f} mm on average, {extreme_mm:+.3f} mm at most",
-            percent=100 * self.share,
-            mean_mm=self.mean_mm,
-            extreme_mm=self.extreme_mm,
-        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,24 +101,6 @@ class ComparisonFile:
             comparison.reach_mm,
             comparison.registration_mm,
             calibration_id,
-        )
-
-    @property
-    def in_words(self) -> Message:
-        """All of it in a sentence or two, for a report."""
-        return Message(
-            "comparison.in_words",
-            "Compared with {other} ({alignment}) at {n:,} places, each over {diameter_mm:g} mm: less material {lower}, "
-            "more material {higher}. Deviations from {lod95_mm:.3f} mm on (median) are significant at 95 %; "
-            "registration {registration_mm:.3f} mm.",
-            other=self.other,
-            alignment=ALIGNED[self.alignment],
-            n=self.core_points,
-            diameter_mm=self.diameter_mm,
-            lower=self.lower.in_words,
-            higher=self.higher.in_words,
-            lod95_mm=self.lod95_mm,
-            registration_mm=self.registration_mm,
         )
 
     def values(self) -> dict[str, Any]:

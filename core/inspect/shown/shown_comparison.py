@@ -40,7 +40,7 @@ class ShownComparison:
     ----------
     other, alignment
         Name of the other surface, and how it was aligned.
-    places
+    core_points
         How many places were compared.
     lower, higher
         Where material is missing, and where there is more, significantly.
@@ -60,7 +60,7 @@ class ShownComparison:
 
     other: str
     alignment: Alignment
-    places: int
+    core_points: int
     lower: Changed
     higher: Changed
     lod95_mm: float

@@ -48,7 +48,7 @@ def show_comparison(
     return ShownComparison(
         other=summary.other,
         alignment=summary.alignment,
-        places=len(found),
+        core_points=len(found),
         lower=found.lower,
         higher=found.higher,
         lod95_mm=summary.lod95_mm,

@@ -46,6 +46,8 @@ from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
+from core.report.facts.fact import Fact
+from core.report.facts.of_comparison import comparison_facts
 from core.report.wording import Words, target_in_words
 from core.scan.method import Method
 from core.scan.surface.cloud import FAN, Cloud
@@ -193,10 +195,10 @@ def _check(out: Path, calibration: Calibration) -> InterimCheck | None:
     return check if check is not None and check.calibration_id == calibration.id else None
 
 
-def _compared(out: Path) -> Message | None:
-    """What the comparison among the results came to, in words; None where there is none."""
+def _compared(out: Path) -> tuple[Fact, ...]:
+    """What the comparison among the results came to; nothing where there is none."""
     path = out / FILES["comparison"]
-    return read_comparison(path).in_words if path.exists() else None
+    return comparison_facts(read_comparison(path)) if path.exists() else ()
 
 
 def _scanned(out: Path, calibration: Calibration) -> tuple[Cloud, Mesh]:

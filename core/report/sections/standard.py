@@ -19,6 +19,7 @@ from core.report.layout.blocks import (
     OnOnePage,
     Picture,
     Sections,
+    figures,
     heads,
     more_line,
     plain_table,
@@ -103,9 +104,9 @@ def _results(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
 
 def _compared(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """What a comparison with another surface came to."""
-    if content.compared is None:
+    if not content.compared:
         return []
-    return [Spacer(0, 3 * mm), look.say("Comparison", "label"), look.text(look.words(content.compared))]
+    return [Spacer(0, 3 * mm), look.say("Comparison", "label"), figures(look, content.compared, columns=4)]
 
 
 def _with_budget(content: ReportContent) -> tuple[int, ...]:

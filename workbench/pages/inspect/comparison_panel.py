@@ -3,23 +3,20 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 from PySide6.QtWidgets import QCheckBox, QPushButton, QWidget
 
 from core.inspect.shown.shown_comparison import ALIGNED, AUTOMATIC
-from workbench.language import number, text_of, tr
+from core.report.facts.of_comparison import comparison_facts
+from workbench.language import text_of, tr
 from workbench.pages.inspect.presenter import InspectPresenter
-from workbench.pages.words import wording
+from workbench.pages.words import show_facts
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import enable, in_column, in_row
-from workbench.views.lists.value_rows import ValueRow, ValueRows
-
-if TYPE_CHECKING:
-    from core.inspect.shown.shown_comparison import Changed, ShownComparison
+from workbench.views.lists.value_rows import ValueRows
 
 
 class ComparisonPanel(QWidget):
@@ -81,7 +78,7 @@ class ComparisonPanel(QWidget):
             enable(box, can.look, "")
         for widget in (self.rows, self.significant, self.beside, self.away):
             widget.setVisible(shown is not None)
-        self.rows.set_rows([] if shown is None else _rows(shown))
+        show_facts(self.rows, () if shown is None else comparison_facts(shown))
 
     def _choose_file(self) -> None:
         kinds = tr("Surfaces (*.ply *.stl *.step *.stp *.e57)")
@@ -98,41 +95,3 @@ class ComparisonPanel(QWidget):
     def _compare(self, other: Path | None) -> None:
         if other is not None:
             self._comparison.compare(other)
-
-
-def _rows(shown: ShownComparison) -> list[ValueRow]:
-    """What a comparison came to."""
-    chance = tr("Significant at 95 %: by chance alone up to 5 % of the places of an unchanged part are")
-    detectable = tr("Median of the level of detection: 1.96 times the standard uncertainty of a deviation")
-    registration = tr("Standard uncertainty of how both lie on each other, by what most of the surface shows")
-    diameter = wording().general(shown.diameter_mm)
-    circles = tr("{n} of {diameter} mm", n=number(shown.places, ",d"), diameter=diameter)
-    return [
-        (tr("Compared with"), shown.other, text_of(ALIGNED[shown.alignment]), ""),
-        (tr("Less material"), _changed(shown.lower), _more(shown.lower) + chance, "warn" if shown.lower.share else ""),
-        (
-            tr("More material"),
-            _changed(shown.higher),
-            _more(shown.higher) + chance,
-            "warn" if shown.higher.share else "",
-        ),
-        (tr("Detectable"), tr("from {lod} mm on", lod=wording().fixed(shown.lod95_mm, 3)), detectable, ""),
-        (tr("Registration"), f"{wording().fixed(shown.registration_mm, 4)} mm", registration, ""),
-        (tr("Circles"), circles, "", ""),
-    ]
-
-
-def _changed(part: Changed) -> str:
-    """'12.3 %, mean −0.101 mm'."""
-    if not part.share:
-        return tr("nowhere significant")
-    mean = wording().fixed(part.mean_mm, 3, signed=True)
-    return tr("{share} %, mean {mean} mm", share=number(100 * part.share, ".1f"), mean=mean)
-
-
-def _more(part: Changed) -> str:
-    """What the row has no room for."""
-    if not part.share:
-        return ""
-    extreme = wording().fixed(part.extreme_mm, 3, signed=True)
-    return tr("Of the places; at most {extreme} mm.", extreme=extreme) + " "

@@ -29,7 +29,7 @@ def compared() -> ShownComparison:
     return ShownComparison(
         other="before.ply",
         alignment="as measured",
-        places=1300,
+        core_points=1300,
         lower=Changed(0.25, -0.1, -0.12),
         higher=Changed(0.0, np.nan, np.nan),
         lod95_mm=0.06,
