@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Literal, TypeAlias
 
-from core.messages import Message, capital
+from core.messages import NO_BREAK_SPACE, Message, capital
 from core.report.wording import Words, grouped
 
 Grade: TypeAlias = Literal["", "good", "warn", "bad"]
@@ -53,6 +53,8 @@ class Fact:
         Whether it is good.
     significant
         Digits of a real number whose size is not known beforehand, as of a probability.
+    above_zero
+        Whether a number above zero is never shown as zero: "< 0.001".
     """
 
     label: str | Message
@@ -66,6 +68,7 @@ class Fact:
     signed: bool = False
     grade: Grade = ""
     significant: int | None = None
+    above_zero: bool = False
 
     def title(self, words: Words) -> str:
         """What it is called, with the coverage of its interval: 'Cg (95 %)'."""
@@ -126,7 +129,12 @@ class Fact:
             return "∞" if value > 0 else words.numeral("-∞")
         if self.significant is not None:
             value = float(f"{value:.{self.significant}g}")
-        return words.general(value) if self.digits is None else words.fixed(value, self.digits, signed=signed)
+        if self.digits is None:
+            return words.general(value)
+        least = 10.0**-self.digits
+        if self.above_zero and 0 < value < least / 2:
+            return f"<{NO_BREAK_SPACE}{words.fixed(least, self.digits)}"
+        return words.fixed(value, self.digits, signed=signed)
 
 
 def heading(name: str) -> str:

@@ -11,10 +11,6 @@ from core.messages import Message, label
 from core.report.facts.fact import Fact, Grade, Reader, named
 from core.report.facts.pictures import used_fact
 
-LEAST_MM = 0.0005
-"""What is less is not told in figures, which have three decimals."""
-BELOW = label("below 0.001 mm")
-
 
 def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
     """How well the stripes lie on their planes, the planes, and all else that is told of them."""
@@ -46,7 +42,7 @@ def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
         off = calibration.stripe_sd_mm
         facts.append(
             Fact(
-                label("stripes beyond noise"), off if off >= LEAST_MM else BELOW, "mm", 3, tip, Reader.METROLOGIST,
+                label("stripes beyond noise"), off, "mm", 3, tip, Reader.METROLOGIST, above_zero=True,
             )
         )  # fmt: skip
     return tuple(facts)

@@ -16,7 +16,9 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from core.inspect.characteristic import thickness_characteristic
 from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
+from core.report.facts.of_budget import budget_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.wording import verdict_sentence
 from workbench.language import sentence, text_of, tr
@@ -220,7 +222,7 @@ class ResultPanel(QWidget):
         self._show_verdict(gauge, outdated)
         show_facts(self.rows, gauge_facts(gauge))
         self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
-        self.budget.set_rows(words.budget_rows(gauge))
+        show_facts(self.budget, budget_facts(thickness_characteristic(gauge)))
         say_notes(gauge.notes, self.alarm, self.notes)
         self.notes_title.setVisible(bool(self.notes.text()))
 

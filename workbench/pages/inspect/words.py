@@ -8,13 +8,12 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from core.files.csv_text import harmless
 from core.files.project.data import Repeat
-from core.messages import capital
 from core.report.facts.fact import Fact
 from core.report.wording import decimals_of, thickness_line, with_uncertainty
-from workbench.language import text_of, time_of, tr
+from workbench.language import time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
-from workbench.views.lists.value_rows import ValueRow, VerdictKind
+from workbench.views.lists.value_rows import VerdictKind
 
 if TYPE_CHECKING:
     from core.inspect.result_list import ResultList
@@ -35,22 +34,6 @@ def verdict(result: GaugeResult | ResultList | None) -> VerdictKind:
         "not proven": "not proven",
     }
     return "" if result is None else kinds.get(result.verdict, "")
-
-
-def budget_rows(gauge: GaugeResult) -> list[ValueRow]:
-    """Each contribution to the uncertainty, and all together."""
-    decimals = max(decimals_of(gauge.u_mm) + 1, 0)
-    rows: list[ValueRow] = [
-        (
-            capital(text_of(row.source)),
-            f"{wording().fixed(row.u_mm, decimals)} mm",
-            tr("Standard uncertainty (k = 1)"),
-            "",
-        )
-        for row in gauge.budget
-    ]
-    together = tr("Root of the sum of squares of all rows (k = 1)")
-    return [*rows, (tr("u, all together"), f"{wording().fixed(gauge.u_mm, decimals)} mm", together, "")]
 
 
 class RepeatRow(NamedTuple):

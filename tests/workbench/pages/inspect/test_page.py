@@ -216,7 +216,7 @@ def test_a_finished_scan_shows_its_thickness_and_verdict(shown):
     assert rows.text_of("Upper face, points") == "300"
     assert shown.result.rule.text() == "Rule: distance of two parallel planes."
     assert shown.result.budget.text_of("Camera calibration") == "0.0020 mm"
-    assert shown.result.budget.text_of("u, all together") == "0.0120 mm"
+    assert shown.result.budget.text_of("Combined standard uncertainty u") == "0.0120 mm"
     assert shown.result.notes.isHidden()
 
 

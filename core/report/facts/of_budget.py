@@ -1,0 +1,87 @@
+"""What is told of an uncertainty budget (GUM): what each input contributes, what is known of it, and u, ν_eff and U."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+from core.inspect.characteristic import Characteristic
+from core.inspect.results import Contribution
+from core.inspect.uncertainty.coverage import effective_dof
+from core.messages import Message, label
+from core.report.facts.fact import Fact, Reader
+from core.report.wording import decimals_of, shown_unit
+
+DISTRIBUTIONS = (label("normal"), label("rectangular"), label("triangular"), label("arcsine"), label("t"))
+"""Of an input, as a budget names them."""
+
+SMALL = 1e-3
+"""Below it a power of ten says more than zeros."""
+
+NONE = 1e-20
+"""An input of a smaller share of the variance has no influence: what is left of its sensitivity is rounding."""
+
+MANY = 1000
+"""More degrees of freedom are told as such: the factor k is the same."""
+
+
+def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
+    """The contribution |c|·u(x) of each input, and all together."""
+    unit, factor = shown_unit(one)
+    digits = _digits(one)
+    root = label("Root of the sum of squares of all rows (k = 1)")
+    about_U = Message("told.expanded", "expanded uncertainty U = k·u, k = {k:g}", k=one.k)
+    contributions = (replace(_contribution(one, row), label=row.source) for row in one.budget)
+    return (
+        *contributions,
+        Fact(label("combined standard uncertainty u"), factor * one.u, unit, digits, root),
+        _freedom(label("effective degrees of freedom ν_eff"), effective_dof(one.budget)),
+        Fact(about_U, factor * one.U, unit, decimals_of(factor * one.U), level=Reader.AUDITOR),
+    )
+
+
+def input_cells(one: Characteristic) -> tuple[tuple[Fact, ...], ...]:
+    """Of each input its value, distribution, u(x), sensitivity |c|, contribution, freedom and share of the variance."""
+    _, factor = shown_unit(one)
+    variance = sum(row.u_mm**2 for row in one.budget if math.isfinite(row.u_mm)) or 1.0
+    return tuple(_cells(one, row, factor, row.u_mm**2 / variance) for row in one.budget)
+
+
+def _cells(one: Characteristic, row: Contribution, factor: float, share: float) -> tuple[Fact, ...]:
+    slope = row.sensitivity
+    if slope is not None:
+        slope = 0.0 if share < NONE else factor * slope
+    return (
+        Fact(label("value"), row.value, row.unit),
+        Fact(label("distribution"), row.distribution),
+        _rounded("u(x)", row.point_mm, row.unit),
+        _rounded(label("sensitivity"), slope),
+        _contribution(one, row),
+        _freedom("ν", row.dof),
+        Fact(label("share"), 100 * share if math.isfinite(share) else None, "%", 0),
+    )
+
+
+def _contribution(one: Characteristic, row: Contribution) -> Fact:
+    unit, factor = shown_unit(one)
+    about = label("Standard uncertainty (k = 1)")
+    return Fact(label("u of it"), factor * row.u_mm, unit, _digits(one), about, above_zero=True)
+
+
+def _digits(one: Characteristic) -> int:
+    """One more than u has: a row may be small."""
+    _, factor = shown_unit(one)
+    return decimals_of(factor * one.u) + 1
+
+
+def _rounded(name: str, value: float | None, unit: str = "") -> Fact:
+    """To two digits."""
+    if value is None or not 0 < value < SMALL:
+        return Fact(name, value, unit, None if value is None else decimals_of(value))
+    return Fact(name, value, unit, significant=2)
+
+
+def _freedom(name: str, dof: float) -> Fact:
+    many = MANY < dof < math.inf
+    value = Message("told.more_than", "> {number}", number=MANY) if many else dof
+    return Fact(name, value, digits=0 if dof >= 10 else 1, level=Reader.AUDITOR)
