@@ -9,7 +9,9 @@ from typing import Any
 from PySide6.QtCore import QSignalBlocker
 from PySide6.QtWidgets import QPushButton, QWidget
 
+from core.report.facts.table import FactTable
 from workbench.language import tr
+from workbench.pages.words import show_table
 from workbench.theme import icon
 from workbench.views.layouts import enable, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
@@ -18,21 +20,20 @@ from workbench.views.lists.data_table import DataTable
 class HistoryTab(QWidget):
     """A list of them, what is to be said of the chosen one, and the button that restores it."""
 
-    def __init__(self, presenter: Any, headers: Sequence[tuple[str, str]], parent: QWidget | None = None) -> None:
+    def __init__(self, presenter: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
         self.table, self.words = DataTable(), muted()
         self.restore = QPushButton(icon("mdi6.backup-restore"), tr("Restore"))
-        self.table.set_headers(headers)
         self.restore.clicked.connect(lambda: presenter.history.restore())
         self.table.current_row_changed.connect(self._chosen)
         row = self.row = in_row((self.words, 1), self.restore)
         self.column = in_column((self.table, 1), row, on=self, margins=(6, 6, 6, 6))
-        self._rows: Any = None
+        self._shown: FactTable | None = None
 
     @abstractmethod
-    def _listed(self) -> list[tuple[str, ...]]:
-        """A row for each of the history."""
+    def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
+        """A row for each of the kept calibrations, `in_use` being the id of one of them or ""."""
 
     @abstractmethod
     def _tip(self) -> str:
@@ -44,12 +45,13 @@ class HistoryTab(QWidget):
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
-        history, rows = self._presenter.history, self._listed()
-        if rows != self._rows:
-            self._rows = rows
+        history = self._presenter.history
+        listed = self._listed(history.entries, history.accepted)
+        if listed != self._shown:
+            self._shown = listed
             ids = [entry.id for entry in history.entries]
             with QSignalBlocker(self.table):
-                self.table.set_rows(rows)
+                show_table(self.table, listed)
                 self.table.set_current_row(ids.index(history.chosen) if history.chosen in ids else -1)
         why = history.why_not_restore()
         self.words.setText(why or self._sentence())

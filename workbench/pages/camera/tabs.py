@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 from PySide6.QtWidgets import QComboBox, QPushButton, QWidget
 
+from core.messages import capital
+from core.report.facts.of_kept import CHANGE_HEADS, kept_cameras
+from core.report.facts.table import FactTable
 from core.report.wording import grouped
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
@@ -132,12 +136,9 @@ class CameraHistoryTab(HistoryTab):
     """The calibrations that were accepted, compared with the one shown."""
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
-        headers = [(tr("Accepted"), ""), (tr("RMS"), "px"), (tr("Views"), ""), (tr("Id"), ""), ("", "")]
-        super().__init__(presenter, headers, parent)
+        super().__init__(presenter, parent)
         self.changes = DataTable()
-        self.changes.set_headers(
-            [(title, "") for title in (tr("Parameter"), tr("Chosen"), tr("Shown"), tr("Change"), "sd")]
-        )
+        self.changes.set_headers([(capital(tr(title)), "") for title in CHANGE_HEADS])
         self.column.addWidget(self.changes, 1)
         self.take = QPushButton(icon("mdi6.file-import-outline"), tr("From a file …"))
         self.take.clicked.connect(self._take)
@@ -159,8 +160,8 @@ class CameraHistoryTab(HistoryTab):
         if path is not None:
             self._presenter.history.take(path)
 
-    def _listed(self) -> list[tuple[str, ...]]:
-        return words.history_rows(self._presenter.history.entries, self._presenter.history.accepted)
+    def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
+        return kept_cameras(entries, in_use)
 
     def _tip(self) -> str:
         return tr("Measure with the chosen calibration again")

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from typing import Any
 
 from core.calibrate.camera.changes import CameraChanges
 from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.camera.views import ViewsJudgement
 from core.calibrate.results import CameraCalibration, ViewQuality
-from core.report.facts.fact import Fact
-from core.report.facts.of_camera import camera_facts, parameter_fact, parameter_facts
-from core.report.wording import decimals_of
-from workbench.language import named, number, text_of, tr
-from workbench.pages.calibration.words import history_row
+from core.report.facts.fact import Fact, heading
+from core.report.facts.of_camera import camera_facts, parameter_facts
+from core.report.facts.of_kept import CHANGE_HEADS, change_cells
+from workbench.language import named, text_of, tr
 from workbench.pages.words import mm, px, wording
 
 
@@ -26,36 +24,16 @@ def facts(calibration: CameraCalibration | None, judgement: ViewsJudgement | Non
 
 
 def change_rows(changes: CameraChanges | None) -> list[tuple[str, ...]]:
-    """What is different: parameter, then, now, change, its sd."""
-    if changes is None:
-        return []
-    rows: list[tuple[str, ...]] = [
-        (tr("RMS [px]"), number(changes.rms_px[0], ".3f"), number(changes.rms_px[1], ".3f"), "", ""),
-        (tr("Views"), str(changes.views[0]), str(changes.views[1]), "", ""),
-    ]
-    for one in changes.parameters:
-        if not (one.first or one.second):
-            continue
-        fact = parameter_fact(one.name, one.second, one.sd)
-        digits = decimals_of(one.sd)
-        mark = "  ▲" if one.unlikely else ""
-        rows.append(
-            (
-                fact.column(wording()),
-                wording().fixed(one.first, digits),
-                wording().fixed(one.second, digits),
-                wording().fixed(one.change, digits, signed=True) + mark,
-                wording().fixed(one.sd, digits),
-            )
-        )
-    return rows
-
-
-def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
-    """The kept calibrations: when, RMS, views, id, whether in use."""
+    """What is different: parameter, then, now, change, its sd; a change that chance hardly explains is marked."""
+    said = wording()
+    rows = () if changes is None else change_cells(changes)
     return [
-        history_row(entry, accepted, number(entry.rms_px, ".3f"), f"{entry.used}/{entry.total}", entry.id)
-        for entry in entries
+        (
+            heading(row[0].column(said)),
+            *(fact.parts(said)[0] + ("  ▲" if fact.grade else "") for fact in row),
+            *[""] * (len(CHANGE_HEADS) - 1 - len(row)),
+        )
+        for row in rows
     ]
 
 

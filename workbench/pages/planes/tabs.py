@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.model import Camera
+from core.report.facts.of_kept import kept_planes
+from core.report.facts.table import FactTable
 from workbench.language import tr
 from workbench.pages.calibration.history_tab import HistoryTab
 from workbench.pages.planes import words
@@ -98,12 +101,8 @@ class RigTab(QWidget):
 class PlanesHistoryTab(HistoryTab):
     """Laser planes accepted before."""
 
-    def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
-        titles = ((tr("Accepted"), ""), (tr("RMS of each line"), "mm"), (tr("Poses"), ""), (tr("Id"), ""))
-        super().__init__(presenter, [*titles, (tr("Camera"), ""), ("", "")], parent)
-
-    def _listed(self) -> list[tuple[str, ...]]:
-        return words.history_rows(self._presenter.history.entries, self._presenter.history.accepted)
+    def _listed(self, entries: Sequence[Any], in_use: str) -> FactTable:
+        return kept_planes(entries, in_use)
 
     def _tip(self) -> str:
         return tr("Measure with these laser planes again; undoable")

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
 
 from core.calibrate.fan.left_out import note_on_left_out
 from core.calibrate.results import FanCalibration, PlanePose
 from core.report.facts.of_planes import planes_sentences
-from workbench.language import joined, number, sentence, text_of, tr
-from workbench.pages.calibration.words import history_row
+from workbench.language import sentence, text_of, tr
 from workbench.pages.words import mm, px
 
 
@@ -57,14 +55,3 @@ def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
         target=px(pose.target_rms_px),
         lines=tr("1 line seen") if seen == 1 else tr("{count} lines seen", count=seen),
     )
-
-
-def history_rows(entries: tuple[Any, ...], accepted: str) -> list[tuple[str, ...]]:
-    """The kept planes: when, RMS of each line, poses, id, camera, whether in use."""
-    return [
-        history_row(
-            entry, accepted, joined(number(rms, ".3f") for rms in entry.rms_mm), f"{entry.used}/{entry.total}",
-            entry.id, entry.camera_id,
-        )
-        for entry in entries
-    ]  # fmt: skip
