@@ -13,7 +13,7 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.cli import recording
 from core.files.recording.rig import Rig, rig_to_toml
 from core.files.results.camera_file import camera_id, write_camera
-from core.files.results.fan_file import write_fan
+from core.files.results.planes_file import write_planes
 from core.image.targets import BlackSquare, Checkerboard
 from core.messages import Message, label, plain
 from core.model import Camera, Fan, LightPlane
@@ -204,7 +204,7 @@ def test_a_scan_is_judged_by_the_camera_that_the_fan_is_used_with(folder, tmp_pa
         camera=corrected, camera_covariance=1e-4 * np.eye(10),
     )  # fmt: skip
     write_camera(tmp_path / "camera.json", camera)
-    write_fan(tmp_path / "planes.json", fan, CAMERA)
+    write_planes(tmp_path / "planes.json", fan, CAMERA)
     known = (SourceChoice("simulated"), tmp_path, SourceSettings(), ".png")
     assert camera_id(recording.request(folder, "scan", *known).camera) == camera_id(corrected)
     assert camera_id(recording.request(folder, "planes", *known).camera) == camera_id(CAMERA)

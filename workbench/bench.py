@@ -17,7 +17,7 @@ from workbench.work.tasks import Lane, Task
 
 WRITING = frozenset(
     {
-        *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_FAN, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
+        *(jobs.FIND_VIEWS, jobs.ACCEPT_CAMERA, jobs.FIND_POSES, jobs.ACCEPT_PLANES, jobs.MEASURE_SCAN, jobs.WATCH_SCAN),
         *(jobs.CHECK_RIG, jobs.COMPARE_WITH_ARTEFACT, jobs.MEASURE_PROFILES, jobs.MEASURE_GAUGE),
         *(jobs.MEASURE_FEATURES, jobs.MEASURE_ALL, jobs.MAKE_REPORT, jobs.CHOOSE_TEMPLATE, jobs.KEEP_STUDY),
         *(jobs.KEEP_TYPE1, jobs.ADD_RECORDING, jobs.SHOW_COMPARISON, jobs.FORGET_COMPARISON, jobs.KEEP_IMPORTED_CAMERA),

@@ -25,11 +25,9 @@ from core.files.project.folder import (
 )
 from core.files.project.lock import ProjectLock, held_by, take_lock
 from core.files.project.people import Person, Rules, read_rules, reason_wanted, refused, with_pin
+from core.files.step_graph import CALIBRATED
 from core.messages import Message
 from workbench.step_state import StepState, step_states
-
-CALIBRATIONS = {"camera": "camera", "planes": "fan"}
-"""Steps whose result is a calibration, and which of the accepted ones it is."""
 
 AUTOSAVE_MS = 1000
 """An edit is on disk at most so long after it was made."""
@@ -368,15 +366,15 @@ class ProjectModel(QObject):
     def _results_for(self, before: Project, after: Project) -> Mapping[str, Done]:
         """What was measured, where the accepted calibrations are others: how each of them came about is a fact, too."""
         results = dict(self.results)
-        for step, which in CALIBRATIONS.items():
-            id_ = getattr(after.accepted, which)
-            if id_ != getattr(before.accepted, which) and (step, id_) in self._accepted:
+        for step in CALIBRATED:
+            id_ = getattr(after.accepted, step)
+            if id_ != getattr(before.accepted, step) and (step, id_) in self._accepted:
                 results[step] = self._accepted[step, id_]
         return results
 
     def _remember(self, step: str, done: Done) -> None:
         """How the accepted calibration of a step came about, for when it is accepted again by undo or redo."""
-        if step in CALIBRATIONS and (id_ := getattr(self.project.accepted, CALIBRATIONS[step])):
+        if step in CALIBRATED and (id_ := getattr(self.project.accepted, step)):
             self._accepted[step, id_] = done
 
     def _touched(self) -> None:

@@ -122,7 +122,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
         **output.frames_json(result.frames, result.points),
         "triangles": result.triangles,
         "camera": output.camera_json(result.camera),
-        "fan": output.fan_json(result.fan),
+        "fan": output.planes_json(result.fan),
     }
     Shown(rows, values, result.notes, result.files).show(as_json=as_json)
 
@@ -144,7 +144,7 @@ def run_planes(folder: Path, out: Path, chosen: Options, progress: Progress) -> 
         rows = output.fact_rows(planes_facts(calibration))
         rows += output.left_out_rows(calibration.poses)
         rows += [("", told(sentence)) for sentence in planes_sentences(calibration)]
-        return _shown(work, "planes", rows, output.fan_json(calibration), "planes")
+        return _shown(work, "planes", rows, output.planes_json(calibration), "planes")
 
 
 def run_check(

@@ -20,8 +20,8 @@ from core.cli.language import spoken, told, tr
 from core.cli.talk import is_verbose
 from core.files.json_text import to_json
 from core.files.results.check_file import InterimCheck
-from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import gauge_summary
+from core.files.results.planes_file import planes_id
 from core.files.results.profile_file import PictureStep
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.findings.table import gravest_first, is_grave
@@ -140,7 +140,7 @@ def readjustment_json(done: ProposedReadjustment) -> dict[str, Any]:
     record = done.record
     return {
         "of": record.of,
-        "id": fan_id(done.fan.fan),
+        "id": planes_id(done.fan.fan),
         "poses": record.poses,
         "change": record.change.tolist(),
         "sd": record.sd.tolist(),
@@ -244,7 +244,7 @@ def camera_json(calibration: CameraCalibration) -> dict[str, Any]:
     }
 
 
-def fan_json(calibration: FanCalibration) -> dict[str, Any]:
+def planes_json(calibration: FanCalibration) -> dict[str, Any]:
     """The fan for machines."""
     return {
         "pi": calibration.fan.pis,

@@ -45,7 +45,7 @@ MOST_CALLOUTS = 10
 class CalibrationMark:
     """Which calibration a result rests on: its id, the SHA-256 of its file, and when it was made (None: not known)."""
 
-    of: Literal["camera", "fan"]
+    of: Literal["camera", "planes"]
     id: str
     sha256: str
     made_at: datetime | None = None

@@ -9,7 +9,7 @@ import pytest
 
 from core.files.recording.features_file import read_poses
 from core.files.recording.recording_set import open_set
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.inspect.conformity import Verdict
 from core.pipeline.steps.workspace import Workspace
 from core.scan.changed_section import changed_section
@@ -49,7 +49,7 @@ def test_a_laser_with_a_shoulder_that_it_had_not_is_told_and_its_error_within_u(
 def test_no_part_and_no_focus_is_taken_for_such_a_change(otherwise, calibrated):
     work = Workspace.open(open_set(calibrated / "set"), calibrated / "out")
     known = work.calibration()
-    poses = [pose.centrelines for pose in read_poses(work.path("poses"), fan_id(known.fan.fan))]
+    poses = [pose.centrelines for pose in read_poses(work.path("poses"), planes_id(known.fan.fan))]
     for seed in range(1, 7 if otherwise else 21):
         stage, _, _ = scan_of(replace(SET, seed=seed, frames=3, **otherwise))
         fan = read_reference(stage.reference()).fan

@@ -40,12 +40,12 @@ from core.files.recording.unfinished import note_recording, unfinished_recording
 from core.files.results.artefact_register import read_register
 from core.files.results.camera_file import read_camera
 from core.files.results.check_file import read_check
-from core.files.results.fan_file import fan_id, read_fan
 from core.files.results.gauge_file import read_gauge, read_thickness
 from core.files.results.geometry_file import read_geometry
 from core.files.results.inspection_file import read_inspection
 from core.files.results.mesh_export import write_stl
 from core.files.results.nominal_surface import read_nominal
+from core.files.results.planes_file import planes_id, read_planes
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.profile_file import read_profiles_file
 from core.files.results.rig_history import DATA, read_history
@@ -73,7 +73,7 @@ class Reader:
 
 
 def _poses(path: Path) -> tuple[PoseFeatures, ...]:
-    return read_poses(path, fan_id(read_fan(path.with_name("planes.json"), _camera(path)).fan))
+    return read_poses(path, planes_id(read_planes(path.with_name("planes.json"), _camera(path)).fan))
 
 
 def _camera(path: Path) -> Any:
@@ -123,7 +123,7 @@ READERS = {
     "lock": Reader("project/.lock.json", lambda path: held_by(path.parent)),
     "packed": Reader("packed.trisectz", _packed),
     "camera": Reader("camera.json", read_camera),
-    "planes": Reader("planes.json", lambda path: read_fan(path, _camera(path))),
+    "planes": Reader("planes.json", lambda path: read_planes(path, _camera(path))),
     "poses": Reader("planes.npz", _poses),
     "views": Reader("views.npz", lambda path: read_views(path, "key")),
     "scan": Reader("scan.npz", read_scan),

@@ -14,7 +14,7 @@ from core.files.project.folder import project_from_set
 from core.files.project.results import ScanSummary
 from core.pipeline.project.calibration import (
     accept_camera,
-    accept_fan,
+    accept_planes,
     find_poses,
     find_views,
     solve_poses,
@@ -72,7 +72,7 @@ def _do(simulated: Path, made: Path) -> None:
     project = replace(project, accepted=Accepted(accept_camera(folder, project, camera)))
     poses = find_poses(folder, project, progress)
     fan = solve_poses(folder, project, poses, progress)
-    project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, fan, poses)))
+    project = replace(project, accepted=replace(project.accepted, planes=accept_planes(folder, project, fan, poses)))
     summary = measure_scan(folder, project, progress, watched.append)
     make_report(folder, project, progress)
     done = DoneProject(folder, project, seen, camera, poses, fan, summary, tuple(watched), tuple(told))

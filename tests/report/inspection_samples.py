@@ -111,7 +111,7 @@ def whole_content(**changes):
         "studies": studies(),
         "calibrations": (
             CalibrationMark("camera", "c3f1a09b22d4", "ab" * 32, MEASURED - timedelta(days=12, hours=3)),
-            CalibrationMark("fan", "9b22d4c3f1a0", "cd" * 32),
+            CalibrationMark("planes", "9b22d4c3f1a0", "cd" * 32),
         ),
         "rig_id": "0123456789ab",
         "template": template,

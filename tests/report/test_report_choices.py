@@ -138,7 +138,7 @@ def test_the_calibrations_of_a_repeat_are_parted_between_camera_and_fan(quick):
 
 def test_the_id_of_a_calibration_stays_in_one_line_however_wide_its_digits_are(content):
     def height(id_: str) -> float:
-        marked = replace(content, calibrations=(CalibrationMark("fan", id_, "0" * 64),))
+        marked = replace(content, calibrations=(CalibrationMark("planes", id_, "0" * 64),))
         return float(marks_table(ReportLook(Words(), content.template.accent), marked, TEXT_WIDTH).wrap(1000, 1000)[1])
 
     assert height("0" * 12) == height("f" * 12)

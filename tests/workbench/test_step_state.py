@@ -17,7 +17,7 @@ GAUGE = GaugeSpec(nominal_mm=50.0, tolerance_mm=0.2)
 @pytest.fixture
 def project() -> Project:
     made = new_project("Block")
-    return replace(made, accepted=replace(made.accepted, camera="a", fan="b"))
+    return replace(made, accepted=replace(made.accepted, camera="a", planes="b"))
 
 
 @pytest.fixture

@@ -121,7 +121,7 @@ class MeasuringAll(QObject):
         if task is not self._task or folder != self._model.folder:
             return
         now, accepted = self._model.project, file.project.accepted
-        after = replace(now, accepted=accepted, rejected=now.rejected - {accepted.camera, accepted.fan})
+        after = replace(now, accepted=accepted, rejected=now.rejected - {accepted.camera, accepted.planes})
         self._model.edit(tr("measure everything"), after, EDIT)
         if self._model.project.accepted != accepted:
             task.cancel()

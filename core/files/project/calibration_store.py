@@ -24,23 +24,22 @@ from core.errors import InputError
 from core.files.atomic import make_folder, make_inner_folder, write_bytes
 from core.files.complaints import checked_json
 from core.files.json_text import write_json
-from core.files.project.data import Accepted
+from core.files.project.data import EARLIER_CALIBRATIONS, Accepted
 from core.files.reading import read_bytes, read_json
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.results.camera_file import camera_id, read_camera, write_camera
-from core.files.results.fan_file import fan_id, read_fan, tells_facts, write_fan
+from core.files.results.planes_file import planes_id, read_planes, tells_facts, write_planes
 from core.files.tables import KeptMessage, OrNan, Time, kept
 from core.messages import Message
 from core.model import Camera
 
 FOLDER = "calibrations"
 
-Kind = Literal["camera", "fan"]
+Kind = Literal["camera", "planes"]
 
-_FILES: Mapping[Kind, str] = {"camera": "camera", "fan": "planes"}
 _KEPT = ".kept.json"
 READJUSTED_FROM = "readjusted_from"
-"""Setting of a fan that was re-adjusted: the id of the calibration it was before, whose poses are kept with it."""
+"""Setting of planes that were re-adjusted: the id of the calibration before, whose poses are kept with it."""
 
 IMPORTED = "imported"
 """Among the settings of a camera taken from another program: its file."""
@@ -59,13 +58,13 @@ class StoredCalibration:
     used, total
         Views or poses that count, and all there were.
     rms_px
-        RMS of the reprojection of a camera; NaN for a fan.
+        RMS of the reprojection of a camera; NaN of light planes.
     expected_error_mm
         RMS distance between the points that cameras solved from odd and from even views give; NaN if not known.
     rms_mm
-        RMS distance from each light plane of a fan; nothing for a camera.
+        RMS distance from each light plane; nothing for a camera.
     camera_id
-        The camera a fan rests on.
+        The camera that light planes rest on.
     settings
         What the calibration was told, as in run.json.
     inputs
@@ -76,7 +75,7 @@ class StoredCalibration:
         Whether the calibration's file says all that decides what it proves; that of an earlier version does not.
     """
 
-    kind: Annotated[Kind, Field(description='"camera" or "fan"')]
+    kind: Annotated[Kind, Field(description='"camera" or "planes"')]
     id: str
     kept_at: Time
     used: int
@@ -122,7 +121,7 @@ def keep_camera(
     return id_
 
 
-def keep_fan(
+def keep_planes(
     project_folder: Path,
     calibration: FanCalibration,
     camera: Camera,
@@ -130,7 +129,7 @@ def keep_fan(
     settings: Mapping[str, Any] | None = None,
     inputs: Mapping[str, str] | None = None,
 ) -> str:
-    """Put a fan's calibration into the history, with what its poses showed, and the camera it rests on.
+    """Put a calibration of the light planes into the history, with what its poses showed, and the camera it rests on.
 
     Returns its id; one that is there already becomes the newest.
 
@@ -139,11 +138,11 @@ def keep_fan(
     InputError
         If it cannot be written.
     """
-    id_ = fan_id(calibration.fan)
+    id_ = planes_id(calibration.fan)
     folder = make_inner_folder(project_folder, FOLDER)
-    path = _path(folder, "fan", id_)
+    path = _path(folder, "planes", id_)
     write_poses(path.with_suffix(".npz"), id_, poses)
-    write_fan(path, calibration, camera)
+    write_planes(path, calibration, camera)
     about = {
         **_counts([pose.used for pose in calibration.poses]),
         "rms_mm": calibration.rms_mm,
@@ -152,7 +151,7 @@ def keep_fan(
         "inputs": inputs or {},
         "notes": [kept(note) for pose in poses for note in pose.notes],
     }
-    _write_about(folder, "fan", id_, about)
+    _write_about(folder, "planes", id_, about)
     return id_
 
 
@@ -167,7 +166,9 @@ def history(project_folder: Path) -> tuple[StoredCalibration, ...]:
     folder = project_folder / FOLDER
     entries = [_read_about(path) for path in sorted(folder.glob(f"*{_KEPT}"))] if folder.is_dir() else []
     there = [entry for entry in entries if _path(folder, entry.kind, entry.id).exists()]
-    told = [replace(one, facts_known=one.kind != "fan" or tells_facts(_path(folder, "fan", one.id))) for one in there]
+    told = [
+        replace(one, facts_known=one.kind != "planes" or tells_facts(_path(folder, "planes", one.id))) for one in there
+    ]
     return tuple(sorted(told, key=lambda entry: entry.kept_at, reverse=True))
 
 
@@ -185,17 +186,17 @@ def read_stored_camera(project_folder: Path, id_: str) -> CameraCalibration:
     return calibration
 
 
-def read_stored_fan(project_folder: Path, id_: str, camera: Camera) -> FanCalibration:
-    """A fan's calibration of the history; InputError if it is not there, damaged, or rests on another camera."""
-    path = _found(project_folder, "fan", id_)
-    calibration = read_fan(path, camera)
-    _check_id(path, fan_id(calibration.fan), id_)
+def read_stored_planes(project_folder: Path, id_: str, camera: Camera) -> FanCalibration:
+    """Light planes of the history; InputError if they are not there, damaged, or rest on another camera."""
+    path = _found(project_folder, "planes", id_)
+    calibration = read_planes(path, camera)
+    _check_id(path, planes_id(calibration.fan), id_)
     return calibration
 
 
 def read_stored_poses(project_folder: Path, id_: str) -> tuple[PoseFeatures, ...]:
-    """What the poses of a fan's calibration showed; InputError if it is not there, or damaged."""
-    return read_poses(_found(project_folder, "fan", id_).with_suffix(".npz"), id_)
+    """What the poses of a calibration of light planes showed; InputError if it is not there, or damaged."""
+    return read_poses(_found(project_folder, "planes", id_).with_suffix(".npz"), id_)
 
 
 def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> None:
@@ -208,15 +209,15 @@ def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> Non
     InputError
         If none is accepted, one is not in the history, the two are not of each other, or nothing can be written.
     """
-    for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.fan)):
+    for kind, id_ in (("camera", accepted.camera), ("laser planes", accepted.planes)):
         if not id_:
             raise InputError(
                 Message("project.none_accepted", "no calibration of the {kind} is accepted yet", kind=kind),
                 todo=Message("advice.calibrate_camera_and_accept", "calibrate, and accept the result"),
             )
     camera = read_stored_camera(project_folder, accepted.camera)
-    read_stored_fan(project_folder, accepted.fan, camera.camera)
-    fan = _found(project_folder, "fan", accepted.fan)
+    read_stored_planes(project_folder, accepted.planes, camera.camera)
+    fan = _found(project_folder, "planes", accepted.planes)
     copies = {
         "camera.json": _found(project_folder, "camera", accepted.camera),
         "planes.json": fan,
@@ -228,7 +229,7 @@ def put_in_place(project_folder: Path, accepted: Accepted, results: Path) -> Non
 
 
 def _path(folder: Path, kind: Kind, id_: str) -> Path:
-    return folder / f"{_FILES[kind]}-{id_}.json"
+    return folder / f"{kind}-{id_}.json"
 
 
 def _found(project_folder: Path, kind: Kind, id_: str) -> Path:
@@ -262,7 +263,10 @@ def _write_about(folder: Path, kind: Kind, id_: str, about: Mapping[str, Any]) -
 
 
 def _read_about(path: Path) -> StoredCalibration:
-    return checked_json(StoredCalibration, read_json(path), path)
+    about = read_json(path)
+    if about.get("kind") in EARLIER_CALIBRATIONS:
+        about["kind"] = EARLIER_CALIBRATIONS[about["kind"]]
+    return checked_json(StoredCalibration, about, path)
 
 
 def _copy(source: Path, target: Path) -> None:

@@ -57,12 +57,16 @@ class Sources:
     __pydantic_config__ = _CHECKED
 
 
+EARLIER_CALIBRATIONS = {"fan": "planes"}
+"""What the steps of calibrating were called where calibrations are kept and accepted, up to schema 10."""
+
+
 @dataclass(frozen=True, slots=True)
 class Accepted:
     """Ids of the calibrations to measure with, in the project's history; nothing where none is accepted yet."""
 
     camera: Id = ""
-    fan: Id = ""
+    planes: Id = ""
     __pydantic_config__ = _CHECKED
 
 

@@ -18,6 +18,7 @@ from core.files.json_text import to_json
 from core.files.plan.tables import PlanTables
 from core.files.plan.translation import plan_of, plan_tables
 from core.files.project.data import (
+    EARLIER_CALIBRATIONS,
     Accepted,
     Done,
     Id,
@@ -97,7 +98,7 @@ class ProjectTables(Table):
 
 _EARLIER_STEPS = {"inspect": "gauge", "features": "inspection"}
 """Names of results up to schema 9."""
-SCHEMA = 10
+SCHEMA = 11
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -111,16 +112,17 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
         tables
     ),  # kinds of artefacts, which were all blocks; titles of studies as messages, English before
     8: lambda tables: tables,  # k3 of the camera, which was free or zero: it stays as the camera was calibrated
-    9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}))},
+    9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}), _EARLIER_STEPS)},
+    10: lambda tables: {**tables, "accepted": _renamed(tables.get("accepted", {}), EARLIER_CALIBRATIONS)},
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
 
-def _renamed(results: Any) -> Any:
-    """The results by the names of the steps as they are now; what is no table is complained of later."""
-    if not isinstance(results, dict):
-        return results
-    return {_EARLIER_STEPS.get(step, step): done for step, done in results.items()}
+def _renamed(table: Any, names: Mapping[str, str]) -> Any:
+    """A table by the names of the steps as they are now; what is no table is complained of later."""
+    if not isinstance(table, dict):
+        return table
+    return {names.get(step, step): value for step, value in table.items()}
 
 
 _TODO = Message("advice.open_backup", "open a version in backups, or make a new project")

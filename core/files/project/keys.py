@@ -76,7 +76,7 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
     sources, accepted = project.sources, project.accepted
     pictures = {
         "camera": sources.camera or not accepted.camera,  # where both are missing, the step says what is wanted
-        "planes": sources.planes or not accepted.fan,
+        "planes": sources.planes or not accepted.planes,
         "check": sources.check,
         "scan": True,
     }
@@ -190,7 +190,7 @@ def _planes(project: Project) -> dict[str, str]:
         label("constraint of the fan"): str(project.options.constrain_fan),
         **adjusted,
         **stated,
-        label("accepted laser planes"): _whether(project.accepted.fan),
+        label("accepted laser planes"): _whether(project.accepted.planes),
     }
 
 
@@ -198,7 +198,7 @@ def _check(project: Project) -> dict[str, str]:
     tables, stripe = rig_tables(project.rig), project.options.plane_stripe
     return {
         label("camera calibration"): project.accepted.camera,
-        label("laser planes"): project.accepted.fan,
+        label("laser planes"): project.accepted.planes,
         label("pictures of the interim check"): project.sources.check,
         label("plane target"): _digest(without_warmth(tables["plane_target"])),
         label("colour channel"): project.rig.channel_of("planes") or "",
@@ -221,7 +221,7 @@ def _scan(project: Project) -> dict[str, str]:
         stated[label("pictures of the interim check")] = project.sources.check
     return {
         label("camera calibration"): project.accepted.camera,
-        label("laser planes"): project.accepted.fan,
+        label("laser planes"): project.accepted.planes,
         label("recording"): project.sources.scan,
         label("colour channel"): project.rig.channel_of("scan") or "",
         label("left-out frames"): _left_out(project, "scan"),

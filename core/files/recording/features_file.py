@@ -46,7 +46,7 @@ _OF_VIEWS = {
 _VIEWS = {**_OF_VIEWS, "key": texts(), "where": texts(), "sizes": whole("pictures", 2), "hot": whole(optional=True)}
 _POSES = {
     **_OF_VIEWS,
-    "fan_id": texts(),
+    "planes_id": texts(),
     "notes": texts("pictures", optional=True),
     "moved_px": real("pictures", optional=True),
     **centreline_members("stripe", "pictures"),
@@ -98,10 +98,10 @@ _PLANES_TODO = Message(
 )
 
 
-def write_poses(path: Path, fan_id: str, poses: Sequence[PoseFeatures]) -> None:
+def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> None:
     """Write planes.npz with the id of the fan that was fitted to `poses`; InputError if it cannot be written."""
     arrays: dict[str, NDArray[Any]] = {
-        "fan_id": np.array(fan_id),
+        "planes_id": np.array(planes_id),
         "names": pack_texts([pose.name for pose in poses]),
         "reasons": pack_messages([pose.reason for pose in poses]),
         "notes": pack_texts(["\n".join(map(as_text, pose.notes)) for pose in poses]),
@@ -112,8 +112,8 @@ def write_poses(path: Path, fan_id: str, poses: Sequence[PoseFeatures]) -> None:
     write_arrays(path, arrays)
 
 
-def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
-    """Read planes.npz; nothing if it is not there or belongs to another fan than `fan_id`.
+def read_poses(path: Path, planes_id: str) -> tuple[PoseFeatures, ...]:
+    """Read planes.npz; nothing if it is not there or belongs to another fan than `planes_id`.
 
     Raises
     ------
@@ -123,7 +123,7 @@ def read_poses(path: Path, fan_id: str) -> tuple[PoseFeatures, ...]:
     if not path.exists():
         return ()
     arrays = read_arrays(path, _POSES, todo=_PLANES_TODO)
-    if str(arrays["fan_id"]) != fan_id:
+    if str(arrays["planes_id"]) != planes_id:
         return ()
     with unpacking(path, todo=_PLANES_TODO):
         return _unpacked(arrays)

@@ -110,21 +110,21 @@ def rig_check(check: InterimCheck | None, now: datetime) -> Check:
 
 def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]:
     """The fan's stripes in each pose of its calibration; none if they cannot be known any more."""
-    if request.kept_fan is None:
+    if request.kept_planes is None:
         return ()
     try:
-        return tuple(pose.centrelines for pose in read_stored_poses(*request.kept_fan))
+        return tuple(pose.centrelines for pose in read_stored_poses(*request.kept_planes))
     except InputError:
         return ()
 
 
 def _is_readjusted(request: LiveRequest) -> bool:
     """Whether the fan rests on stripes seen since its poses, or that is not known: then these are not compared."""
-    if request.kept_fan is None:
+    if request.kept_planes is None:
         return False
-    folder, id_ = request.kept_fan
+    folder, id_ = request.kept_planes
     try:
-        kept = read_stored(folder, "fan", id_)
+        kept = read_stored(folder, "planes", id_)
     except InputError:
         return True
     return kept is not None and READJUSTED_FROM in kept.settings

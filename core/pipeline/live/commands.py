@@ -44,7 +44,7 @@ class LiveRequest:
         When the older of the two calibrations was made, in s since 1970; None if that is not known.
     ending
         Of the files of a scan's frames: ".png" takes half the room, ".pgm" a tenth of the time.
-    kept_fan
+    kept_planes
         The project whose history holds the fan, and its id there: it says how sharp the fan's stripes were then.
     check
         The last interim check of these calibrations; None if there is none.
@@ -64,7 +64,7 @@ class LiveRequest:
     there: tuple[TargetView, ...] = ()
     calibrated_s: float | None = None
     ending: Ending = ".png"
-    kept_fan: tuple[Path, str] | None = None
+    kept_planes: tuple[Path, str] | None = None
     check: InterimCheck | None = None
 
 

@@ -9,12 +9,12 @@ from core.calibrate.camera.views import SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
-from core.files.project.calibration_store import keep_camera, keep_fan, read_stored_camera
+from core.files.project.calibration_store import keep_camera, keep_planes, read_stored_camera
 from core.files.project.data import Project
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_planes
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.messages import Message
 from core.model import Camera
 from core.pipeline.compile_ahead import compile_ahead
@@ -107,7 +107,7 @@ def solve_poses(
     return solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
 
 
-def accept_fan(
+def accept_planes(
     folder: Path,
     project: Project,
     calibration: FanCalibration,
@@ -126,7 +126,7 @@ def accept_fan(
         decided that they may, or nothing can be written.
     """
     check_agreement(calibration, accept_few_poses or project.options.accept_few_poses)
-    if fan_id(solve_poses(folder, project, poses, progress).fan) != fan_id(calibration.fan):
+    if planes_id(solve_poses(folder, project, poses, progress).fan) != planes_id(calibration.fan):
         raise InputError(
             Message(
                 "project.fan_not_of_poses",
@@ -141,7 +141,7 @@ def accept_fan(
     settings = planes_told(project.rig, project.options.for_planes)
     if calibration.minority is not None:
         settings["accept_few_poses"] = True
-    return keep_fan(
+    return keep_planes(
         folder, calibration, accepted_camera(folder, project), poses, settings, _hashes(recording_set, pictures)
     )
 

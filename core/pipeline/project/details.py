@@ -12,7 +12,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
 from core.errors import InputError
-from core.files.project.calibration_store import read_stored_fan, read_stored_poses
+from core.files.project.calibration_store import read_stored_planes, read_stored_poses
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.results import ProjectResults
@@ -58,7 +58,9 @@ def accepted_calibration(
 ) -> tuple[Camera | None, Fan | None]:
     """The accepted camera and fan, as far as there are any; InputError if one is damaged or they are not a pair."""
     camera = accepted_camera(folder, project) if project.accepted.camera else None
-    fan = read_stored_fan(folder, project.accepted.fan, camera).fan if camera and project.accepted.fan else None
+    fan = (
+        read_stored_planes(folder, project.accepted.planes, camera).fan if camera and project.accepted.planes else None
+    )
     return camera, fan
 
 
@@ -113,12 +115,12 @@ def recall_poses(
     InputError
         If no fan is accepted, it is damaged, or the settings of now do not determine a fan.
     """
-    if not project.accepted.fan:
+    if not project.accepted.planes:
         raise InputError(
             Message("project.no_fan_accepted", "no calibration of the laser planes is accepted yet"),
             todo=Message("advice.calibrate_first", "calibrate them first"),
         )
-    poses = read_stored_poses(folder, project.accepted.fan)
+    poses = read_stored_poses(folder, project.accepted.planes)
     return poses, solve_poses(folder, project, poses, progress)
 
 

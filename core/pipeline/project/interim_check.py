@@ -9,11 +9,11 @@ from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
 from core.files.project.calibration_store import (
     READJUSTED_FROM,
-    keep_fan,
+    keep_planes,
     put_in_place,
     read_stored,
     read_stored_camera,
-    read_stored_fan,
+    read_stored_planes,
     read_stored_poses,
 )
 from core.files.project.data import Project
@@ -144,18 +144,18 @@ def accept_readjustment(
             todo=Message("advice.check_and_readjust", "check again"),
         )
     camera = read_stored_camera(folder, project.accepted.camera)
-    before = read_stored(folder, "fan", project.accepted.fan)
-    return keep_fan(
+    before = read_stored(folder, "planes", project.accepted.planes)
+    return keep_planes(
         folder,
         proposed.fan,
         camera.camera,
-        read_stored_poses(folder, project.accepted.fan),
-        {**({} if before is None else before.settings), READJUSTED_FROM: project.accepted.fan},
+        read_stored_poses(folder, project.accepted.planes),
+        {**({} if before is None else before.settings), READJUSTED_FROM: project.accepted.planes},
         {**({} if before is None else before.inputs), **proposed.record.hashes},
     )
 
 
 def _accepted(folder: Path, project: Project) -> Calibration:
     camera = read_stored_camera(folder, project.accepted.camera)
-    fan = read_stored_fan(folder, project.accepted.fan, camera.camera)
+    fan = read_stored_planes(folder, project.accepted.planes, camera.camera)
     return Calibration(fan.camera_used(camera), fan)

@@ -104,7 +104,7 @@ def _earlier(recording_set: RecordingSet, results: Path, project: Project) -> Pa
     except InputError:
         return None
     now = json.loads(to_json(dict(project.options.for_scan.told)))
-    same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.fan}"
+    same = settings == now and calibration == f"{project.accepted.camera}-{project.accepted.planes}"
     return None if same else before.path("scan")
 
 
@@ -114,7 +114,7 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
     solved = {"camera": solved_for(calibration.camera)}
     steps = (
         ("camera", read_stored(folder, "camera", project.accepted.camera), calibration.camera.notes),
-        ("planes", read_stored(folder, "fan", project.accepted.fan), calibration.fan.notes),
+        ("planes", read_stored(folder, "planes", project.accepted.planes), calibration.fan.notes),
     )
     for step, about, notes in steps:
         made_at = {} if about is None else {step: about.kept_at}

@@ -11,8 +11,8 @@ from core.errors import InputError
 from core.files.project.folder import results_in
 from core.files.project.results import ProjectResults
 from core.files.results.camera_file import read_camera
-from core.files.results.fan_file import read_fan
 from core.files.results.gauge_file import read_gauge
+from core.files.results.planes_file import read_planes
 from core.files.results.ply import CloudFile, read_cloud, read_mesh
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
@@ -86,7 +86,7 @@ def _calibration(path: Path, camera: CameraCalibration | None) -> Calibration:
             where=path,
             todo=Message("advice.measure_scan_again", "measure the scan again"),
         )
-    fan = read_fan(path, camera.camera)
+    fan = read_planes(path, camera.camera)
     return Calibration(fan.camera_used(camera), fan)
 
 

@@ -18,7 +18,7 @@ from core.files.step_graph import GRAPH, Step
 from core.messages import Message
 from core.pipeline.project.calibration import (
     accept_camera,
-    accept_fan,
+    accept_planes,
     find_poses,
     find_views,
     solve_poses,
@@ -116,13 +116,13 @@ class _Work:
         bad = bad_fit(camera)
         if bad is not None:
             return Stop("camera", bad)
-        return self._accept("camera", camera=accept_camera(self._folder, project, camera))
+        return self._accept("camera", accept_camera(self._folder, project, camera))
 
     def planes(self) -> Stop | None:
         project = self._project
         poses = find_poses(self._folder, project, self._progress)
         fan = solve_poses(self._folder, project, poses, self._progress)
-        return self._accept("planes", fan=accept_fan(self._folder, project, fan, poses))
+        return self._accept("planes", accept_planes(self._folder, project, fan, poses))
 
     def check(self) -> Stop | None:
         check = check_rig(self._folder, self._project, self._progress)
@@ -160,15 +160,15 @@ class _Work:
         self._done("report")
         return None
 
-    def _accept(self, step: str, **accepted: str) -> Stop | None:
-        if self._project.rejected & set(accepted.values()):
+    def _accept(self, step: str, id_: str) -> Stop | None:
+        if id_ in self._project.rejected:
             why = Message(
                 "whole.calibration_was_rejected",
                 "These pictures give a calibration that was rejected before: accept it after all, leave out pictures, "
                 "or take others.",
             )
             return Stop(step, why)
-        project = replace(self._project, accepted=replace(self._project.accepted, **accepted))
+        project = replace(self._project, accepted=replace(self._project.accepted, **{step: id_}))
         self.file = replace(self.file, project=project)
         self._done(step)
         return None

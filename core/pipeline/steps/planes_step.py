@@ -22,7 +22,7 @@ from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
 from core.files.recording.step_settings import PlanesSettings, excluded_told, stripe_told
 from core.files.results.camera_file import read_camera
-from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.files.results.planes_file import planes_id, read_planes, write_planes
 from core.image.mosaic import ALL_SITES
 from core.image.repeated import REPEATED, Repeats, pixels_of
 from core.image.stripes.exchanged import EXCHANGED, PAIRS_TRIED, are_exchanged, light_off_over_on
@@ -76,9 +76,9 @@ def planes_step(
         log.notes.extend(note for pose in poses for note in pose.notes)
         log.notes.extend((*calibration.notes, *work.recording_set.not_read("planes")))
         log.notes.extend(() if ridges is None else (ridges,))
-        write_fan(log.path("planes"), calibration, camera)
-        write_poses(log.path("poses"), fan_id(calibration.fan), poses)
-    return read_fan(work.path("planes"), camera)
+        write_planes(log.path("planes"), calibration, camera)
+        write_poses(log.path("poses"), planes_id(calibration.fan), poses)
+    return read_planes(work.path("planes"), camera)
 
 
 def check_agreement(calibration: FanCalibration, decided: bool) -> None:

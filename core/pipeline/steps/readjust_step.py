@@ -20,7 +20,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import CHECK, RecordingSet
 from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import read_camera
-from core.files.results.fan_file import write_fan
+from core.files.results.planes_file import write_planes
 from core.files.step_graph import READJUST
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
@@ -121,7 +121,7 @@ def readjust_step(
         proposed = propose_readjustment(log.pictures, work.calibration(), stripe, progress, poses)
         kept = work.path("calibrated") if work.path("calibrated").exists() else work.path("planes")
         write_bytes(log.path("calibrated"), read_bytes(kept))
-        write_fan(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)
+        write_planes(log.path("planes"), proposed.fan, read_camera(work.path("camera")).camera)
         log.notes.append(proposed.record.note)
     return proposed
 

@@ -25,9 +25,9 @@ from core.files.recording.set_listing import taken_at
 from core.files.results.camera_file import camera_id
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.comparison_file import read_comparison
-from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_gauge
 from core.files.results.inspection_file import MEMBERS, NAME, InspectionFile, read_inspection
+from core.files.results.planes_file import planes_id
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
@@ -245,7 +245,7 @@ def _marks(out: Path, record: RunRecord, calibration: Calibration) -> tuple[Cali
     camera, fan = (file_hash(out / FILES[name]) for name in ("camera", "planes"))
     return (
         CalibrationMark("camera", camera_id(calibration.camera.camera), camera, record.made_at.get("camera")),
-        CalibrationMark("fan", fan_id(calibration.fan.fan), fan, record.made_at.get("planes")),
+        CalibrationMark("planes", planes_id(calibration.fan.fan), fan, record.made_at.get("planes")),
     )
 
 

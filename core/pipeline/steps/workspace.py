@@ -22,7 +22,7 @@ from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RIG, RecordingSet, require_outside
 from core.files.results.camera_file import camera_id, read_camera
-from core.files.results.fan_file import fan_id, read_fan
+from core.files.results.planes_file import planes_id, read_planes
 from core.files.results.run_file import RunRecord, read_run, write_run
 from core.files.step_graph import GRAPH, READJUST, resting_on
 from core.held_files import remove, remove_tree, rename
@@ -76,7 +76,7 @@ class Calibration:
     @property
     def id(self) -> str:
         """Written into everything measured with this calibration."""
-        return f"{camera_id(self.camera.camera)}-{fan_id(self.fan.fan)}"
+        return f"{camera_id(self.camera.camera)}-{planes_id(self.fan.fan)}"
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -256,7 +256,7 @@ def _same(one: Path, other: Path) -> bool:
 def read_calibration(out: Path) -> Calibration:
     """The calibration among the results in `out`; InputError as :meth:`Workspace.calibration`."""
     camera = read_camera(out / FILES["camera"])
-    fan = read_fan(out / FILES["planes"], camera.camera)
+    fan = read_planes(out / FILES["planes"], camera.camera)
     return Calibration(fan.camera_used(camera), fan)
 
 

@@ -14,17 +14,18 @@ from core.errors import InputError
 from core.files.project.calibration_store import (
     history,
     keep_camera,
-    keep_fan,
+    keep_planes,
     put_in_place,
+    read_stored,
     read_stored_camera,
-    read_stored_fan,
+    read_stored_planes,
     read_stored_poses,
 )
 from core.files.project.data import Accepted
 from core.files.recording.features_file import read_poses
 from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import camera_id, read_camera, write_camera
-from core.files.results.fan_file import fan_id, read_fan, write_fan
+from core.files.results.planes_file import planes_id, read_planes, write_planes
 from core.image.targets.target_view import TargetView
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
@@ -59,13 +60,13 @@ def test_a_kept_camera_comes_back_by_its_id(tmp_path, camera):
 
 
 def test_a_kept_fan_comes_back_by_its_id_with_its_poses(tmp_path, camera, fan):
-    kept = keep_fan(tmp_path, fan, camera.camera, POSES)
-    assert kept == fan_id(fan.fan)
-    assert fan_id(read_stored_fan(tmp_path, kept, camera.camera).fan) == kept
+    kept = keep_planes(tmp_path, fan, camera.camera, POSES)
+    assert kept == planes_id(fan.fan)
+    assert planes_id(read_stored_planes(tmp_path, kept, camera.camera).fan) == kept
     back = read_stored_poses(tmp_path, kept)
     assert [(pose.name, pose.reason) for pose in back] == [("p1", None), ("p2", plain("there is no target"))]
     assert np.array_equal(back[0].view.points, np.eye(3))
-    write_fan(tmp_path / "planes.json", fan, camera.camera)
+    write_planes(tmp_path / "planes.json", fan, camera.camera)
     assert (tmp_path / "calibrations" / f"planes-{kept}.json").read_bytes() == (tmp_path / "planes.json").read_bytes()
 
 
@@ -73,7 +74,7 @@ def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, othe
     assert history(tmp_path) == ()
     begun = datetime.now(UTC)
     one = keep_camera(tmp_path, camera, CameraSettings().told)
-    lines = keep_fan(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
+    lines = keep_planes(tmp_path, fan, camera.camera, POSES, {"constrained": "never"})
     other = keep_camera(
         tmp_path,
         replace(other_camera, cross_validation_mm=0.02),
@@ -81,7 +82,7 @@ def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, othe
     )
     newest, middle, oldest = history(tmp_path)
     assert [(entry.kind, entry.id) for entry in (newest, middle, oldest)] == [
-        ("camera", other), ("fan", lines), ("camera", one),
+        ("camera", other), ("planes", lines), ("camera", one),
     ]  # fmt: skip
     assert begun <= oldest.kept_at <= middle.kept_at <= newest.kept_at <= datetime.now(UTC)
     assert (oldest.used, oldest.total, oldest.rms_px, oldest.rms_mm, oldest.camera_id) == (1, 2, 0.11, (), "")
@@ -94,6 +95,16 @@ def test_the_history_tells_what_was_kept_the_newest_first(tmp_path, camera, othe
     assert middle.settings == {"constrained": "never"}
 
 
+def test_light_planes_kept_by_an_earlier_version_under_the_name_of_the_laser_are_in_the_history(tmp_path, camera, fan):
+    id_ = keep_planes(tmp_path, fan, camera.camera, POSES)
+    about = tmp_path / "calibrations" / f"planes-{id_}.kept.json"
+    about.write_text(about.read_text().replace('"kind": "planes"', '"kind": "fan"'))
+    assert '"fan"' in about.read_text()
+    assert [(entry.kind, entry.id) for entry in history(tmp_path)] == [("planes", id_)]
+    kept = read_stored(tmp_path, "planes", id_)
+    assert kept is not None and kept.kind == "planes"
+
+
 def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
     one = keep_camera(tmp_path, camera, CameraSettings().told)
     other = keep_camera(tmp_path, other_camera, CameraSettings().told)
@@ -103,14 +114,14 @@ def test_what_is_kept_again_becomes_the_newest(tmp_path, camera, other_camera):
 
 
 def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(tmp_path, camera, fan):
-    kept_id = keep_fan(tmp_path, fan, camera.camera, POSES)
+    kept_id = keep_planes(tmp_path, fan, camera.camera, POSES)
     (entry,) = history(tmp_path)
     assert not entry.facts_known, "as of an earlier version"
     known = replace(fan, converged=True, points_off_alike=False, flatness_assumed=False)
-    assert keep_fan(tmp_path, known, camera.camera, POSES) == kept_id
+    assert keep_planes(tmp_path, known, camera.camera, POSES) == kept_id
     (entry,) = history(tmp_path)
     assert entry.facts_known
-    assert read_stored_fan(tmp_path, kept_id, camera.camera).converged is True
+    assert read_stored_planes(tmp_path, kept_id, camera.camera).converged is True
     (tmp_path / "calibrations" / f"planes-{kept_id}.json").write_text("{")
     assert not history(tmp_path)[0].facts_known, "a damaged one tells nothing, and does not hide the others"
 
@@ -122,7 +133,7 @@ def test_a_calibration_that_was_taken_away_is_not_in_the_history(tmp_path, camer
     with pytest.raises(InputError, match=f"the calibration {kept} is not in the project; calibrate again"):
         read_stored_camera(tmp_path, kept)
     with pytest.raises(InputError, match="the calibration nothing is not in the project"):
-        read_stored_fan(tmp_path, "nothing", camera.camera)
+        read_stored_planes(tmp_path, "nothing", camera.camera)
     with pytest.raises(InputError, match="the calibration nothing is not in the project"):
         read_stored_poses(tmp_path, "nothing")
 
@@ -154,7 +165,7 @@ def test_a_damaged_entry_is_named(tmp_path, camera):
 
 
 def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
-    kept, lines = keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES)
+    kept, lines = keep_camera(tmp_path, camera, CameraSettings().told), keep_planes(tmp_path, fan, camera.camera, POSES)
     for name, key in ((f"camera-{kept}.json", "matrix"), (f"planes-{lines}.json", "planes")):
         path = tmp_path / "calibrations" / name
         tables = json.loads(path.read_text())
@@ -166,32 +177,34 @@ def test_a_calibration_changed_by_hand_is_refused(tmp_path, camera, fan):
     with pytest.raises(InputError, match="the file holds the calibration"):
         read_stored_camera(tmp_path, kept)
     with pytest.raises(InputError, match="the file holds the calibration"):
-        read_stored_fan(tmp_path, lines, camera.camera)
+        read_stored_planes(tmp_path, lines, camera.camera)
 
 
 def test_the_accepted_ones_are_put_in_place_byte_by_byte(tmp_path, camera, other_camera, fan, other_fan):
     results = tmp_path / "results"
-    one = Accepted(keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES))
+    one = Accepted(
+        keep_camera(tmp_path, camera, CameraSettings().told), keep_planes(tmp_path, fan, camera.camera, POSES)
+    )
     other = Accepted(
         keep_camera(tmp_path, other_camera, CameraSettings().told),
-        keep_fan(tmp_path, other_fan, other_camera.camera, POSES[:1]),
+        keep_planes(tmp_path, other_fan, other_camera.camera, POSES[:1]),
     )
     for accepted, calibration, lines in ((one, camera, fan), (other, other_camera, other_fan), (one, camera, fan)):
         put_in_place(tmp_path, accepted, results)
         assert names_in(results) == ["camera.json", "planes.json", "planes.npz"]
         found = read_camera(results / "camera.json").camera
         assert camera_id(found) == camera_id(calibration.camera)
-        assert read_fan(results / "planes.json", found).rms_mm == lines.rms_mm
-        assert len(read_poses(results / "planes.npz", accepted.fan)) == (2 if accepted is one else 1)
+        assert read_planes(results / "planes.json", found).rms_mm == lines.rms_mm
+        assert len(read_poses(results / "planes.npz", accepted.planes)) == (2 if accepted is one else 1)
     stored = tmp_path / "calibrations"
     assert (results / "camera.json").read_bytes() == (stored / f"camera-{one.camera}.json").read_bytes()
-    assert (results / "planes.json").read_bytes() == (stored / f"planes-{one.fan}.json").read_bytes()
-    assert (results / "planes.npz").read_bytes() == (stored / f"planes-{one.fan}.npz").read_bytes()
+    assert (results / "planes.json").read_bytes() == (stored / f"planes-{one.planes}.json").read_bytes()
+    assert (results / "planes.npz").read_bytes() == (stored / f"planes-{one.planes}.npz").read_bytes()
 
 
 def test_what_is_in_place_already_is_left_alone(tmp_path, camera, fan):
     accepted = Accepted(
-        keep_camera(tmp_path, camera, CameraSettings().told), keep_fan(tmp_path, fan, camera.camera, POSES)
+        keep_camera(tmp_path, camera, CameraSettings().told), keep_planes(tmp_path, fan, camera.camera, POSES)
     )
     put_in_place(tmp_path, accepted, tmp_path / "results")
     before = {path: path.stat().st_ino for path in (tmp_path / "results").iterdir()}
@@ -208,13 +221,13 @@ def test_nothing_is_put_in_place_unless_both_are_accepted_and_belong_together(
 ):
     one = keep_camera(tmp_path, camera, CameraSettings().told)
     other = keep_camera(tmp_path, other_camera, CameraSettings().told)
-    lines = keep_fan(tmp_path, fan, camera.camera, POSES)
+    lines = keep_planes(tmp_path, fan, camera.camera, POSES)
     results = tmp_path / "results"
     for accepted, said in (
         (Accepted("", lines), "no calibration of the camera is accepted yet"),
         (Accepted(one, ""), "no calibration of the laser planes is accepted yet"),
         (Accepted(other, lines), "the camera was calibrated again"),
-        (Accepted(one, fan_id(other_fan.fan)), "is not in the project"),
+        (Accepted(one, planes_id(other_fan.fan)), "is not in the project"),
     ):
         with pytest.raises(InputError, match=said):
             put_in_place(tmp_path, accepted, results)

@@ -232,7 +232,7 @@ def spoilt(tmp_path, change):
     (("options", "camera", "skew"), 1, "options.camera.skew is 1, not true or false"),
     (("options", "stripe", "contrast"), -1, "options.stripe: contrast is −1.0, not a positive number"),
     (("options", "excluded"), ["view.png"], "options.excluded[0]"),
-    (("accepted", "fan"), "../../x", 'accepted.fan is "../../x", not the id of a calibration'),
+    (("accepted", "planes"), "../../x", 'accepted.planes is "../../x", not the id of a calibration'),
     (("repeats", 0, "U_mm"), -1, "repeats[0].U_mm is -1, not a length in mm"),
     (("repeats", 1, "measured_at"), "2026-01-31T12:00:00", "repeats[1].measured_at is"),
     (("report", "paper"), "A3", 'report.paper is "A3", not "A4" or "Letter"'),
@@ -331,6 +331,16 @@ def test_results_of_a_project_from_before_they_had_the_names_of_the_steps_are_kn
     tables["results"] = {"scan": results["scan"], "inspect": results["gauge"], "features": results["inspection"]}
     (tmp_path / "project.json").write_text(json.dumps(tables))
     assert read_project(tmp_path).results == done
+
+
+def test_light_planes_accepted_in_a_project_from_before_they_had_the_name_of_their_step_stay_accepted(tmp_path):
+    accepted = Accepted("0123456789ab", "ba9876543210")
+    create_project(tmp_path, ProjectFile(replace(new_project("x"), accepted=accepted), {}))
+    tables = json.loads((tmp_path / "project.json").read_text())
+    assert tables["accepted"] == {"camera": "0123456789ab", "planes": "ba9876543210"}
+    tables["schema_version"], tables["accepted"] = 10, {"camera": "0123456789ab", "fan": "ba9876543210"}
+    (tmp_path / "project.json").write_text(json.dumps(tables))
+    assert read_project(tmp_path).project.accepted == accepted
 
 
 @pytest.mark.parametrize(("data", "said"), [

@@ -14,8 +14,8 @@ from core.errors import InputError
 from core.files.json_text import to_json
 from core.files.recording.features_file import read_poses, write_poses
 from core.files.results.camera_file import camera_id, read_camera, write_camera
-from core.files.results.fan_file import read_fan, write_fan
 from core.files.results.gauge_file import read_gauge, read_thickness, write_gauge
+from core.files.results.planes_file import read_planes, write_planes
 from core.files.results.ply import read_cloud, read_mesh, write_cloud, write_mesh
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.results.run_file import RunRecord, read_run, write_run
@@ -129,12 +129,12 @@ def test_the_shape_of_the_board_is_kept(tmp_path, camera):
 
 def test_fan_round_trip_is_exact_and_has_the_keys_of_the_design(tmp_path, camera, fan):
     path = tmp_path / "planes.json"
-    write_fan(path, fan, camera.camera)
+    write_planes(path, fan, camera.camera)
     tables = json.loads(path.read_text())
     assert set(tables["planes"][0]) >= {"normal", "d_mm", "pi", "rms_mm"}
     assert set(tables["angles_deg"]) == {"constrained", "free"}
     assert tables["camera_id"] == camera_id(camera.camera)
-    back = read_fan(path, camera.camera)
+    back = read_planes(path, camera.camera)
     assert np.array_equal(back.fan.pis, fan.fan.pis)
     assert np.array_equal(back.fan.covariance, fan.fan.covariance)
     assert np.allclose(back.angles, fan.angles, rtol=1e-14)
@@ -156,8 +156,8 @@ def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camer
         camera=corrected,
         camera_covariance=0.5 * camera.covariance,
     )
-    write_fan(path, known, camera.camera)
-    back = read_fan(path, camera.camera)
+    write_planes(path, known, camera.camera)
+    back = read_planes(path, camera.camera)
     assert np.array_equal(back.by_camera, known.by_camera)
     assert (back.board.values == known.board.values).all()
     assert (back.board.sd == known.board.sd).all()
@@ -170,19 +170,19 @@ def test_what_the_fan_knows_of_its_camera_and_its_target_is_kept(tmp_path, camer
 
 def test_a_normal_that_contradicts_pi_is_refused(tmp_path, camera, fan):
     path = tmp_path / "planes.json"
-    write_fan(path, fan, camera.camera)
+    write_planes(path, fan, camera.camera)
     tables = json.loads(path.read_text())
     tables["planes"][1]["normal"] = [0.0, 0.0, 0.0]
     path.write_text(json.dumps(tables))
     with pytest.raises(InputError, match=r"planes\[1\].*normal"):
-        read_fan(path, camera.camera)
+        read_planes(path, camera.camera)
 
 
 def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
-    write_fan(tmp_path / "planes.json", fan, camera.camera)
+    write_planes(tmp_path / "planes.json", fan, camera.camera)
     other = Camera((1920, 1374), camera.camera.matrix * [[1.001, 1, 1], [1, 1, 1], [1, 1, 1]])
     with pytest.raises(InputError, match="the camera was calibrated again; calibrate the fan again"):
-        read_fan(tmp_path / "planes.json", other)
+        read_planes(tmp_path / "planes.json", other)
 
 
 @pytest.mark.parametrize(
@@ -200,10 +200,10 @@ def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
 )
 def test_a_spoilt_planes_file_is_refused_by_field(tmp_path, camera, fan, change, said):
     path = tmp_path / "planes.json"
-    write_fan(path, fan, camera.camera)
+    write_planes(path, fan, camera.camera)
     edited(path, change)
     with pytest.raises(InputError) as error:
-        read_fan(path, camera.camera)
+        read_planes(path, camera.camera)
     assert str(error.value).startswith(f"{path}: ")
     assert said in str(error.value)
 

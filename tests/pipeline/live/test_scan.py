@@ -488,7 +488,7 @@ def focus_of_fan_calibrated_with(stripes, monkeypatch, folder, stage):
     (history / "planes-f1.json").touch()
     write_poses(history / "planes-f1.npz", "f1", [PoseFeatures(f"pose{k}", None, stripes) for k in range(4)])
     window = Window()
-    scan(monkeypatch, folder, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(folder, "f1"))
+    scan(monkeypatch, folder, stage, swept(stage, 1, pace_s=0.05), window, kept_planes=(folder, "f1"))
     return next(check for check in window.all(LiveChecks)[-1].checks if check.name == "focus")
 
 
@@ -507,7 +507,7 @@ def test_a_fan_that_is_or_may_be_readjusted_since_is_not_held_to_the_sections_of
 ):
     seen = read_reference(stage.reference).fan
     stripes = tuple(replace(piece, skewness=piece.skewness + 0.6 * np.sign(piece.normal[:, 0])) for piece in seen)
-    kept = {"kind": "fan", "id": "f1", "kept_at": "2026-11-27T08:00:00+00:00", "used": 4, "total": 4}
+    kept = {"kind": "planes", "id": "f1", "kept_at": "2026-11-27T08:00:00+00:00", "used": 4, "total": 4}
     about = {**kept, "settings": {READJUSTED_FROM: "f0"}}
     (tmp_path / "calibrations").mkdir()
     (tmp_path / "calibrations" / "planes-f1.kept.json").write_text("{" if damaged else json.dumps(about))
@@ -526,7 +526,7 @@ def test_the_focus_is_held_against_the_stripes_the_fan_was_calibrated_with(
 
 def test_a_calibration_whose_poses_are_gone_leaves_the_focus_to_the_picture_alone(monkeypatch, tmp_path, stage):
     window = Window()
-    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_fan=(tmp_path, "f1"))
+    ended = scan(monkeypatch, tmp_path, stage, swept(stage, 1, pace_s=0.05), window, kept_planes=(tmp_path, "f1"))
     assert ended.error is None
     assert checks(window.all(LiveChecks)[-1])["focus"] == "ok"
 

@@ -10,7 +10,7 @@ from core.errors import InputError
 from core.files.project.data import Accepted
 from core.image.stripes.stripe import StripeSettings
 from core.messages import plain
-from core.pipeline.project.calibration import accept_fan, find_poses, found_poses, solve_poses, solve_views
+from core.pipeline.project.calibration import accept_planes, find_poses, found_poses, solve_poses, solve_views
 from core.pipeline.project.details import show_pose
 from core.pipeline.project.measuring import measure_scan
 from tests.simulated import contents, copy_of
@@ -30,7 +30,7 @@ def test_a_fan_of_other_settings_than_those_in_force_is_not_accepted(done, tmp_p
     project = done.with_options(excluded=frozenset({"planes/pose02"}))
     before = contents(folder)
     with pytest.raises(InputError, match="solve the laser planes again"):
-        accept_fan(folder, project, done.fan, done.poses)
+        accept_planes(folder, project, done.fan, done.poses)
     assert contents(folder) == before
 
 
@@ -85,7 +85,9 @@ def test_a_fan_need_not_be_a_pencil(done, tmp_path):
     assert str(free.verdict).endswith("as asked")
     assert free.constraint_suits == done.fan.constraint_suits
     folder = copy_of(done.folder, tmp_path / "project")
-    project = replace(project, accepted=replace(project.accepted, fan=accept_fan(folder, project, free, done.poses)))
+    project = replace(
+        project, accepted=replace(project.accepted, planes=accept_planes(folder, project, free, done.poses))
+    )
     summary = measure_scan(folder, project)
     assert summary.gauge.thickness_mm == pytest.approx(50.0, abs=3 * summary.gauge.U_mm)
 
@@ -96,5 +98,5 @@ def test_a_fan_of_a_minority_of_poses_is_kept_only_by_a_decision(done, tmp_path)
     poses = (replace(one, used=i < 2, reason=reason if i > 1 else None) for i, one in enumerate(done.fan.poses))
     few = replace(done.fan, poses=tuple(poses))
     with pytest.raises(InputError, match="only 2 of"):
-        accept_fan(folder, done.project, few, done.poses)
-    assert accept_fan(folder, done.project, few, done.poses, accept_few_poses=True)
+        accept_planes(folder, done.project, few, done.poses)
+    assert accept_planes(folder, done.project, few, done.poses, accept_few_poses=True)

@@ -14,7 +14,7 @@ from core.files.project.data import Accepted, ReportChoices
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.run_file import read_run
-from core.pipeline.project.calibration import accept_fan, find_poses, solve_poses
+from core.pipeline.project.calibration import accept_planes, find_poses, solve_poses
 from core.pipeline.project.export import export, keep_imported_camera, preview_report
 from core.pipeline.project.measuring import measure_scan
 from core.pipeline.project.report import make_report, report_bytes
@@ -46,8 +46,8 @@ def test_a_project_measures_with_a_camera_of_another_program(done, folder, tmp_p
     id_ = keep_imported_camera(folder, bare, file)
     bare = replace(bare, accepted=Accepted(camera=id_))
     poses = find_poses(folder, bare)
-    fan = accept_fan(folder, bare, solve_poses(folder, bare, poses), poses)
-    bare = replace(bare, accepted=Accepted(camera=id_, fan=fan))
+    fan = accept_planes(folder, bare, solve_poses(folder, bare, poses), poses)
+    bare = replace(bare, accepted=Accepted(camera=id_, planes=fan))
     measured = measure_scan(folder, bare)
     assert measured.gauge.thickness_mm == pytest.approx(done.summary.gauge.thickness_mm, abs=done.summary.gauge.U_mm)
     assert read_run(results_folder(folder) / "run.json").settings["camera"]["imported"] == file.resolve().as_posix()

@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.project.calibration_store import history, keep_camera, keep_fan
+from core.files.project.calibration_store import history, keep_camera, keep_planes
 from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
 from core.files.recording.step_settings import CameraSettings
@@ -45,7 +45,7 @@ def opened(made, folder):
     """A project on that set with its calibrations accepted."""
     known = read_calibration(made / "out")
     camera = keep_camera(folder, known.camera, CameraSettings().told)
-    fan = keep_fan(folder, known.fan, known.camera.camera, ())
+    fan = keep_planes(folder, known.fan, known.camera.camera, ())
     project = project_from_set(made / "set", "Block")
     return replace(project, accepted=Accepted(camera, fan))
 
@@ -55,7 +55,7 @@ def test_a_project_made_of_a_set_checks_by_its_pictures_of_the_day(unchanged, tm
     assert show_check(tmp_path) is None
     check = check_rig(tmp_path, project)
     assert check.passed and check.used == 2
-    assert check.calibration_id == f"{project.accepted.camera}-{project.accepted.fan}"
+    assert check.calibration_id == f"{project.accepted.camera}-{project.accepted.planes}"
     assert show_check(tmp_path) == check == read_check(tmp_path / "check" / "check.json")
     assert [pair.name for pair in project_set(tmp_path, project).check] == ["check00", "check01"], (
         "the scan has them, too"
@@ -111,10 +111,10 @@ def test_artefacts_beside_the_rig_come_into_its_project(unchanged, tmp_path):
 def test_a_readjustment_is_kept_beside_the_calibration_it_began_with(turned, tmp_path):
     project = opened(turned, tmp_path)
     proposed = propose_project_readjustment(tmp_path, project)
-    assert [entry.kind for entry in history(tmp_path)].count("fan") == 1, "nothing is kept before it is accepted"
+    assert [entry.kind for entry in history(tmp_path)].count("planes") == 1, "nothing is kept before it is accepted"
     id_ = accept_readjustment(tmp_path, project, proposed)
-    adjusted = replace(project, accepted=replace(project.accepted, fan=id_))
-    assert {entry.id for entry in history(tmp_path)} == {project.accepted.camera, project.accepted.fan, id_}
+    adjusted = replace(project, accepted=replace(project.accepted, planes=id_))
+    assert {entry.id for entry in history(tmp_path)} == {project.accepted.camera, project.accepted.planes, id_}
     with pytest.raises(InputError, match="these very pictures"):
         check_rig(tmp_path, adjusted)
     with pytest.raises(InputError, match="another calibration"):

@@ -8,6 +8,7 @@ from core.errors import Cancelled
 from core.files.project.data import Accepted, ProjectFile
 from core.files.project.folder import results_folder
 from core.files.project.keys import STEPS, finished
+from core.files.step_graph import CALIBRATED
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
@@ -82,12 +83,12 @@ def test_another_nominal_value_measures_the_thickness_and_makes_the_report_only(
     assert seen == ["gauge", "report"]
 
 
-@pytest.mark.parametrize(("step", "which"), [("camera", "camera"), ("planes", "fan")])
-def test_a_calibration_that_was_rejected_is_left_to_somebody(step, which, done, folder, file, monkeypatch):
+@pytest.mark.parametrize("step", CALIBRATED)
+def test_a_calibration_that_was_rejected_is_left_to_somebody(step, done, folder, file, monkeypatch):
     monkeypatch.setattr(whole, "find_views", lambda *_: done.seen)
     monkeypatch.setattr(whole, "find_poses", lambda *_: done.poses)
-    accepted = replace(done.project.accepted, **{which: ""})
-    rejected = frozenset({getattr(done.project.accepted, which)})
+    accepted = replace(done.project.accepted, **{step: ""})
+    rejected = frozenset({getattr(done.project.accepted, step)})
     job, seen = steps_done(folder, changed(file, accepted=accepted, rejected=rejected))
     assert job.stop.page == step
     assert job.stop.why.code == "whole.calibration_was_rejected"

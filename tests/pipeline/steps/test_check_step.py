@@ -20,9 +20,9 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
 from core.files.recording.set_listing import taken_at
-from core.files.results.fan_file import fan_id
 from core.files.results.gauge_file import read_thickness
 from core.files.results.inspection_file import InspectionFile, read_inspection
+from core.files.results.planes_file import planes_id
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
 from core.inspect.characteristic import Characteristic, thickness_characteristic
@@ -296,7 +296,7 @@ def test_stripes_much_wider_than_at_the_calibration_are_told(unchanged, tmp_path
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
     assert notes_on_focus(work, known, seen) == ()
-    id_ = fan_id(known.fan.fan)
+    id_ = planes_id(known.fan.fan)
     poses = read_poses(work.path("poses"), id_)
     for share, said in ((1 / 1.4, []), (1 / 1.8, ["scan.check_out_of_focus"])):
         sharp = [replace(p, centrelines=tuple(replace(c, width=share * c.width) for c in p.centrelines)) for p in poses]
@@ -312,7 +312,7 @@ def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
     assert section_change(work, known, seen) is None
-    id_, pi = fan_id(known.fan.fan), known.fan.fan.pis[1]
+    id_, pi = planes_id(known.fan.fan), known.fan.fan.pis[1]
     camera = known.camera.camera
 
     def skewed(line):

@@ -71,7 +71,7 @@ def test_results_are_handed_over_as_the_report_has_them(done, folder, tmp_path):
 
 def test_a_calibration_says_in_the_report_since_when_it_holds(done, folder):
     content = project_content(folder, done.project)
-    assert [mark.of for mark in content.calibrations] == ["camera", "fan"]
+    assert [mark.of for mark in content.calibrations] == ["camera", "planes"]
     for mark in content.calibrations:
         assert mark.made_at is not None
         assert 0 <= mark.age(content.timestamp).total_seconds() < 86400

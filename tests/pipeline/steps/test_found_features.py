@@ -29,7 +29,7 @@ def test_a_camera_nobody_accepted_is_solved_again_from_what_was_found_to_the_las
 
 
 def test_planes_nobody_accepted_are_solved_again_from_what_was_found_to_the_last_digit(done):
-    project = replace(done.project, accepted=replace(done.project.accepted, fan=""))
+    project = replace(done.project, accepted=replace(done.project.accepted, planes=""))
     poses = found_poses(done.folder, project)
     assert [(pose.name, pose.reason, pose.notes) for pose in poses] == [
         (pose.name, pose.reason, pose.notes) for pose in done.poses

@@ -26,7 +26,7 @@ from tests.report.report_samples import block_content
 
 @pytest.fixture(scope="module")
 def content():
-    marks = (CalibrationMark("camera", "aaa", "0" * 64), CalibrationMark("fan", "bbb", "1" * 64))
+    marks = (CalibrationMark("camera", "aaa", "0" * 64), CalibrationMark("planes", "bbb", "1" * 64))
     return replace(block_content(), calibrations=marks)
 
 

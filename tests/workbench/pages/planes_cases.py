@@ -18,7 +18,7 @@ from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, Project, ProjectInfo, Sources
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.messages import Field, Message, plain
 from core.pipeline.steps.planes_step import solve_planes
 from tests.calibrate.fan_scenes import CAMERA, Noise, features, poses
@@ -70,7 +70,7 @@ class Planes:
         self.measuring.answers[jobs.FIND_POSES] = self.find
         self.quick.answers |= {
             jobs.SOLVE_POSES: self.solve,
-            jobs.ACCEPT_FAN: self.accept,
+            jobs.ACCEPT_PLANES: self.accept,
             jobs.SHOW_POSE: self.show,
             jobs.RECALL_POSES: lambda folder, project: (measured(), self.solve(folder, project, measured())),
             jobs.READ_CAMERA: lambda folder, id_: SimpleNamespace(camera=CAMERA),
@@ -93,11 +93,11 @@ class Planes:
 
     def accept(self, folder: Path, project: Project, calibration: FanCalibration, found: Any, few: bool) -> str:
         assert few or calibration.minority is None
-        id_ = fan_id(calibration.fan)
+        id_ = planes_id(calibration.fan)
         used, total = sum(pose.used for pose in calibration.poses), len(calibration.poses)
         camera = project.accepted.camera
         entry = SimpleNamespace(
-            kind="fan", id=id_, kept_at=datetime.now(UTC), used=used, total=total, rms_mm=calibration.rms_mm,
+            kind="planes", id=id_, kept_at=datetime.now(UTC), used=used, total=total, rms_mm=calibration.rms_mm,
             camera_id=camera, facts_known=True,
         )  # fmt: skip
         self.kept[:] = [one for one in self.kept if one.id != id_] + [entry]

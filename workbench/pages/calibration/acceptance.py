@@ -11,7 +11,6 @@ from core.files.project.data import Project
 from core.files.project.keys import finished, made_anew
 from workbench.bench import Bench
 from workbench.language import tr
-from workbench.project_model import CALIBRATIONS
 from workbench.work.jobs import Job
 
 
@@ -32,7 +31,7 @@ class Acceptance(QObject):
     @property
     def accepted(self) -> str:
         """The id of the accepted one, or ""."""
-        return str(getattr(self._model.project.accepted, CALIBRATIONS[self._step]))
+        return str(getattr(self._model.project.accepted, self._step))
 
     @property
     def label(self) -> str:
@@ -63,7 +62,7 @@ class Acceptance(QObject):
             after = replace(self._with(now, id_), rejected=now.rejected - {id_})
             self._model.edit(self._words()[0], after)
             results = self._model.results
-            if id_ == getattr(project.accepted, CALIBRATIONS[self._step]):
+            if id_ == getattr(project.accepted, self._step):
                 results = made_anew(self._step, results)  # the same numbers, and more is known of them
             made_from = replace(project, accepted=after.accepted)
             self._model.record_all({**results, self._step: finished(self._step, made_from, results)})
@@ -84,7 +83,7 @@ class Acceptance(QObject):
         self._model.edit(self._words()[1], replace(after, rejected=now.rejected | {id_}))
 
     def _with(self, project: Project, id_: str) -> Project:
-        return replace(project, accepted=replace(project.accepted, **{CALIBRATIONS[self._step]: id_}))
+        return replace(project, accepted=replace(project.accepted, **{self._step: id_}))
 
     def _words(self) -> tuple[str, str, str]:
         """Names of the edits that accept and reject, and of the job."""

@@ -17,7 +17,6 @@ from workbench.language import tr
 from workbench.pages.calibration.acceptance import Acceptance
 from workbench.pages.calibration.stage import RestoreFacts, WhyNotRestore, why_not_restore
 from workbench.pages.live.presenter import LivePresenter
-from workbench.project_model import CALIBRATIONS
 from workbench.work import jobs
 
 
@@ -50,7 +49,7 @@ class StoredCalibrations(QObject):
 
         def read(entries: tuple[Any, ...]) -> None:
             if folder == self._model.folder:
-                self.entries = tuple(entry for entry in entries if entry.kind == CALIBRATIONS[self.STEP])
+                self.entries = tuple(entry for entry in entries if entry.kind == self.STEP)
                 if self.chosen not in {entry.id for entry in self.entries}:
                     self.chosen = ""
                     self._choice_changed()
@@ -108,7 +107,7 @@ class StoredCalibrations(QObject):
 
     def _accept(self, id_: str, label: str) -> None:
         """Measure with this one from now on; `label` is what undo calls that."""
-        project, changed = self._model.project, {CALIBRATIONS[self.STEP]: id_}
+        project, changed = self._model.project, {self.STEP: id_}
         self._model.edit(label, replace(project, accepted=replace(project.accepted, **changed)))
         self._model.record(self.STEP, finished(self.STEP, self._model.project, self._model.results))
 

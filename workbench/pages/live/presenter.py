@@ -441,7 +441,7 @@ class LivePresenter(QObject):
             calibrated_s=calibrated_s(self.model.results),
             ending=self.settings.ending,
             check=self.check(),
-            kept_fan=(project, self.model.project.accepted.fan) if self.model.project.accepted.fan else None,
+            kept_planes=(project, self.model.project.accepted.planes) if self.model.project.accepted.planes else None,
         )
 
     def _on_view(self, view: LiveView) -> None:

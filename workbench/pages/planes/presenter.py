@@ -10,7 +10,7 @@ from core.calibrate.fan.poses.pose_features import usual_stripe
 from core.calibrate.results import PlanePose
 from core.files.project.data import Project
 from core.files.project.keys import finished
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -34,7 +34,7 @@ class PlanesPresenter(CalibrationPresenter):
     """The fan: poses measured, planes solved and judged; what is accepted."""
 
     step = "planes"
-    KEEP = jobs.ACCEPT_FAN
+    KEEP = jobs.ACCEPT_PLANES
     work: PlanesWork
     look: CurrentPose
     history: PlanesHistory
@@ -59,7 +59,7 @@ class PlanesPresenter(CalibrationPresenter):
     @property
     def candidate(self) -> str:
         """The id of the calibration that is shown, or ""."""
-        return fan_id(self.work.calibration.fan) if self.work.calibration is not None else ""
+        return planes_id(self.work.calibration.fan) if self.work.calibration is not None else ""
 
     def _is_current(self) -> bool:
         return self.is_done and not self._tells_too_little
@@ -194,7 +194,7 @@ class PlanesPresenter(CalibrationPresenter):
     def _recognise(self) -> None:
         """Where pictures and settings give just what is accepted, it is not out of date, whatever was changed since."""
         done = self.model.results.get("planes")
-        if done is None or not self.candidate or self.work.solving or self.candidate != self.project.accepted.fan:
+        if done is None or not self.candidate or self.work.solving or self.candidate != self.project.accepted.planes:
             return
         now = finished("planes", self.project, self.model.results, done.at)
         if now.rests_on != done.rests_on:

@@ -65,7 +65,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
     def _accepted_is_of_these_pictures(self, project: Project) -> bool:
         done, keys = self._model.results.get("planes"), rests_on("planes", project, {})
         known = {} if done is None else done.rests_on
-        return bool(project.accepted.fan) and all(keys.get(name) == known.get(name) for name in FOUND_BY["planes"])
+        return bool(project.accepted.planes) and all(keys.get(name) == known.get(name) for name in FOUND_BY["planes"])
 
 
 class PlanesCamera(QObject):

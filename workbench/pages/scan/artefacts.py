@@ -160,7 +160,7 @@ class KnownArtefacts(QObject):
         """The project is another: read what was measured with the calibrations in force."""
         folder, project = self._model.folder, self._model.project
         accepted = project.accepted
-        wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.fan else ""
+        wanted = f"{folder}|{accepted}|{project.rig.name}|{project.sources.scan}" if accepted.planes else ""
         if wanted == self._looked:
             return
         self._looked, self.checks, self.charts = wanted, (), ()

@@ -94,7 +94,7 @@ class RigCheck(QObject):
             return self._bench.cannot_write
         if not project.accepted.camera:
             return tr("Accept a camera calibration first.")
-        if not project.accepted.fan:
+        if not project.accepted.planes:
             return tr("Accept the laser planes first.")
         if not project.sources.check:
             return tr("Choose the pictures of the check first.")
@@ -179,7 +179,7 @@ class RigCheck(QObject):
             if folder != self._model.folder:
                 return
             now = self._model.project
-            after = replace(now, accepted=replace(now.accepted, fan=id_), rejected=now.rejected - {id_})
+            after = replace(now, accepted=replace(now.accepted, planes=id_), rejected=now.rejected - {id_})
             self._model.edit(tr("re-adjust camera and laser"), after)
             done = self._model.results.get("planes")
             self._model.record("planes", finished("planes", after, self._model.results, done.at if done else None))

@@ -101,7 +101,7 @@ class ScanPresenter(StepPresenter):
             measured=state in (State.DONE, State.OUTDATED),
             outdated=state is State.OUTDATED,
             camera=bool(accepted.camera),
-            planes=bool(accepted.fan),
+            planes=bool(accepted.planes),
             calibrations_read=work.calibrations_read,
             source=bool(self.project.sources.scan),
             listed=work.frames is not None,
@@ -155,7 +155,7 @@ class ScanPresenter(StepPresenter):
     @property
     def calibrated(self) -> bool:
         """Whether a camera and laser planes are accepted: without them there are stripes, but no points."""
-        return bool(self.project.accepted.camera and self.project.accepted.fan)
+        return bool(self.project.accepted.camera and self.project.accepted.planes)
 
     # ---- recording
 

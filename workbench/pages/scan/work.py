@@ -119,7 +119,7 @@ class ScanWork(QObject):
 
     def _read_calibration(self, folder: Path) -> None:
         project = self._model.project
-        wanted = f"{project.accepted.camera}|{project.accepted.fan}"
+        wanted = f"{project.accepted.camera}|{project.accepted.planes}"
         if wanted == self._calibrated:
             return
         self._calibrated, self.camera, self.fan = wanted, None, None

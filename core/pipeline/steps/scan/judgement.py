@@ -9,7 +9,7 @@ from core.calibrate.change import Change, Evidence
 from core.calibrate.deviations import Deviation
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.findings.proof import ScanFacts
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
@@ -153,7 +153,7 @@ def section_change(work: Workspace, calibration: Calibration, fan: Sequence[Cent
     if of.readjusted is not None:
         return None
     try:
-        poses = read_poses(work.path("poses"), fan_id(of.fan))
+        poses = read_poses(work.path("poses"), planes_id(of.fan))
     except InputError:  # the notes on focus tell
         return None
     found = changed_section([pose.centrelines for pose in poses], fan, camera, of.fan)

@@ -8,7 +8,7 @@ from core.errors import InputError
 from core.files.recording.features_file import read_poses
 from core.files.recording.recording_log import lost_frames, read_log
 from core.files.recording.recording_set import RecordingSet
-from core.files.results.fan_file import fan_id
+from core.files.results.planes_file import planes_id
 from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message
@@ -44,7 +44,7 @@ def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Cent
     """A note if the fan's stripes are much wider than in its calibration; none where its poses are not kept."""
     of = calibration.fan
     try:
-        poses = read_poses(work.path("poses"), fan_id(of.fan) if of.readjusted is None else of.readjusted.of)
+        poses = read_poses(work.path("poses"), planes_id(of.fan) if of.readjusted is None else of.readjusted.of)
     except InputError as error:  # the scan needs nothing of them
         return (error.message,)
     then, now = stripe_width(line for pose in poses for line in pose.centrelines), stripe_width(fan)

@@ -306,7 +306,7 @@ def test_planes_are_restored_from_the_history(solved: PlanesPage, qtbot: Any) ->
     solved.refreshing.at_once()
     click(qtbot, solved.history.restore)
     solved.refreshing.at_once()
-    assert solved.presenter.project.accepted.fan == first
+    assert solved.presenter.project.accepted.planes == first
     assert solved.history.restore.toolTip() == solved.history.words.text() == "These laser planes are in use."
     assert not solved.bars.isVisible()
 

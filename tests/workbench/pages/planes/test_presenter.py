@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import read_project
 from core.files.project.keys import finished, left_to_do
-from core.files.results.fan_file import read_fan, write_fan
+from core.files.results.planes_file import read_planes, write_planes
 from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from core.report.facts.of_planes import planes_facts
@@ -200,8 +200,8 @@ def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot:
     assert [str(one.line()) for one in left_out(found.views())] == lines
     calibration = found.work.calibration
     assert calibration is not None
-    write_fan(tmp_path / "planes.json", calibration, CAMERA)
-    for one in (calibration, read_fan(tmp_path / "planes.json", CAMERA)):
+    write_planes(tmp_path / "planes.json", calibration, CAMERA)
+    for one in (calibration, read_planes(tmp_path / "planes.json", CAMERA)):
         assert any(str(note).startswith("3 of 7 poses left out: ") for note in one.notes)
         assert "left out" not in words.notes(one), "said once"
     rows = {row[0]: row[1] for row in map(fact_row, planes_facts(calibration))}
@@ -323,12 +323,12 @@ def test_a_plate_that_cannot_be_is_refused_with_a_sentence(page: PlanesPresenter
 
 
 def test_accepting_is_an_edit_and_a_result(accepted: PlanesPresenter) -> None:
-    assert accepted.project.accepted.fan == accepted.candidate
+    assert accepted.project.accepted.planes == accepted.candidate
     assert accepted.blocker() == ""
     assert accepted.state.state is State.DONE
     assert accepted.can_accept == "These laser planes are accepted already."
     accepted.model.undo_stack.undo()
-    assert accepted.project.accepted.fan == ""
+    assert accepted.project.accepted.planes == ""
     assert stage(accepted) is Stage.SOLVED
     accepted.model.undo_stack.redo()
     assert stage(accepted) is Stage.ACCEPTED
@@ -340,7 +340,7 @@ def test_accepted_planes_are_there_when_the_project_is_opened_again(
     id_, folder = accepted.candidate, accepted.model.folder
     assert folder is not None
     accepted.model.save()
-    assert read_project(folder).project.accepted.fan == id_
+    assert read_project(folder).project.accepted.planes == id_
     accepted.model.close()
     assert accepted.candidate == ""
     accepted.model.open(folder)
@@ -352,7 +352,7 @@ def test_accepted_planes_are_there_when_the_project_is_opened_again(
 
 def test_rejecting_what_is_accepted_is_an_edit_that_can_be_undone(accepted: PlanesPresenter) -> None:
     accepted.reject()
-    assert accepted.project.accepted.fan == ""
+    assert accepted.project.accepted.planes == ""
     assert stage(accepted) is Stage.REJECTED
     assert accepted.can_reject == "This calibration is rejected already."
     assert accepted.blocker() == "The laser planes were rejected; accept better ones first."
@@ -407,11 +407,11 @@ def test_planes_of_the_history_are_restored_and_undone(accepted: PlanesPresenter
     settled(qtbot, accepted)
     assert [entry.id for entry in accepted.history.entries] == [accepted.candidate, first]
     accepted.history.restore()
-    assert accepted.project.accepted.fan == first
+    assert accepted.project.accepted.planes == first
     assert accepted.model.undo_stack.undoText() == "restore laser planes"
     assert (stage(accepted), accepted.blocker()) == (Stage.OTHER, ""), "measured with on purpose"
     accepted.model.undo_stack.undo()
-    assert accepted.project.accepted.fan != first
+    assert accepted.project.accepted.planes != first
     assert stage(accepted) is Stage.ACCEPTED
 
 
@@ -444,7 +444,7 @@ def test_planes_whose_file_tells_too_little_are_accepted_again_and_what_rests_on
     assert (accepted.can_accept, "earlier version" in accepted.blocker()) == ("", True)
     accepted.accept()
     settled(qtbot, accepted)
-    assert (accepted.project.accepted.fan, stage(accepted)) == (id_, Stage.ACCEPTED)
+    assert (accepted.project.accepted.planes, stage(accepted)) == (id_, Stage.ACCEPTED)
     assert accepted.can_accept == "These laser planes are accepted already."
     assert left_to_do(accepted.project, accepted.model.results) == ("scan", "gauge", "report")
     assert "laser planes" in accepted.model.states["scan"].sentence
@@ -456,17 +456,17 @@ def test_planes_that_rest_on_another_camera_are_not_restored(accepted: PlanesPre
     accepted.history.choose(first)
     assert "another camera" in accepted.history.why_not_restore()
     accepted.history.restore()
-    assert accepted.project.accepted.fan == ""
+    assert accepted.project.accepted.planes == ""
 
 
 def test_what_cannot_be_kept_is_told_and_can_be_accepted_later(
     found: PlanesPresenter, planes: Planes, qtbot: Any
 ) -> None:
-    planes.quick.held = {jobs.ACCEPT_FAN}
+    planes.quick.held = {jobs.ACCEPT_PLANES}
     found.accept()
     assert found.can_accept
     planes.quick.fail(InputError("cannot be written, because the disk is full", where="planes.json"))
-    assert found.project.accepted.fan == ""
+    assert found.project.accepted.planes == ""
     assert found.can_accept == ""
 
 

@@ -44,7 +44,7 @@ def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page:
     assert [entry.id for entry in page.history.entries] == [page.candidate, *kept]
     page.history.choose(accepted)
     page.history.restore()
-    assert page.project.accepted.fan == accepted
+    assert page.project.accepted.planes == accepted
     page.do_run()
     settled(qtbot, page)
     assert page.candidate != accepted, "one pose is still left out"
@@ -55,7 +55,7 @@ def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page:
     assert stage(page) is Stage.ACCEPTED
     page.model.save()
     assert page.model.folder is not None
-    assert read_project(page.model.folder).project.accepted.fan == accepted
+    assert read_project(page.model.folder).project.accepted.planes == accepted
     assert [notice.text for notice in page.bench.notices.all] == []
 
 

@@ -79,7 +79,7 @@ def test_nothing_is_compared_before_a_thickness_is_measured_nor_where_nothing_ca
 def test_a_thickness_that_is_out_of_date_is_not_compared(measured):
     assert measured.check.compare.isEnabled()
     model = measured.presenter.model
-    model.edit("use another fan", replace(model.project, accepted=replace(model.project.accepted, fan="fan-2")))
+    model.edit("use another fan", replace(model.project, accepted=replace(model.project.accepted, planes="fan-2")))
     measured.refresh()
     assert measured.check.compare.toolTip() == "What was measured is out of date; measure it again."
 

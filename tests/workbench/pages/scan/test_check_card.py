@@ -393,7 +393,7 @@ def test_a_readjustment_is_explained_and_then_decided_and_undoable(chosen, measu
     if answer:
         assert model.project.accepted == before
         return
-    assert model.project.accepted == replace(before, fan="fan-adjusted")
+    assert model.project.accepted == replace(before, planes="fan-adjusted")
     shown(chosen, qtbot, CheckStage.OUTDATED)
     model.undo_stack.undo()
     assert model.project.accepted == before

@@ -180,7 +180,7 @@ class _PlanesFile(ResultFile):
         return self
 
 
-def fan_id(fan: Fan) -> str:
+def planes_id(fan: Fan) -> str:
     """Twelve hex digits that name these very planes."""
     return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
 
@@ -197,7 +197,7 @@ def tells_facts(path: Path) -> bool:
     return all(tables.get(name) is not None for name in _FACTS)
 
 
-def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
+def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> None:
     """Write planes.json, which remembers the `camera` it was measured with; InputError if it cannot be written."""
     degrees = {
         "constrained": [math.degrees(angle) for angle in calibration.angles],
@@ -219,7 +219,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
             "verdict": kept(calibration.verdict),
             "notes": [kept(note) for note in calibration.notes],
             "free_planes": [_plane(plane) for plane in calibration.free.planes],
-            "id": fan_id(calibration.fan),
+            "id": planes_id(calibration.fan),
             "camera_id": camera_id(camera),
             "version": __version__,
             "covariance": calibration.fan.covariance,
@@ -238,7 +238,7 @@ def write_fan(path: Path, calibration: FanCalibration, camera: Camera) -> None:
     )
 
 
-def read_fan(path: Path, camera: Camera) -> FanCalibration:
+def read_planes(path: Path, camera: Camera) -> FanCalibration:
     """Read planes.json, also one of another program that holds no more than the planes' `pi`.
 
     The poses come back without their points, which the file does not keep.
