@@ -29,7 +29,7 @@ from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import check_step, measure_check
-from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
+from core.pipeline.steps.gauge_step import gauge_if_possible, missing_thickness
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import readjust_step
 from core.pipeline.steps.report_step import prepare_report, report_step
@@ -173,10 +173,10 @@ class _Run:
 
     def gauge(self) -> None:
         """A part without two parallel faces is no error where rig.toml does not ask for a thickness."""
-        if self._work.recording_set.rig.gauge is None:
-            self.thickness, _ = gauge_if_possible(self._work, self._progress)
-        else:
-            self.thickness = gauge_step(self._work, self._progress)
+        self.thickness, problem = gauge_if_possible(self._work, self._progress)
+        missing = missing_thickness(self._work.recording_set.rig, problem)
+        if missing is not None:
+            raise missing
 
     def report(self) -> None:
         report_step(self._work, self._progress, beside=self._beside)

@@ -70,14 +70,14 @@ def measure_scan(
         measured = scan_step(
             work, project.options.for_scan, progress, watch, earlier=_earlier(recording_set, results, project)
         )
-        gauge, no_gauge = gauge_if_possible(work, progress)
+        found = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(
         frames=measured.scan.frames,
         points=len(measured.scan.cloud),
         triangles=len(measured.mesh.triangles),
-        gauge=gauge,
-        no_gauge=no_gauge,
+        gauge=found.gauge,
+        no_gauge=found.note,
         notes=notes,
         calibration_id=calibration_id,
         files=Workspace(recording_set, results).written(),

@@ -28,6 +28,7 @@ from core.pipeline.project.inspection import measure_features
 from core.pipeline.project.interim_check import check_rig
 from core.pipeline.project.measuring import measure_gauge, measure_scan
 from core.pipeline.project.report import make_report
+from core.pipeline.steps.gauge_step import missing_thickness
 from core.progress import Progress, silent
 
 Watch = Callable[[ProjectFile], None]
@@ -132,9 +133,8 @@ class _Work:
     def scan(self) -> Stop | None:
         summary = measure_scan(self._folder, self._project, self._progress)
         self._done("scan", *(("gauge",) if summary.gauge is not None else ()), gone=("gauge",))
-        if summary.no_gauge is None or self._project.rig.gauge is None:
-            return None
-        return Stop("inspect", summary.no_gauge)
+        missing = missing_thickness(self._project.rig, summary.no_gauge)
+        return None if missing is None else Stop("inspect", missing)
 
     def gauge(self) -> Stop | None:
         measure_gauge(self._folder, self._project, self._progress)

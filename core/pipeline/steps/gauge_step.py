@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from typing import NamedTuple, TypeVar
 
 from core.errors import InputError, NoThickness
-from core.files.recording.rig import GaugeSpec, part_table
+from core.files.recording.rig import GaugeSpec, Rig, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import ScanFile, read_scan
@@ -26,6 +27,8 @@ from core.progress import Progress, silent
 from core.scan.fan_watch import WARM_UP
 from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
+
+Why = TypeVar("Why")
 
 PART = "part"
 """Under this name the settings of a thickness in run.json say what is stated of the part."""
@@ -153,16 +156,33 @@ def point_errors(scan: ScanFile) -> PointErrors:
     return errors.doubted_by(scan.facts)
 
 
-def gauge_if_possible(work: Workspace, progress: Progress = silent) -> tuple[GaugeResult | None, Message | None]:
-    """As `gauge_step`, but a part without two parallel faces is no error: then a message says why."""
+class Thickness(NamedTuple):
+    """What looking for a thickness came to: the gauge, or what is in its way."""
+
+    gauge: GaugeResult | None
+    problem: InputError | None = None
+
+    @property
+    def note(self) -> Message | None:
+        """Why there is none."""
+        return None if self.problem is None else note_of("gauge.none_measured", reason=self.problem.message)
+
+
+def gauge_if_possible(work: Workspace, progress: Progress = silent) -> Thickness:
+    """As `gauge_step`, but nothing is raised where there is no thickness: run.json says why."""
     try:
-        return gauge_step(work, progress), None
+        return Thickness(gauge_step(work, progress))
     except InputError as error:
-        why = note_of("gauge.none_measured", reason=error.message)
+        found = Thickness(None, error)
         with work.step("gauge") as log:
             log.settings[PART] = part_table(work.recording_set.rig.part)
-            log.notes.append(why)
-        return None, why
+            log.notes.extend(filter(None, [found.note]))
+        return found
+
+
+def missing_thickness(rig: Rig, why_not: Why | None) -> Why | None:
+    """What ends a job: why a thickness that the rig asks for was not found; None if none is asked for, or it was."""
+    return None if rig.gauge is None else why_not
 
 
 def _regions(spec: GaugeSpec) -> tuple[Array, Array] | None:
