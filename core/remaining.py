@@ -10,42 +10,56 @@ import time
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
 
-_CAMERA = {"camera views": 0.63, "Calibrating the camera": 0.25}
-_PLANES = {"plane poses": 5.0, "fan poses": 0.5}
-_SCAN = {
-    **{"reference": 0.15, "frames": 2.0, "smoothing": 0.7, "crossings": 0.1, "network": 1.1},
-    **{"calibration uncertainty": 0.25, "normals": 0.5, "mesh": 0.2},
+from core.files.step_graph import GRAPH, IN_PROJECT
+
+_STAGES: Mapping[str, Mapping[str, tuple[float, float | None]]] = {
+    "camera": {"camera views": (0.63, 0.9), "Calibrating the camera": (0.25, 0.4)},
+    "planes": {"plane poses": (5.0, 3.1), "fan poses": (0.5, 0.3)},
+    "scan": {
+        "reference": (0.15, None),
+        "frames": (2.0, None),
+        "smoothing": (0.7, None),
+        "crossings": (0.1, 0.1),
+        "network": (1.1, 1.2),
+        "calibration uncertainty": (0.25, 0.45),
+        "normals": (0.5, 0.4),
+        "mesh": (0.2, None),
+    },
+    "gauge": {"faces": (0.5, 0.5)},
+    "inspection": {"features": (0.3, 0.3)},
+    "report": {"report": (1.2, 1.2)},
 }
-_GAUGE = {"faces": 0.5}
-_FEATURES = {"features": 0.3}
-_REPORT = {"report": 1.2}
-_RUN = {
-    **{"camera views": 0.9, "Calibrating the camera": 0.4, "plane poses": 3.1, "fan poses": 0.3, "crossings": 0.1},
-    **{"network": 1.2, "calibration uncertainty": 0.45, "normals": 0.4, "faces": 0.5, "report": 1.2},
-}
-"""In two processes: what the second one does beside the first is in no stage of its own."""
+"""Seconds of each stage of a step, in their order: in one process, and with a second one beside it, None where that one
+does all of the stage. They are the sample's, measured on two cores; only the shares matter."""
+
+
+def _job(*steps: str, beside: bool = False) -> dict[str, float]:
+    """Seconds of the stages of these steps, in the order of work."""
+    stages = [stage for step in GRAPH if step.name in steps for stage in _STAGES.get(step.name, {}).items()]
+    return {name: seconds for name, both in stages if (seconds := both[beside]) is not None}
+
+
+_SET = ("gauge", *(step.name for step in GRAPH if not step.on_request))
+"""What is done of a recording set."""
 
 USUAL_S: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
-        "run": _RUN,
-        "camera": _CAMERA,
-        "planes": _PLANES,
-        "scan": _SCAN,
+        "run": _job(*_SET, beside=True),
+        "camera": _job("camera"),
+        "planes": _job("planes"),
+        "scan": _job("scan"),
         "find_views": {"camera views": 0.63},
         "solve_views": {"Calibrating the camera": 0.25},
         "find_poses": {"plane poses": 5.0},
         "solve_poses": {"fan poses": 0.2},
-        "measure_scan": _SCAN | _GAUGE,
-        "measure_watched": _SCAN | _GAUGE,
-        "make_report": _REPORT,
-        "measure_set": _CAMERA | _PLANES | _SCAN | _GAUGE | _REPORT,
-        "measure_all": _CAMERA | _PLANES | _SCAN | _GAUGE | _FEATURES | _REPORT,
+        "measure_scan": _job("scan", "gauge"),
+        "measure_watched": _job("scan", "gauge"),
+        "make_report": _job("report"),
+        "measure_set": _job(*_SET),
+        "measure_all": _job(*(step.name for step in IN_PROJECT)),
     }
 )
-"""Seconds of each stage, in their order, by the name of the job: the sample's, measured on two cores.
-
-Jobs are the functions that the window asks for, and commands. Only the shares matter.
-"""
+"""Seconds of each stage, in their order, by the name of the job: functions that the window asks for, and commands."""
 
 _TRUSTED = 0.05
 """From this share of a stage on its own pace counts."""
