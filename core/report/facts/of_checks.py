@@ -8,7 +8,7 @@ from datetime import datetime
 from typing import Protocol
 
 from core.calibrate.results import ProposedReadjustment
-from core.messages import Message, label, plain
+from core.messages import Message, label, plain, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, Value, named
 from core.report.facts.pictures import Picture, used_fact
 from core.report.facts.table import Column, FactTable
@@ -102,7 +102,7 @@ class PastCheck(Protocol):
 
 def history_fact(rig: str, checks: int) -> Fact:
     """Whose history it is, and how many checks are in it."""
-    of = Message("told.rig", "{name}: {count:,} checks", name=rig, count=checks)
+    of = plural_message("told.rig", "{name}: {n:,} check", "{name}: {n:,} checks", n=checks, name=rig)
     never = Message("told.never_checked", "{name}: never checked on this computer", name=rig)
     return Fact(label("rig"), of if checks else never)
 
@@ -117,7 +117,7 @@ def history_table(checks: Iterable[tuple[PastCheck, ControlChart]]) -> FactTable
         Column(STRIPES_OFF, "px", 3, level=Reader.AUDITOR),
         Column(STRIPES_OFF_MM, "mm", 3, level=Reader.METROLOGIST),
         Column(CHANCE, significant=2, level=Reader.AUDITOR),
-        Column(label("step"), "mm"),
+        Column(label("step height"), "mm"),
         Column(label("off by"), "mm", 3, signed=True),
         Column(label("allowed from"), "mm", 3, signed=True),
         Column(label("allowed to"), "mm", 3, signed=True),
