@@ -18,7 +18,7 @@ from core.files.atomic import write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
-from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row3, kept, row_tables
+from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row2, Row3, kept, row_tables
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.results import Contribution, Face, GaugeResult, PairCandidate
@@ -57,9 +57,17 @@ _PX = Field(description="two finite numbers: a pixel")
 
 class _Candidate(ResultFile):
     thickness_mm: Finite = Field(ge=0, description="a length in mm, not negative")
-    points: tuple[int, int] = Field(description="two whole numbers")
-    upper_px: tuple[Finite, Finite] = _PX
-    lower_px: tuple[Finite, Finite] = _PX
+    points: list[int] = Field(min_length=2, max_length=2, description="two whole numbers")
+    upper_px: Row2 = _PX
+    lower_px: Row2 = _PX
+
+    def candidate(self) -> PairCandidate:
+        return PairCandidate(
+            self.thickness_mm,
+            (self.points[0], self.points[1]),
+            (self.upper_px[0], self.upper_px[1]),
+            (self.lower_px[0], self.lower_px[1]),
+        )
 
 
 class _Contribution(BudgetRow):
@@ -158,7 +166,7 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         normal=None if file.normal is None else np.array(file.normal),
         rule=file.rule,
         notes=tuple(file.notes),
-        candidates=tuple(PairCandidate(**one.model_dump()) for one in file.candidates),
+        candidates=tuple(one.candidate() for one in file.candidates),
     )
 
 

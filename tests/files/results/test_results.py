@@ -23,7 +23,7 @@ from core.files.results.scan_file import ScanFile, read_scan, write_scan
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings
 from core.image.targets.target_view import TargetView
-from core.inspect.results import Contribution
+from core.inspect.results import Contribution, PairCandidate
 from core.inspect.uncertainty.causes import cause_named
 from core.messages import Message, plain
 from core.model import Camera
@@ -519,6 +519,12 @@ def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
         ["a note"],
     )
     assert (back.budget[0].point_mm, back.budget[0].sensitivity) == (None, None)
+
+
+def test_other_pairs_of_faces_are_read_as_they_were_written(tmp_path, cloud, gauge):
+    candidates = (PairCandidate(30.0, (1200, 3400), (10.5, 20.0), (30.0, 40.0)),)
+    write_gauge(tmp_path / "gauge.json", replace(gauge, candidates=candidates), "a-b")
+    assert read_gauge(tmp_path / "gauge.json", cloud).candidates == candidates
 
 
 def test_whether_a_thickness_is_at_20_degrees_is_not_known_of_an_older_file(tmp_path, cloud, gauge):
