@@ -118,7 +118,7 @@ class SweepingRecorder(Recorder):
         self.arrived: dict[str, float] = {}
         self.waiting_mb: list[tuple[float, float]] = []
 
-    def write(self, name, picture, frame=None):
+    def write(self, name, picture, frame=None, camera=""):
         taken = super().write(name, picture, frame)
         if taken and frame is not None:
             self.arrived[name] = dict(self._camera.arrived_s)[frame.index]

@@ -194,6 +194,8 @@ class Change:
         Whether pictures of the day, of a check or a re-adjustment, agree with the calibrations by themselves.
     stability
         What was reckoned with.
+    sitting_hours
+        How many hours ago the planes were calibrated, where that was in the sitting of the scan.
     """
 
     deviations: tuple[Deviation, ...]
@@ -203,6 +205,7 @@ class Change:
     spread: RigSpread | None = None
     checked: bool = False
     stability: Stability = DEFAULT_STABILITY
+    sitting_hours: float | None = None
 
     @property
     def surely(self) -> bool:

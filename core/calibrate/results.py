@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.board_shape import BoardShape
+from core.calibrate.sitting import Taken
 from core.findings.table import note_of
 from core.image.targets.target_view import TargetView
 from core.messages import Message
@@ -190,7 +191,8 @@ class FanCalibration:
 
     Facts, None where they are not known: `converged`, whether planes and poses were solved to the end;
     `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain;
-    `flatness_assumed`, whether nobody has stated how flat the target is.
+    `flatness_assumed`, whether nobody has stated how flat the target is; `taken`, by which camera and when its pictures
+    were taken, by their recording's log.
     """
 
     fan: Fan
@@ -217,6 +219,7 @@ class FanCalibration:
     converged: bool | None = None
     points_off_alike: bool | None = None
     flatness_assumed: bool | None = None
+    taken: Taken | None = None
 
     @property
     def minority(self) -> Message | None:

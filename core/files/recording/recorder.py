@@ -13,7 +13,7 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.pictures import picture_parts
 from core.files.recording.direct_file import DirectWriter
-from core.files.recording.recording_log import LoggedFrame, RecordingLog
+from core.files.recording.recording_log import LoggedFrame, RecordingLog, logged
 
 Ending = Literal[".png", ".pgm"]
 
@@ -83,7 +83,7 @@ class Recorder:
         with self._changed:
             return len(self._queue)
 
-    def write(self, name: str, picture: Picture, frame: Frame | None = None) -> bool:
+    def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
         """Take a picture, which must not be changed any more, to be written as `name` (the ending is added if missing).
 
         Parameters
@@ -94,6 +94,8 @@ class Recorder:
             What it holds.
         frame
             The frame it is of, for the log (:mod:`core.files.recording.recording_log`); without it there is no line.
+        camera
+            What the camera is known by: the log then says that it has just been taken by it. "" in a replay.
 
         Returns
         -------
@@ -120,7 +122,7 @@ class Recorder:
                 self._dropped += 1
                 return False
             lost = 0 if frame is None else frame.dropped + self._dropped
-            line = None if frame is None else LoggedFrame(path.name, frame.index, frame.time_s, lost)
+            line = None if frame is None else logged(path.name, frame, lost, camera)
             self._queue.append((path, picture, line))
             self._waiting_bytes += picture.nbytes
             self._changed.notify_all()

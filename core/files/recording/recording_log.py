@@ -1,26 +1,32 @@
 """What a live recording has on the disk: one line a frame, written when the frame's file is whole.
 
 `recording.csv` lies beside the frames. A line is appended in one piece, so whenever the program dies the file holds
-every frame that was acknowledged; at most its last line is torn, and not counted.
+every frame that was acknowledged; at most its last line is torn, and not counted. Where a camera was recorded, and not
+a replay, it says which and when: unlike the dates of files, that stays when a recording is copied.
 """
 
 from __future__ import annotations
 
 import contextlib
+import csv
 import errno
+import io
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
+from datetime import UTC, datetime
 from itertools import pairwise
 from pathlib import Path
 
+from core.acquire.source import Frame
+from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.atomic import cannot_write
 from core.files.reading import csv_rows, read_text
 from core.messages import Message
 
 LOG = "recording.csv"
-_COLUMNS = ("name", "index", "time_s", "dropped")
+_COLUMNS = ("name", "index", "time_s", "dropped", "taken_at", "camera")
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,13 +34,21 @@ class LoggedFrame:
     """One frame of a recording.
 
     `name` of its file; `index` and `time_s` as in :class:`core.acquire.source.Frame`; `dropped` counts the frames lost
-    so far, by the source or because the disk was too slow.
+    so far, by the source or because the disk was too slow. `taken_at` is when it was taken, with a time zone, and
+    `camera` what the camera is known by; None and "" in a replay, and in logs of earlier versions.
     """
 
     name: str
     index: int
     time_s: float
     dropped: int
+    taken_at: datetime | None = None
+    camera: str = ""
+
+
+def logged(name: str, frame: Frame, dropped: int, camera: str) -> LoggedFrame:
+    """The line of a frame that a `camera` has just taken; "": it is one of a replay, of which that is not known."""
+    return LoggedFrame(name, frame.index, frame.time_s, dropped, datetime.now(UTC) if camera else None, camera)
 
 
 class RecordingLog:
@@ -52,7 +66,12 @@ class RecordingLog:
                 self._file = os.open(self._path, os.O_WRONLY | os.O_CREAT | os.O_APPEND, 0o644)
             begin = os.fstat(self._file).st_size
             head = "" if begin else ",".join(_COLUMNS) + "\n"
-            line = f"{head}{frame.name},{frame.index},{frame.time_s:.6f},{frame.dropped}\n".encode()
+            at = "" if frame.taken_at is None else frame.taken_at.isoformat(timespec="milliseconds")
+            told = io.StringIO()
+            csv.writer(told, lineterminator="\n").writerow(
+                (frame.name, frame.index, f"{frame.time_s:.6f}", frame.dropped, at, frame.camera)
+            )
+            line = (head + told.getvalue()).encode()
             if os.write(self._file, line) < len(line):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         except OSError as error:
@@ -83,13 +102,39 @@ def read_log(folder: Path) -> tuple[LoggedFrame, ...]:
     whole = text[: text.rfind("\n") + 1]
     rows = csv_rows(whole.splitlines(), path)
     try:
-        return tuple(LoggedFrame(name, int(index), float(time), int(lost)) for name, index, time, lost in rows[1:])
-    except ValueError as error:
+        return tuple(_frame(*row) for row in rows[1:])
+    except (TypeError, ValueError) as error:
         raise InputError(
             Message("set.log_damaged", "a line is damaged ({reason})", reason=str(error)),
             where=path,
             todo=Message("advice.remove_log", "remove the file: frames need it not"),
         ) from error
+
+
+def _frame(name: str, index: str, time_s: str, dropped: str, taken_at: str = "", camera: str = "") -> LoggedFrame:
+    at = datetime.fromisoformat(taken_at) if taken_at else None
+    if at is not None and at.tzinfo is None:
+        raise ValueError(f"{taken_at} has no time zone")
+    return LoggedFrame(name, int(index), float(time_s), int(dropped), at, camera)
+
+
+def when_taken(pictures: Sequence[Path]) -> Taken | None:
+    """By which camera and when the pictures of one folder were taken; None where its log does not say so of each.
+
+    Raises
+    ------
+    InputError
+        If the log cannot be read or is damaged.
+    """
+    if not pictures:
+        return None
+    log = {frame.name: frame for frame in read_log(pictures[0].parent)}
+    frames = [log.get(path.name) for path in pictures]
+    cameras = {"" if frame is None else frame.camera for frame in frames}
+    times = [frame.taken_at for frame in frames if frame is not None and frame.taken_at is not None]
+    if len(times) < len(frames) or len(cameras) > 1 or "" in cameras:
+        return None
+    return Taken(cameras.pop(), min(times), max(times))
 
 
 def lost_frames(frames: Sequence[LoggedFrame]) -> int:

@@ -350,6 +350,7 @@ class _Channels(Table):
 
 
 _DAYS = Annotated[float, Field(gt=0, le=36500, allow_inf_nan=False)]
+_HOURS = Annotated[float, Field(ge=0, le=24, allow_inf_nan=False)]
 _A_TIME_IN_DAYS = label("a number of days above 0")
 
 
@@ -358,6 +359,7 @@ class _Validity(Table):
 
     calibration_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
     check_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
+    fresh_hours: _HOURS | None = Field(None, description=label("a number of hours, 0 to 24"))
 
 
 class _Check(Table):
@@ -459,7 +461,9 @@ class RigTables(Table):
     air: _Air | None = Field(
         None, description="a table [air] with calibrated_celsius, checked_celsius or scanned_celsius"
     )
-    validity: _Validity | None = Field(None, description="a table [validity] with calibration_days, check_days or both")
+    validity: _Validity | None = Field(
+        None, description="a table [validity] with calibration_days, check_days or fresh_hours"
+    )
     check: _Check | None = Field(None, description="a table [check] with readjust")
     part: _Part | None = Field(None, description="a table [part]")
     reference_target: TargetTable | None = Field(None, description="a table [reference_target] with kind and sizes")
@@ -514,10 +518,15 @@ class Channels:
 
 @dataclass(frozen=True, slots=True)
 class Validity:
-    """For how many days a calibration holds, and for how many a check of it; None: without limit."""
+    """For how many days a calibration holds, and for how many a check of it; None: without limit.
+
+    `fresh_hours` is within how many hours planes and scan are of one sitting; None: FRESH_HOURS of
+    `core.calibrate.sitting`.
+    """
 
     calibration_days: float | None = None
     check_days: float | None = None
+    fresh_hours: float | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -666,7 +675,8 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
     if tables.air is not None:
         stated["air"] = tables.air.air()
     if tables.validity is not None:
-        stated["validity"] = Validity(tables.validity.calibration_days, tables.validity.check_days)
+        said = tables.validity
+        stated["validity"] = Validity(said.calibration_days, said.check_days, said.fresh_hours)
     if tables.check is not None:
         stated["readjust"] = tables.check.readjust
     if tables.camera is not None:

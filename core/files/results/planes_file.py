@@ -12,6 +12,7 @@ from pydantic import Field, model_validator
 
 from core import __version__
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose, Readjustment
+from core.calibrate.sitting import Taken
 from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import write_json
@@ -95,6 +96,14 @@ class _Readjusted(ResultFile):
     before: _Readjusted | None = None
 
 
+class _Taken(ResultFile):
+    """By which camera and when the pictures were taken, by their recording's log."""
+
+    camera: str
+    first: Time
+    last: Time
+
+
 class _PlanesFile(ResultFile):
     planes: list[_Plane] = Field(min_length=1, description="a list of one or more light planes")
     free_planes: list[_Plane] = Field(default_factory=list)
@@ -113,6 +122,7 @@ class _PlanesFile(ResultFile):
     board: BoardTable | None = None
     bends: list[Annotated[list[Row3], Field(min_length=3, max_length=3)]] | None = None
     readjusted: _Readjusted | None = None
+    taken: _Taken | None = None
     pencil_gap_mm: OrNan = math.nan
     constraint_suits: bool | None = None
     verdict: OptionalMessage = None
@@ -232,6 +242,7 @@ def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> Non
             "camera": _corrected_camera(calibration),
             "board": board_table(calibration.board) if calibration.board.values.any() else None,
             "bends": calibration.bends,
+            **({} if calibration.taken is None else {"taken": _taken_table(calibration.taken)}),
             **({} if calibration.readjusted is None else {"readjusted": _readjusted_table(calibration.readjusted)}),
             "poses": [_pose(pose) for pose in calibration.poses],
         },
@@ -307,7 +318,12 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         converged=file.converged,
         points_off_alike=file.points_off_alike,
         flatness_assumed=file.flatness_assumed,
+        taken=None if file.taken is None else Taken(file.taken.camera, file.taken.first, file.taken.last),
     )
+
+
+def _taken_table(taken: Taken) -> dict[str, str]:
+    return {"camera": taken.camera, "first": taken.first.isoformat(), "last": taken.last.isoformat()}
 
 
 def _readjusted_table(known: Readjustment) -> dict[str, Any]:

@@ -123,7 +123,7 @@ class LiveCamera:
     def _take(self, frame: Frame, view: TargetView, judge: CaptureJudge) -> None:
         name = f"view{self._number:02d}"
         self._number += 1
-        self._context.write(name, frame.picture)
+        self._context.write(name, frame.picture, frame)
         self._context.recorded += 1
         judge.taken(named(view, name), frame.time_s)
         self._sentence, self._missing, self._wanted = TAKEN, judge.missing(), judge.wanted()

@@ -6,8 +6,9 @@ import time
 from collections.abc import Sequence
 from datetime import datetime
 
+from core.calibrate.sitting import Taken, hours_of_sitting
 from core.errors import InputError
-from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_poses
+from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_fan, read_stored_poses
 from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
@@ -30,6 +31,7 @@ class ScanChecks:
         self._context, self._previewer = context, previewer
         self._image_size = (0, 0)
         self._poses = calibrated_poses(context.request)
+        self._planes_taken = planes_taken(context.request)
         self._stripe_px = stripe_width(piece for pose in self._poses for piece in pose)
         self._section: Message | None = None
         self._adviser = ExposureAdviser()
@@ -87,14 +89,30 @@ class ScanChecks:
             fresh_days=request.rig.validity.calibration_days or FRESH_DAYS,
             section=self._section,
         ).checks()
-        checks = (*checks, rig_check(request.check, datetime.now().astimezone()))
+        now = datetime.now().astimezone()
+        here = Taken(self._context.camera, now, now)
+        hours = hours_of_sitting(self._planes_taken, here, request.rig.validity.fresh_hours)
+        checks = (*checks, rig_check(request.check, now, hours))
         if checks != self._told:
             self._told = checks
             self._context.emit(LiveChecks(checks))
 
 
-def rig_check(check: InterimCheck | None, now: datetime) -> Check:
-    """Whether camera and laser were checked on the day of `now`, which has a time zone, and what came of it."""
+def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | None = None) -> Check:
+    """Whether camera and laser were checked on the day of `now`, which has a time zone, and what came of it.
+
+    Planes calibrated in this sitting, so many hours ago, are as good as a check.
+    """
+    if check is None and sitting_hours is not None:
+        return Check(
+            "check",
+            "ok",
+            Message(
+                "live.calibrated_in_this_sitting",
+                "The light planes were calibrated {hours:.1f} h ago with this camera: no check is needed.",
+                hours=sitting_hours,
+            ),
+        )
     if check is None or check.taken_at.astimezone(now.tzinfo).date() != now.date():
         return Check(
             "check",
@@ -106,6 +124,16 @@ def rig_check(check: InterimCheck | None, now: datetime) -> Check:
             ),
         )
     return Check("check", "ok" if check.passed else "failed", check.sentence)
+
+
+def planes_taken(request: LiveRequest) -> Taken | None:
+    """By which camera and when the fan's poses were recorded; None where that is not known."""
+    if request.kept_fan is None or request.camera is None:
+        return None
+    try:
+        return read_stored_fan(*request.kept_fan, request.camera).taken
+    except InputError:
+        return None
 
 
 def calibrated_poses(request: LiveRequest) -> tuple[tuple[Centreline, ...], ...]:

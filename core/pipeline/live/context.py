@@ -8,11 +8,13 @@ from typing import Any, Protocol
 
 from core.acquire.source import Capabilities, Frame, FrameSource, Lasers, Picture, WaitingSource
 from core.files.pictures import write_picture
+from core.files.recording.recording_log import RecordingLog, logged
 from core.held_files import rename
 from core.messages import Message
 from core.pipeline.live.commands import Command, LiveRequest
 from core.pipeline.live.display import Display
 from core.pipeline.live.events import Detail, LiveAnswered, LiveAsk, LiveEvent, LiveNotice, LiveTaken
+from core.pipeline.live.sources import camera_name
 
 THUMBNAIL_PX = 240
 """Width in pixels at most of the small picture that the window lists."""
@@ -102,8 +104,14 @@ class LiveContext:
         self.rate_hz = 0.0
         self.lasers = Lasers(fan=False, hand=False)
         self.settings, self.capabilities = request.settings, Capabilities()
+        self._log = RecordingLog(request.folder)
         self._asking = False
         self._told: Message | None = None
+
+    def close(self) -> None:
+        """No more pictures come."""
+        self.worker.close()
+        self._log.close()
 
     def switch(self, lasers: Lasers) -> bool:
         """Want the lasers like this from now on; True if the source switches them itself."""
@@ -132,9 +140,23 @@ class LiveContext:
             self._told = sentence
             self.emit(LiveNotice(sentence, refused))
 
-    def write(self, name: str, picture: Picture) -> None:
-        """Write a picture of this name (without ending); InputError if the disk is full."""
-        write_picture(self.request.folder / f"{name}.png", picture)
+    @property
+    def camera(self) -> str:
+        """What the open camera is known by in logs; "" for a replay, which is none."""
+        return camera_name(self.request.source, self.source)
+
+    def write(self, name: str, picture: Picture, frame: Frame | None = None) -> None:
+        """Write a picture by this name (without ending) and, in the log, when its frame was taken.
+
+        Raises
+        ------
+        InputError
+            If the disk is full.
+        """
+        path = self.request.folder / f"{name}.png"
+        write_picture(path, picture)
+        if frame is not None:
+            self._log.add(logged(path.name, frame, frame.dropped, self.camera))
 
     def took(self, name: str, picture: Picture) -> None:
         """A view, pose or reference is on the disk."""

@@ -237,9 +237,9 @@ class LivePlanes:
             self._refused = (pending.view, why)
             self._context.notice(why, refused=True)
         else:
-            self._context.write(name, pending.on.picture)
+            self._context.write(name, pending.on.picture, pending.on)
             if off is not None:
-                self._context.write(f"{name}_off", off.picture)
+                self._context.write(f"{name}_off", off.picture, off)
             self._number += 1
             self._context.recorded += 1
             judge.taken(named(pending.view, name), pending.on.time_s)

@@ -67,8 +67,8 @@ class FrameStore(Protocol):
     def waiting(self) -> int:
         """How many are taken but not yet on the disk."""
 
-    def write(self, name: str, picture: Picture, frame: Frame | None = None) -> bool:
-        """Take a picture, that of `frame`, to be written; False if the disk is too slow."""
+    def write(self, name: str, picture: Picture, frame: Frame | None = None, camera: str = "") -> bool:
+        """Take a picture, that of a `frame` of the `camera`, to be written; False if the disk is too slow."""
 
     def close(self) -> None:
         """Wait until all are on the disk."""
@@ -208,7 +208,7 @@ class LiveScan:
     def _record(self, frame: Frame) -> None:
         name = f"frame{self._number:05d}"
         try:
-            taken = self._store.write(name, frame.picture, frame)
+            taken = self._store.write(name, frame.picture, frame, self._context.camera)
         except InputError as error:  # the disk is full: what waits for it is kept and tried again
             self._context.lost += 1
             self._stage = "paused"

@@ -292,7 +292,7 @@ def run_live(
     try:
         error = loop.run()
     finally:
-        context.worker.close()
+        context.close()
         source.close()
         error = _finished(step) or error
         if not any(folder.iterdir()):

@@ -5,6 +5,7 @@ The window reads the descriptors when it starts: what only one kind needs is imp
 
 from __future__ import annotations
 
+import platform
 from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
@@ -68,6 +69,17 @@ def make_source(choice: SourceChoice, rig: Rig | None = None) -> FrameSource:
     if (missing := kind.missing) is not None:
         raise InputError(missing)
     return kind.make(choice.id, rig)
+
+
+def camera_name(choice: SourceChoice, source: FrameSource) -> str:
+    """What an open camera is known by in the logs of recordings; "" for a replay, whose pictures were taken before.
+
+    Cameras of one name at two computers are two. What lies before the simulated rig is none of its own.
+    """
+    if _kind(choice.kind).is_folder:
+        return ""
+    chosen = "" if choice.kind == SIMULATED.name else choice.id
+    return " ".join(" ".join((choice.kind, source.name, chosen, platform.node())).split())
 
 
 def _kind(name: str) -> SourceKind:

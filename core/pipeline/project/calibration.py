@@ -104,7 +104,8 @@ def solve_poses(
         If no camera is accepted, or the poses do not determine the fan.
     """
     camera = _accepted(folder, project)
-    return solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
+    settings = project.options.for_planes
+    return solve_planes(poses, camera.camera, project_set(folder, project), settings, progress, camera)
 
 
 def accept_planes(

@@ -13,6 +13,7 @@ import numpy as np
 
 from core.calibrate.change import (
     DEFAULT_STABILITY,
+    P_TOLD,
     Change,
     Evidence,
     RigSpread,
@@ -48,6 +49,7 @@ from core.pipeline.steps.stated_change import (
     change_at_scan,
     change_since_check,
     notes_since_check,
+    sitting_of,
 )
 from core.pipeline.steps.validity import history_name, history_of, stated_validity
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -322,16 +324,22 @@ def judged(
             )
         evidence += of_check
     stated = _stated(recording_set, fan)
-    change = judge(
-        camera,
-        fan.fan,
-        deviations,
-        evidence,
-        stated.known,
-        charted_spread(recording_set, calibration),
-        stated.guess if agree else stability_by_pictures(deviations, evidence, stated.guess),
-    )
-    change = replace(change, checked=agree)
+    sitting = sitting_of(recording_set, fan) if at_scan and not recording_set.check else None
+    if sitting is not None:
+        change = judge(camera, fan.fan, deviations, evidence, sitting.stability)
+    if sitting is not None and change.p >= P_TOLD:
+        change = replace(change, checked=True, sitting_hours=sitting.hours)
+    else:  # frames that show a change since the planes' calibration are not of its sitting, whatever their log says
+        change = judge(
+            camera,
+            fan.fan,
+            deviations,
+            evidence,
+            stated.known,
+            charted_spread(recording_set, calibration),
+            stated.guess if agree else stability_by_pictures(deviations, evidence, stated.guess),
+        )
+        change = replace(change, checked=agree)
     reasons = [(one.located.features.name, one.located.reason) for one in checked if one.located.reason is not None]
     if any(pose.misses_fan for pose in checked):
         change = replace(change, p=0.0, times=math.inf)
@@ -341,6 +349,9 @@ def judged(
 
 def assumed_stability(recording_set: RecordingSet, change: Change, fan: FanCalibration) -> tuple[Message, ...]:
     """Notes on what is assumed of a rig of which not all is stated, or taken from the history of its checks."""
+    if change.sitting_hours is not None:
+        kelvins = notes_since_check(recording_set.rig)
+        return (note_of("scan.calibrated_in_this_sitting", hours=change.sitting_hours), *kelvins)
     if change.spread is not None:
         return (_charted(change.spread, recording_set),)
     since_check = notes_since_check(recording_set.rig) if checked_on_the_day(recording_set, fan) else ()

@@ -17,6 +17,7 @@ from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.picture_reader import PictureReader
+from core.files.recording.recording_log import when_taken
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
@@ -67,7 +68,7 @@ def planes_step(
         poses = measure_poses(log.pictures, camera, progress, settings.stripe, beside)
         ridges = write_ridges(work, log.pictures, poses, camera, settings.stripe)
         try:
-            calibration = solve_planes(poses, camera, work.recording_set.rig, settings, progress, given)
+            calibration = solve_planes(poses, camera, work.recording_set, settings, progress, given)
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, settings.accept_few_poses)
@@ -202,7 +203,7 @@ def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
 def solve_planes(
     poses: Sequence[PoseFeatures],
     camera: Camera,
-    rig: Rig,
+    recording_set: RecordingSet,
     settings: PlanesSettings | None = None,
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
@@ -215,15 +216,16 @@ def solve_planes(
     Raises
     ------
     InputError
-        If the poses do not determine the fan.
+        If the poses do not determine the fan, or the log of their recording is damaged.
     """
-    settings = settings or PlanesSettings()
+    rig, settings = recording_set.rig, settings or PlanesSettings()
+    taken = when_taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
     excluded = {name.removeprefix(FOLDER) for name in settings.excluded}
     adjusted = calibration.covariance if calibration is not None and settings.adjust_camera else None
     known = fan_options(rig, settings)
     if calibration is not None and rig.one_target:
         known = replace(known, board=calibration.board)
-    return fit_fan(poses, camera, known, progress, excluded, adjusted)
+    return replace(fit_fan(poses, camera, known, progress, excluded, adjusted), taken=taken)
 
 
 def fan_options(rig: Rig, settings: PlanesSettings) -> FanOptions:

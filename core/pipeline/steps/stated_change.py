@@ -9,6 +9,8 @@ from typing import NamedTuple
 from core.calibrate.change import DEFAULT_STABILITY, Stability
 from core.calibrate.drift import KELVINS_WITHIN_DAY, NO_DRIFT, USUAL_KELVINS, Apart, apart, stability_after
 from core.calibrate.results import FanCalibration
+from core.calibrate.sitting import hours_of_sitting
+from core.files.recording.recording_log import when_taken
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
@@ -52,6 +54,33 @@ def change_at_scan(recording_set: RecordingSet, fan: FanCalibration) -> StatedCh
     """Until the frames were recorded."""
     when = taken_at(recording_set.frames) if recording_set.frames else None
     return _since_calibration(recording_set, recording_set.rig.air.scanned, when, fan)
+
+
+class Sitting(NamedTuple):
+    """Planes that were calibrated in the sitting of the scan."""
+
+    hours: float
+    """From the first picture of the planes to the last frame."""
+    stability: Stability
+    """How far the rig may have changed meanwhile."""
+
+
+def sitting_of(recording_set: RecordingSet, fan: FanCalibration) -> Sitting | None:
+    """The sitting in which planes were calibrated and frames recorded; None where that is not one, or not known.
+
+    What had changed before is in the planes' own pictures, as it is in those of a check of the day.
+
+    Raises
+    ------
+    InputError
+        If the log of the frames is damaged.
+    """
+    rig = recording_set.rig
+    hours = hours_of_sitting(fan.taken, when_taken(recording_set.frames), rig.validity.fresh_hours)
+    if hours is None or fan.readjusted is not None:
+        return None
+    since = apart(rig.air.calibrated, rig.air.scanned, hours, KELVINS_WITHIN_DAY)
+    return Sitting(hours, rig.drift.over(since))
 
 
 def change_at_check(recording_set: RecordingSet, fan: FanCalibration, when: datetime) -> StatedChange:

@@ -7,6 +7,7 @@ import sys
 import threading
 import warnings
 import zlib
+from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
 import cv2
@@ -18,9 +19,11 @@ from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording import recording_log
 from core.files.recording.recorder import Recorder
-from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log
+from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log, when_taken
 from core.files.recording.set_listing import check_sizes, scan_frames
 from tests.files.killed_recorder import picture, size_of
+
+AT = datetime(2026, 3, 1, 10, tzinfo=UTC)
 
 
 def frame(number, dropped=0):
@@ -61,7 +64,7 @@ def test_the_log_says_when_each_frame_was_exposed_and_how_many_were_lost(tmp_pat
         LoggedFrame(f"frame0{ending}", 0, 0.0, 0),
         LoggedFrame(f"frame1{ending}", 4, 0.1, 3),
     )
-    assert (tmp_path / LOG).read_text().splitlines()[0] == "name,index,time_s,dropped"
+    assert (tmp_path / LOG).read_text().splitlines()[0] == "name,index,time_s,dropped,taken_at,camera"
 
 
 def test_frames_lost_by_source_and_disk_are_counted_together(tmp_path):
@@ -181,3 +184,45 @@ def test_the_head_of_a_large_cameras_picture_is_read_without_a_warning(tmp_path)
         warnings.simplefilter("error")
         with pytest.raises(InputError, match="14204 × 10652"):
             check_sizes([tmp_path / "b.png", tmp_path / "a.png"])
+
+
+def recorded(folder, names, camera, at):
+    """The log of pictures that a camera took a minute apart, from `at` on."""
+    log = RecordingLog(folder)
+    for number, name in enumerate(names):
+        log.add(LoggedFrame(name, number, 0.1 * number, 0, at + timedelta(minutes=number) if camera else None, camera))
+    log.close()
+    return [folder / name for name in names]
+
+
+def test_the_log_of_a_camera_says_which_it_was_and_when(tmp_path):
+    before = datetime.now(UTC)
+    recorder = Recorder(tmp_path)
+    recorder.write("frame0", picture(0), frame(0), 'Basler "ace", 12 lab')
+    recorder.write("frame1", picture(1), frame(1), 'Basler "ace", 12 lab')
+    recorder.close()
+    taken = when_taken([tmp_path / "frame0.png", tmp_path / "frame1.png"])
+    assert taken.camera == 'Basler "ace", 12 lab'
+    assert before - timedelta(seconds=1) < taken.first <= taken.last <= datetime.now(UTC)
+
+
+def test_of_a_replay_of_other_cameras_and_of_pictures_that_are_not_in_it_the_log_knows_nothing(tmp_path):
+    folders = [tmp_path / name for name in ("replay", "two", "old")]
+    for folder in folders:
+        folder.mkdir()
+    replay, two, old = folders
+    assert when_taken(recorded(replay, ["a.png", "b.png"], "", AT)) is None
+    one, other = recorded(two, ["a.png"], "one", AT), recorded(two, ["b.png"], "other", AT)
+    assert when_taken(one).camera == "one"
+    assert when_taken([*one, *other]) is None
+    assert when_taken([*one, two / "c.png"]) is None
+    (old / LOG).write_text("name,index,time_s,dropped\na.png,0,0.0,0\n")
+    assert when_taken([old / "a.png"]) is None
+    assert when_taken([tmp_path / "a.png"]) is None
+    assert when_taken([]) is None
+
+
+def test_a_time_without_its_zone_is_no_time(tmp_path):
+    (tmp_path / LOG).write_text("name,index,time_s,dropped,taken_at,camera\na.png,0,0.0,0,2026-03-01T10:00:00,one\n")
+    with pytest.raises(InputError, match="time zone"):
+        when_taken([tmp_path / "a.png"])

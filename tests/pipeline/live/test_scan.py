@@ -422,7 +422,7 @@ class SlowStore:
     def __init__(self, folder, ending):
         folder.mkdir(exist_ok=True)
 
-    def write(self, name, picture, frame):
+    def write(self, name, picture, frame, camera=""):
         taken = self.free_s <= frame.time_s + 3 / 20
         self.free_s = max(self.free_s, frame.time_s) + 1 / 20 if taken else self.free_s
         self.written, self.dropped = self.written + taken, self.dropped + (not taken)
