@@ -76,7 +76,7 @@ def camera_name(choice: SourceChoice, source: FrameSource) -> str:
 
     Cameras of one name at two computers are two. What lies before the simulated rig is none of its own.
     """
-    if _kind(choice.kind).is_folder:
+    if choice.kind == REPLAY.name:
         return ""
     chosen = "" if choice.kind == SIMULATED.name else choice.id
     return " ".join(" ".join((choice.kind, source.name, chosen, platform.node())).split())

@@ -178,7 +178,7 @@ def test_poses_are_taken_with_the_fan_on_and_off(monkeypatch, tmp_path, plates):
     choices = {"frames": UNTIL_STOPPED, "camera": plates.camera}
     ended = views_taken(monkeypatch, tmp_path, plates, window, pictures, "planes", **choices)
     assert ended.recorded == 3
-    assert sorted(path.name for path in (tmp_path / "planes").iterdir()) == [
+    assert sorted(path.name for path in (tmp_path / "planes").glob("*.png")) == [
         f"pose0{i}{end}.png" for i in range(3) for end in ("", "_off")
     ]
     for index, (on, off) in enumerate(plates.poses):
@@ -315,7 +315,7 @@ def test_poses_can_be_taken_without_a_second_picture(monkeypatch, tmp_path, plat
         pairs=False,
     )
     assert ended.recorded == 1
-    assert [path.name for path in (tmp_path / "planes").iterdir()] == ["pose00.png"]
+    assert [path.name for path in (tmp_path / "planes").glob("*.png")] == ["pose00.png"]
 
 
 def test_a_plate_without_the_fan_s_light_is_not_taken(monkeypatch, tmp_path, plates):
