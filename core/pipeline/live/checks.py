@@ -8,7 +8,7 @@ from datetime import datetime
 
 from core.calibrate.sitting import Taken, hours_of_sitting
 from core.errors import InputError
-from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_fan, read_stored_poses
+from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_planes, read_stored_poses
 from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
@@ -128,10 +128,10 @@ def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | 
 
 def planes_taken(request: LiveRequest) -> Taken | None:
     """By which camera and when the fan's poses were recorded; None where that is not known."""
-    if request.kept_fan is None or request.camera is None:
+    if request.kept_planes is None or request.camera is None:
         return None
     try:
-        return read_stored_fan(*request.kept_fan, request.camera).taken
+        return read_stored_planes(*request.kept_planes, request.camera).taken
     except InputError:
         return None
 

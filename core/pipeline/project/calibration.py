@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 from core.calibrate.camera.views import SeenViews
@@ -21,7 +22,7 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_told, solve_planes
+from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_taken, planes_told, solve_planes
 from core.progress import Progress, silent
 
 
@@ -104,8 +105,8 @@ def solve_poses(
         If no camera is accepted, or the poses do not determine the fan.
     """
     camera = _accepted(folder, project)
-    settings = project.options.for_planes
-    return solve_planes(poses, camera.camera, project_set(folder, project), settings, progress, camera)
+    planes = solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
+    return replace(planes, taken=planes_taken(project_set(folder, project)))
 
 
 def accept_planes(

@@ -12,6 +12,7 @@ from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
@@ -68,10 +69,11 @@ def planes_step(
         poses = measure_poses(log.pictures, camera, progress, settings.stripe, beside)
         ridges = write_ridges(work, log.pictures, poses, camera, settings.stripe)
         try:
-            calibration = solve_planes(poses, camera, work.recording_set, settings, progress, given)
+            calibration = solve_planes(poses, camera, work.recording_set.rig, settings, progress, given)
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, settings.accept_few_poses)
+        calibration = replace(calibration, taken=planes_taken(work.recording_set))
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
@@ -203,7 +205,7 @@ def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
 def solve_planes(
     poses: Sequence[PoseFeatures],
     camera: Camera,
-    recording_set: RecordingSet,
+    rig: Rig,
     settings: PlanesSettings | None = None,
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
@@ -216,16 +218,26 @@ def solve_planes(
     Raises
     ------
     InputError
-        If the poses do not determine the fan, or the log of their recording is damaged.
+        If the poses do not determine the fan.
     """
-    rig, settings = recording_set.rig, settings or PlanesSettings()
-    taken = when_taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
+    settings = settings or PlanesSettings()
     excluded = {name.removeprefix(FOLDER) for name in settings.excluded}
     adjusted = calibration.covariance if calibration is not None and settings.adjust_camera else None
     known = fan_options(rig, settings)
     if calibration is not None and rig.one_target:
         known = replace(known, board=calibration.board)
-    return replace(fit_fan(poses, camera, known, progress, excluded, adjusted), taken=taken)
+    return fit_fan(poses, camera, known, progress, excluded, adjusted)
+
+
+def planes_taken(recording_set: RecordingSet) -> Taken | None:
+    """By which camera and when the pictures of the planes were taken; None where their log does not say so.
+
+    Raises
+    ------
+    InputError
+        If the log is damaged.
+    """
+    return when_taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
 
 
 def fan_options(rig: Rig, settings: PlanesSettings) -> FanOptions:
