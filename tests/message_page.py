@@ -23,7 +23,7 @@ PAGE = MANUAL / "messages.md"
 
 NAMES = (
     "advice.*", "*.advice_*", "*.rule_*", "*.cause_*", "input.*",
-    "artefact.passed", "check.passed", "readjust.proposed", "readjust.undone", "target.sizes_agree",
+    "artefact.passed", "check.passed", "readjust.undone", "target.sizes_agree",
     "camera.downwards", "camera.inwards", "camera.outwards", "camera.upwards", "camera.to_the_*", "camera.none",
     "camera.only", "camera.of_view", "camera.nameless_view",
     "camera.view_number", "camera.two_reasons", "cli.*_used",

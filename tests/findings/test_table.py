@@ -19,7 +19,7 @@ ROOMS = ("core/calibrate/", "core/image/", "core/scan/", "core/inspect/", "core/
 """Rooms whose sentences are notes of results."""
 LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", "core/scan/preview/")
 """What these say is of the moment: of one picture, one crossing, the next sweep."""
-ANSWERS = {"readjust.proposed", "readjust.undone"}
+ANSWERS = {"readjust.undone"}
 """What a command answers."""
 OF_ONE_RESULT = {
     "gauge.several_faces", "inspection.light_is_skewed", "inspection.missing_in_u", "study.doubted",
