@@ -8,9 +8,7 @@ a replay, it says which and when: unlike the dates of files, that stays when a r
 from __future__ import annotations
 
 import contextlib
-import csv
 import errno
-import io
 import os
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -22,6 +20,7 @@ from core.acquire.source import Frame
 from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.atomic import cannot_write
+from core.files.csv_text import csv_text
 from core.files.reading import csv_rows, read_text
 from core.messages import Message
 
@@ -67,11 +66,8 @@ class RecordingLog:
             begin = os.fstat(self._file).st_size
             head = "" if begin else ",".join(_COLUMNS) + "\n"
             at = "" if frame.taken_at is None else frame.taken_at.isoformat(timespec="milliseconds")
-            told = io.StringIO()
-            csv.writer(told, lineterminator="\n").writerow(
-                (frame.name, frame.index, f"{frame.time_s:.6f}", frame.dropped, at, frame.camera)
-            )
-            line = (head + told.getvalue()).encode()
+            told = (frame.name, frame.index, f"{frame.time_s:.6f}", frame.dropped, at, frame.camera)
+            line = (head + csv_text([told])).encode()
             if os.write(self._file, line) < len(line):
                 raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
         except OSError as error:

@@ -62,7 +62,7 @@ def full_project():
             plane_margin_mm=12.0, stability=Stability(5e-5, 0.01, 0.1, 5e-5),
             drift=Drift(Stability(3e-5, 0.003, 0.04, 2e-5), Stability(1e-6, 1e-3, 0.01, 1e-6)), air=Air(20.5, 21, 23.5),
             row_time_us=26.0,
-            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0), name="bench-2", readjust=True,
+            channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0, 2.0), name="bench-2", readjust=True,
             mosaic="RGGB", reference=ReferenceTarget(BlackSquare(36.0), BoardTolerance(0.01, 1e-5)),
             part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5,
                       TargetTemperature(23.0, 0.5, 24e-6, 1e-6))),

@@ -421,7 +421,7 @@ def test_each_check_is_in_the_history_of_the_rig_and_is_shown(unchanged, tmp_pat
     assert "[validity] in rig.toml" in said.out, "that nothing lapses is said"
     said = trisect("check", made, "--out", out, "--history")
     assert said.code == 0, said.err
-    assert "in order," in said.out and "by its stated stability, 21.5 °C" in said.out
+    assert "verdict in order," in said.out and "allowed by its stability, air 21.5 °C" in said.out
     (one,) = json.loads(trisect("check", made, "--out", out, "--history", "--json").out)["checks"]
     assert one["limits"]["lower_mm"] < one["error_mm"] < one["limits"]["upper_mm"]
 

@@ -307,9 +307,9 @@ class SurfaceTab(QWidget):
         self.scene.set_mesh(mesh.vertices, mesh.triangles[: self._presenter.triangles_shown()], **look)
 
     def _look(self, view: InspectionView, count: int, name: str) -> dict[str, Any]:
-        if name == "plain":
-            return {"colours": PLAIN}
         comparison = self._presenter.comparison
+        if name == "plain" or (name == "compared" and comparison.shown is None):  # it has just been taken away
+            return {"colours": PLAIN}
         if name == "compared" and comparison.shown is not None:
             only, number = comparison.significant_only, view.number[:count]
             values = comparison.shown.coloured(number, significant_only=only)
