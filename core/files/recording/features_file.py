@@ -46,7 +46,7 @@ _OF_VIEWS = {
 _VIEWS = {**_OF_VIEWS, "key": texts(), "where": texts(), "sizes": whole("pictures", 2), "hot": whole(optional=True)}
 _POSES = {
     **_OF_VIEWS,
-    "planes_id": texts(),
+    "fan_id": texts(),
     "notes": texts("pictures", optional=True),
     "moved_px": real("pictures", optional=True),
     **centreline_members("stripe", "pictures"),
@@ -101,7 +101,7 @@ _PLANES_TODO = Message(
 def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> None:
     """Write planes.npz with the id of the fan that was fitted to `poses`; InputError if it cannot be written."""
     arrays: dict[str, NDArray[Any]] = {
-        "planes_id": np.array(planes_id),
+        "fan_id": np.array(planes_id),
         "names": pack_texts([pose.name for pose in poses]),
         "reasons": pack_messages([pose.reason for pose in poses]),
         "notes": pack_texts(["\n".join(map(as_text, pose.notes)) for pose in poses]),
@@ -123,7 +123,7 @@ def read_poses(path: Path, planes_id: str) -> tuple[PoseFeatures, ...]:
     if not path.exists():
         return ()
     arrays = read_arrays(path, _POSES, todo=_PLANES_TODO)
-    if str(arrays["planes_id"]) != planes_id:
+    if str(arrays["fan_id"]) != planes_id:
         return ()
     with unpacking(path, todo=_PLANES_TODO):
         return _unpacked(arrays)

@@ -489,6 +489,13 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     assert read_poses(tmp_path / "none.npz", "fan1") == ()
 
 
+def test_the_id_in_a_file_of_poses_has_the_name_that_earlier_versions_gave_it(tmp_path):
+    path = tmp_path / "planes.npz"
+    write_poses(path, "fan1", (PoseFeatures("p1", None, ()),))
+    with np.load(path) as arrays:
+        assert str(arrays["fan_id"]) == "fan1"
+
+
 @pytest.mark.parametrize("name", ["names", "notes", "reasons"])
 @pytest.mark.parametrize("wrong", [np.zeros((1, 2)), np.array([["a", "b"]]), np.zeros(1)])
 def test_texts_of_poses_that_are_none_are_a_damaged_file(tmp_path, name, wrong):
