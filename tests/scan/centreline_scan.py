@@ -13,6 +13,7 @@ is not in it.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -121,16 +122,28 @@ class ExactScan:
         if moved is not None:
             later = shifted(stage_scene, moved[1])
             scenes[moved[0] :] = [later] * (len(shots) - moved[0])
-        eyes = {id(scene): _Eye(rig, scene) for scene in {id(one): one for one in [stage_scene, *scenes]}.values()}
-        fan = [eyes[id(stage_scene)].curves(sheet) for sheet in fan_sheets(rig, WORK_POINT)]
+        return replace(cls.seen(rig, stage_scene, shots, scenes), figures=figures)
+
+    @classmethod
+    def seen(
+        cls,
+        rig: Rig,
+        scene: Scene,
+        sheets: Sequence[Sheet],
+        scenes: Sequence[Scene] | None = None,
+        aim: np.ndarray = WORK_POINT,
+    ) -> ExactScan:
+        """The scan of a scene by `sheets`, each in its own of the `scenes` if there are any; the fan lights `aim`."""
+        scenes = [scene] * len(sheets) if scenes is None else scenes
+        eyes = {id(one): _Eye(rig, one) for one in {id(one): one for one in [scene, *scenes]}.values()}
+        fan = [eyes[id(scene)].curves(sheet) for sheet in fan_sheets(rig, aim)]
         return cls(
             rig,
-            stage_scene,
-            tuple(shots),
+            scene,
+            tuple(sheets),
             tuple(curve for curves in fan for curve in curves),
             tuple(line for line, curves in enumerate(fan) for _ in curves),
-            tuple(eyes[id(scene)].curves(sheet) for scene, sheet in zip(scenes, shots, strict=True)),
-            figures,
+            tuple(eyes[id(one)].curves(sheet) for one, sheet in zip(scenes, sheets, strict=True)),
         )
 
     @property

@@ -17,7 +17,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
-from core.scan.network.adjustment import solve_network, solve_planes
+from core.scan.network.adjustment import has_collapsed, solve_network, solve_planes
 from core.scan.network.equations import Adjustment
 from core.scan.network.fan_residuals import notes_on_network
 from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
@@ -66,11 +66,15 @@ class LocatedSweeps:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SweepPlanes:
-    """Solved planes without their uncertainty: `frames` (S,), `pis` (S, 3) in 1/mm, and each crossing's weight."""
+    """Solved planes without their uncertainty: `frames` (S,), `pis` (S, 3) in 1/mm, and each crossing's weight.
+
+    `collapsed`: whether the planes have fallen together into one.
+    """
 
     frames: NDArray[np.int64]
     pis: Array
     weights: Array
+    collapsed: bool
 
 
 def number_fan_lines(
@@ -83,12 +87,28 @@ def number_fan_lines(
 def choose_numbering(
     numberings: Sequence[FanLines], crossings: CrossingTable, camera: Camera, fan: Fan, progress: Progress = silent
 ) -> FanLines:
-    """Choose the one of the `numberings` that the sweeps agree with best, unsure centrelines settled by them."""
+    """Choose the one of the `numberings` that the sweeps agree with best, unsure centrelines settled by them.
+
+    Of those that they agree with alike the one counts that puts most centrelines on common faces; a centreline on which
+    even these differ is left out.
+    """
     if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
     crossings = _of_some_sweeps(crossings)
-    settled = [_settled(lines, crossings, camera, fan, progress) for lines in numberings]
-    return min(settled, key=lambda lines: _disagreement(lines, crossings, camera, fan, progress))
+    one_crossing = 1 / max(int(np.count_nonzero(crossings.with_fan)), 1)
+    judged: dict[tuple[int, ...], tuple[float, FanLines]] = {}
+    best = np.inf
+    for lines in sorted(numberings, key=lambda lines: _unnumbered(lines, crossings)):
+        if _unnumbered(lines, crossings) > best + one_crossing:
+            break
+        settled = _settled(lines, crossings, camera, fan, progress)
+        if settled.line not in judged:
+            judged[settled.line] = _disagreement(settled, crossings, camera, fan, progress), settled
+            best = min(best, judged[settled.line][0])
+    alike = [lines for off, lines in judged.values() if off <= best + one_crossing]
+    most = max(lines.on_faces for lines in alike)
+    first, *others = sorted((lines for lines in alike if lines.on_faces == most), key=lambda lines: -lines.settled)
+    return first.agreed(others)
 
 
 def _of_some_sweeps(crossings: CrossingTable) -> CrossingTable:
@@ -116,15 +136,24 @@ def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: F
     return settle_by_sweeps(lines, rows.piece_b, rays, np.einsum("mi,mi->m", rays, pis), fan)
 
 
+def _unnumbered(lines: FanLines, crossings: CrossingTable) -> float:
+    """Share of the fan's crossings that have no number."""
+    of_fan = crossings.piece_b[crossings.with_fan]
+    return float(np.mean(np.array(lines.line)[of_fan] == UNASSIGNED)) if len(of_fan) else 0.0
+
+
 def _disagreement(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan, progress: Progress) -> float:
-    """Share of the fan's crossings that the network leaves out or that have no number."""
+    """Share of the fan's crossings that the network leaves out or that have no number.
+
+    Planes that have fallen together agree with everything, and say nothing: they come after all others, at 1 more.
+    """
     crossings, line = numbered(all_of_them, lines)
     fan_crossings = np.count_nonzero(all_of_them.with_fan)
     if not np.any(crossings.with_fan):
         return 1.0
     sweeps = planes_together(crossings, line, camera, fan, progress)
     agreeing = np.sum(sweeps.weights[crossings.with_fan])
-    return 1.0 - float(agreeing) / max(int(fan_crossings), 1)
+    return sweeps.collapsed + 1.0 - float(agreeing) / max(int(fan_crossings), 1)
 
 
 def numbered(crossings: CrossingTable, lines: FanLines) -> tuple[CrossingTable, NDArray[np.int64]]:
@@ -196,7 +225,7 @@ def planes_together(
     renumbered, geometry = by_sweep(crossings, frames), CrossingRays.of(crossings, camera)
     equations = Adjustment(renumbered, geometry, line, fan, len(frames), LineErrors.of(renumbered), read_out)
     solution, _ = solve_planes(equations, progress)
-    return SweepPlanes(frames, solution.pis, solution.weights)
+    return SweepPlanes(frames, solution.pis, solution.weights, has_collapsed(equations, solution.pis))
 
 
 def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
