@@ -22,6 +22,9 @@ ROWS = (
             "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "
             "hand-held laser more between frames, and cross the fan on object and table. Shiny sides that mirror "
             "the laser onto the table do this, too: spray them matt.", fact="collapsed"),
+    Finding("scan.collapsed_in_spite_of_relief", Weight.GRAVE, Effect.NO_RESULT,
+            "the sweeps' light planes have fallen together into one although the fan meets relief, so no depth can be "
+            "trusted and nothing is written"),
     Finding("scan.crossings_scatter", Weight.CAUTION, Effect.WIDENS_U,
             "Crossings of the stripes disagree {times:.1f} times as much as their noise explains, everywhere alike; "
             "the points' σ contains it. The hand may have moved during exposures, or the laser is out of focus."),

@@ -25,7 +25,7 @@ from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.method import Method
-from core.scan.network.datum import Datum, datum_of
+from core.scan.network.datum import Datum, datum_of, main_plane
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
@@ -47,6 +47,16 @@ MANY_LOST = 0.1
 
 NEAREST_SHARE, FARTHEST_SHARE = 0.6, 1.5
 """Of the nearest and the farthest depth at which the fan sees the object: points beyond are reflections."""
+
+
+FLAT = 0.98
+"""Share of the fan's light on one plane from which on a scene is flat: there the planes may fall together, and the
+points are right all the same."""
+TILT_MORE = Message(
+    "scan.advice_tilt_more",
+    "move and tilt the hand-held laser more between frames, and cross the fan on object and table; spray shiny sides "
+    "that mirror it matt",
+)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,7 +85,7 @@ def reconstruct(
     Raises
     ------
     InputError
-        If no sweep crosses the fan, or no point is left.
+        If no sweep crosses the fan, the sweeps' planes fall together over relief, or no point is left.
     """
     options = options or ReconstructOptions()
     progress = reported = StepProgress(progress)
@@ -109,6 +119,8 @@ def reconstruct(
     with _drift_first(watched):
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
+    if sweeps.collapsed and not _flat(features, lines, camera, fan):
+        raise InputError(note_of("scan.collapsed_in_spite_of_relief"), where="scan", todo=TILT_MORE)
     reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
@@ -245,6 +257,15 @@ def _fan_clouds(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fa
         for piece, line in zip(features.fan, lines.line, strict=True)
         if line != UNASSIGNED
     ]
+
+
+def _flat(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> bool:
+    """Whether the fan's light lies on one plane."""
+    numbered_pieces = [(p, k) for p, k in zip(features.fan, lines.line, strict=True) if k != UNASSIGNED]
+    rays = [camera.rays(piece.uv[::4]) for piece, _ in numbered_pieces]
+    inverse_depths = [r @ fan.planes[k].pi for r, (_, k) in zip(rays, numbered_pieces, strict=True)]
+    _, on_plane = main_plane(np.concatenate(rays), np.concatenate(inverse_depths))
+    return bool(np.mean(on_plane) > FLAT)
 
 
 def _speckle(features: ScanFeatures, lines: FanLines, sweeps: LocatedSweeps, camera: Camera, fan: Fan) -> FanSpeckle:

@@ -2,13 +2,14 @@
 
 import json
 from dataclasses import replace
+from unittest.mock import patch
 
 import pytest
 
 from core.files.results.scan_file import read_scan, write_scan
 from core.findings.proof import OF_SCAN
 from core.messages import plain
-from tests.simulated import CUT, copy_of, trisect
+from tests.simulated import CUT, contents, copy_of, trisect
 
 LIMITS = "\n[gauge]\nnominal_mm = 50.0\ntolerance_mm = 20.0\n"
 """So wide that what the small set measures conforms."""
@@ -108,6 +109,15 @@ def test_a_fact_of_the_scan_takes_away_the_proof_and_so_does_its_lack(fact, hold
     scan = read_scan(out / "scan.npz")
     write_scan(out / "scan.npz", replace(scan, facts=replace(scan.facts, **{fact: holds})))
     assert again(wide[0], out, "gauge") == "not proven"
+
+
+def test_a_scan_whose_light_planes_have_collapsed_writes_nothing(wide, out):
+    before = contents(out)
+    with patch("core.scan.network.adjustment.has_collapsed", return_value=True):
+        said = trisect("scan", wide[0], "--out", out, *CUT)
+    assert said.code == 2
+    assert "fallen together into one" in said.sentence
+    assert contents(out) == before
 
 
 def test_what_speaks_against_the_day_takes_away_the_proof_whatever_its_words(wide, out):
