@@ -7,9 +7,14 @@ is solved by the bright pieces alone, and every fainter one is held against it:
 
 - it is the sweep's own if its crossings close within their σ;
 - it is a second bounce if they miss by more than its own width, too;
-- where no crossing says either, it is left out as well if there are second bounces in the scan: it may be one.
+- where no crossing says either, it is left out as well if there are second bounces in the scan, and if it is also
+  fainter than the light of other sweeps at its place: it may be one.
 
-A scan in which no piece misses keeps all of them, the faint ones as well: dark paint and grazed sides are no mirrors.
+A scan in which no piece misses keeps all of them, the faint ones as well: dark paint, grazed sides and a laser far from
+the surface are no mirrors.
+
+Bright pieces that all lie on the table cross others along one straight line. About it the sheet is free to turn, and
+what noise seems to say of that is worth nothing: pieces off that line cannot miss.
 """
 
 from __future__ import annotations
@@ -26,6 +31,7 @@ from core.image.stripes.stripe import WIDTH_IN_SIGMA
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
+from core.model.residuals import over_picture
 from core.model.robust import huber_weights, mad_sd
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.frames import FrameFeatures, FrameRecord
@@ -33,6 +39,7 @@ from core.scan.network.adjustment import HUBER_AT, has_collapsed
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment
 from core.scan.network.geometry import CrossingRays, floored, noise_gains
 from core.scan.network.line_errors import LineErrors
+from core.scan.network.sweep_plane import PRIOR_SD
 from core.scan.sweeps.locate import by_sweep, sweeping_frames
 
 # Held by tests/scan/sweeps/test_ghosts.py and tests/accuracy/test_second_bounces.py.
@@ -42,6 +49,10 @@ SEVERAL = 3
 """Crossings of such pieces in a scan, at least, before there are second bounces in it: one may be wrong by chance."""
 MISSED = 4.0
 """Standard deviations by which a crossing misses. Those of second bounces miss by 100 to 1000."""
+FIRM = 5.0
+"""Noise of crossings by which they spread beside a straight line at least, or their sheet may turn about it."""
+GRID = (16, 12)
+"""Columns and rows of the parts of a picture in which the light of sweeps is compared."""
 _ROUNDS = 6
 """Rounds of reweighting by Huber: wrong crossings are few among bright pieces."""
 
@@ -100,16 +111,18 @@ def find_second_bounces(
     table, of_fan = table.select(solvable), line[np.concatenate([first, second])][solvable]
     missed, real = _judged(table, of_fan, bright, line[among], camera, fan)
     width = {(f, p): WIDTH_IN_SIGMA * float(np.median(frames[f].centrelines[p].width)) for f, p in faint}
-    found, proven = 0, set[Piece]()
+    found, missing, proven = 0, set[Piece](), set[Piece]()
     for piece in faint:
         mine = (table.a == piece[0]) & (table.piece_a == piece[1])
         if np.any(mine) and np.median(missed[mine]) > width[piece]:
             found += int(np.count_nonzero(mine))
-        if np.any(real[mine]) and 2 * np.count_nonzero(real[mine]) > np.count_nonzero(mine):
+            missing.add(piece)
+        elif np.any(real[mine]) and 2 * np.count_nonzero(real[mine]) > np.count_nonzero(mine):
             proven.add(piece)
     if found < SEVERAL:
         return NO_BOUNCES
-    return SecondBounces(frozenset(faint - proven))
+    unsure = (faint - proven - missing) & _faint_at_their_places(frames, camera.image_size)
+    return SecondBounces(frozenset(missing | unsure))
 
 
 def _faint_pieces(frames: Sequence[FrameFeatures]) -> set[Piece]:
@@ -124,6 +137,29 @@ def _faint_pieces(frames: Sequence[FrameFeatures]) -> set[Piece]:
             for number, piece in enumerate(frame.centrelines)
             if np.median(piece.strength) < FAINT * usual
         }
+    return found
+
+
+def _faint_at_their_places(frames: Sequence[FrameFeatures], image_size: tuple[int, int]) -> set[Piece]:
+    """Frame and number of the pieces that are clearly fainter than the light of other sweeps at the same places.
+
+    What distance, incidence and the surface's colour do to light they do to all sweeps alike at one place. That of a
+    frame on the whole is taken off before: the laser may have been farther away.
+    """
+    pieces = [((frame.index, k), one) for frame in frames for k, one in enumerate(frame.centrelines)]
+    if not pieces:
+        return set()
+    part = [over_picture(one.uv, image_size, GRID) for _, one in pieces]
+    strength, of_part = np.concatenate([one.strength for _, one in pieces]), np.concatenate(part)
+    usual = np.full(GRID[0] * GRID[1], np.nan)
+    for one in np.unique(of_part):
+        usual[one] = np.median(strength[of_part == one])
+    share = {piece: one.strength / usual[mine] for (piece, one), mine in zip(pieces, part, strict=True)}
+    found = set()
+    for frame in frames:
+        mine = [share[frame.index, k] for k in range(len(frame.centrelines))]
+        level = np.median(np.concatenate(mine)) if mine else 1.0
+        found |= {(frame.index, k) for k, one in enumerate(mine) if np.median(one) < FAINT * level}
     return found
 
 
@@ -151,6 +187,8 @@ def _judged(
     if has_collapsed(equations, solution.pis):  # the part is dark: the bright pieces know nothing of depth
         return np.zeros(len(table)), np.zeros(len(table), dtype=np.bool_)
     covariance = equations.covariance(solution)[0].reshape(len(frames), 3, len(frames), 3)
+    for sweep, free in enumerate(_free_turns(renumbered, equations.geometry, len(frames))):
+        covariance[sweep, :, sweep, :] += PRIOR_SD**2 * np.outer(free, free)
     scale = max(1.0, mad_sd(solution.residuals))
     place = np.searchsorted(frames, np.arange(max(frames[-1], table.a.max(initial=0), table.b.max(initial=0)) + 1))
     at = table.renumber(place)
@@ -167,6 +205,20 @@ def _judged(
     misses = np.abs(off) > MISSED * sigma
     sharp = MISSED * sigma < np.abs(gain_a)  # a line one pixel aside would miss
     return np.where(misses, np.abs(off / gain_a), 0.0), ~misses & sharp
+
+
+def _free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) -> Array:
+    """Unit vectors (S, 3) along which the planes are free, for their crossings' rays lie in one plane; else zero."""
+    px = np.sqrt(np.abs(np.linalg.det(geometry.jacobians)))
+    free = np.zeros((sweeps, 3))
+    for sweep in range(sweeps):
+        as_a, as_b = crossings.a == sweep, crossings.b == sweep
+        rays = np.concatenate([geometry.rays[as_a], geometry.rays[as_b]])
+        noise = np.concatenate([(crossings.sigma_a * px)[as_a], (crossings.sigma_b * px)[as_b]])
+        _, spread, directions = np.linalg.svd(rays / noise[:, None])
+        if len(rays) < 3 or spread[2] < FIRM * np.sqrt(len(rays)):
+            free[sweep] = directions[2]
+    return free
 
 
 def _variance(covariance: Array, one: Index, other: Index, rays: Array) -> Array:
