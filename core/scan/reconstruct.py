@@ -18,9 +18,9 @@ from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
+from core.scan.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
-from core.scan.features.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
@@ -140,6 +140,7 @@ def reconstruct(
             ),
         )
     records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
+    sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
     progress("network", 3, 3)
     return ScanResult(
         cloud=cloud,
@@ -154,7 +155,7 @@ def reconstruct(
         notes=bounces.notes
         + _ordered(features.notes, solved)
         + (() if too_bright is None else (too_bright,))
-        + notes_on_blur(exposure_blurs(features.frames, features.image_size))
+        + notes_on_blur(exposure_blurs(features.frames, sheets, cloud, camera))
         + _unsure(found, cloud, solved, options)
         + _fan_notes(lines),
         datum=solved.datum,

@@ -1,0 +1,151 @@
+"""How much the hand's motion within an exposure has blurred each frame, by the widths of its stripes.
+
+A stripe that moves while a frame is exposed is seen at all the places it passes: its section is as wide as at rest, and
+as the spread of these places, in squares. A sheet that meets the surface obliquely is wider, too: by 1/cos of the angle
+it makes with the surface's normal, as the camera sees it. Sheet and surface are known once the scan is solved, and
+sections are compared by what that leaves. Where the sweeps of several frames pass the same part of the picture, their
+sections at rest are then alike, so the narrowest of them tell how wide a stripe is there, and the others by how much
+they are blurred. What blurs all frames alike, a hand at a steady speed, is not seen: it displaces nothing either.
+
+σ of a centreline is that of its own, wider sections (`core.image.stripes.precision`). Where a hand speeds up or turns
+back within an exposure the section is not symmetric either; on simulated scans exposed for 20 and 40 ms by a hand at
+28 mm/s that trembles by 0.35 mm that was to be seen in one of four, in frames blurred by more than 1.4 px: twice the
+usual errors, 96 % within 2σ, and the thickness no worse. So nothing is added to σ (tests/accuracy/test_motion.py).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from core.findings.table import note_of
+from core.messages import Message
+from core.model import Camera
+from core.model.arrays import Array
+from core.model.residuals import over_picture
+from core.model.robust import mad_sd
+from core.scan.features.frames import FrameFeatures
+from core.scan.network.datum import MAIN_PLANE_MM, main_plane
+from core.scan.network.geometry import inverse_depth_gradient
+from core.scan.surface.cloud import Cloud
+
+GRID = (16, 12)
+"""Columns and rows of the parts of a picture in which sections at rest are taken for alike."""
+FEWEST_FRAMES = 4
+"""Frames that pass a part at least, or it does not tell the width at rest."""
+FEWEST_PARTS = 4
+"""Parts in which a frame is compared at least, or nothing is said of it."""
+FEWEST_POINTS, MOST_POINTS = 12, 300
+"""Points in a part by which its surface is known, at least; more than the second say no more of it."""
+LEAST_ACROSS = 0.08
+"""Of a part's width that these spread across their stripe at least (standard deviation), or they tell no surface."""
+AT_REST = 0.25
+"""Quantile of the frames' widths in a part that is that at rest: a hand that trembles stands still now and then."""
+MATTERS = 0.5
+"""A blur of so many widths at rest counts: it makes sections an eighth wider. Frames of hands at rest reach 0.35."""
+WORTH_A_NOTE = 0.1
+"""Share of the frames that are blurred so, from which on it is told."""
+
+
+def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array], cloud: Cloud, camera: Camera) -> Array:
+    """Spread (F, 2) in px of the stripe's places within each frame's exposure, and the σ of its section at rest.
+
+    `sheets` are the light planes π (3,) of the frames that were located, `cloud` the points of all. NaN for frames that
+    pass too few parts of the picture where others pass, too.
+    """
+    surfaces = _surfaces(cloud, camera)
+    rows: list[tuple[int, int, float, float]] = []
+    for number, frame in enumerate(frames):
+        lines = [line for line in frame.centrelines if not line.saturated.all()]
+        if not lines or number not in sheets:
+            continue
+        uv = np.vstack([line.uv[~line.saturated] for line in lines])
+        square = np.concatenate([line.width[~line.saturated] for line in lines]) ** 2
+        part, per_mm = over_picture(uv, camera.image_size, GRID), _px_per_mm(uv, sheets[number], surfaces, camera)
+        for one in np.unique(part[np.isfinite(per_mm)]):
+            mine = (part == one) & np.isfinite(per_mm)
+            rows.append((number, int(one), float(np.median(square[mine])), float(np.median(per_mm[mine] ** 2))))
+    found = np.full((len(frames), 2), np.nan)
+    if not rows:
+        return found
+    of_frame, part, square, spread = (np.array(column) for column in zip(*rows, strict=True))
+    model = spread + _of_lens(square, spread)
+    rest = np.full(len(square), np.nan)
+    for one in np.unique(part):
+        mine = part == one
+        if mine.sum() >= FEWEST_FRAMES:
+            rest[mine] = np.quantile(square[mine] / model[mine], AT_REST) * model[mine]
+    for number in np.unique(of_frame):
+        mine = (of_frame == number) & np.isfinite(rest)
+        if mine.sum() >= FEWEST_PARTS:
+            more, at_rest = float(np.median(square[mine] - rest[mine])), float(np.median(rest[mine]))
+            found[number] = np.sqrt(max(more, 0.0)), np.sqrt(at_rest)
+    return found
+
+
+def _surfaces(cloud: Cloud, camera: Camera) -> Array:
+    """The plane π (GRID, 3) that most points of `cloud` in each part of the picture lie on; NaN where none is known."""
+    planes = np.full((GRID[0] * GRID[1], 3), np.nan)
+    part = over_picture(cloud.uv, camera.image_size, GRID)
+    for one in np.unique(part):
+        mine = np.flatnonzero(part == one)
+        mine = mine[:: max(1, len(mine) // MOST_POINTS)]
+        if len(mine) < FEWEST_POINTS:
+            continue
+        rays = camera.rays(cloud.uv[mine])
+        plane, on_it = _face(rays, 1 / cloud.points[mine, 2])
+        across = np.linalg.svd(rays[on_it] - rays[on_it].mean(axis=0), compute_uv=False)[1] / np.sqrt(on_it.sum())
+        if across * camera.focal * GRID[0] > LEAST_ACROSS * camera.image_size[0]:
+            planes[one] = plane
+    return planes
+
+
+def _face(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """As `main_plane`; where all points lie on one plane no trials are needed."""
+    plane = np.asarray(np.linalg.lstsq(rays, inverse_depths, rcond=None)[0], dtype=np.float64)
+    near = np.abs(rays @ plane - inverse_depths) < MAIN_PLANE_MM * inverse_depths**2
+    return (plane, near) if near.all() else main_plane(rays, inverse_depths)
+
+
+def _px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array:
+    """By how many px (N,) a stripe at `uv` (N, 2) moves in the picture when its sheet moves by a mm across itself.
+
+    With ρ the surface's plane, n·X − d = d·(π·r/ρ·r − 1) on the surface; its gradient over the picture is
+    z·(π − ρ)·∂r/|π| where the two meet. NaN where no surface is known, or the light lies on another one.
+    """
+    rays, surface = camera.rays(uv), surfaces[over_picture(uv, camera.image_size, GRID)]
+    inverse_depth = rays @ sheet
+    gradient = inverse_depth_gradient(sheet - surface, camera.ray_jacobian(rays))
+    on_it = np.abs(np.einsum("ni,ni->n", rays, surface) - inverse_depth) < MAIN_PLANE_MM * inverse_depth**2
+    moved = np.linalg.norm(gradient, axis=1) / np.where(on_it, inverse_depth, np.nan)
+    return np.asarray(np.linalg.norm(sheet) / moved)
+
+
+def _of_lens(square: Array, spread: Array) -> float:
+    """What lens and pixels add to a section, as the `spread` that adds as much: the one all sections fit best with.
+
+    A section is as wide as the sheet, seen with the `spread` (M,) in px²/mm², and as the lens's blur: `square` (M,) in
+    px² ∝ spread + c.
+    """
+    shares = np.median(spread) * np.concatenate([[0.0], np.geomspace(0.03, 100.0, 36)])
+    scatter = [mad_sd(np.log(square / (spread + c)) - np.median(np.log(square / (spread + c)))) for c in shares]
+    return float(shares[int(np.argmin(scatter))])
+
+
+def notes_on_blur(blurs: Array) -> tuple[Message, ...]:
+    """A note if the hand moved so fast in many exposures that points are less sure by it."""
+    blur, at_rest = blurs.T
+    known, blurred = np.isfinite(blur), blur > MATTERS * at_rest
+    if blurred.sum() < max(1.0, WORTH_A_NOTE * known.sum()):
+        return ()
+    return (
+        note_of(
+            "scan.exposure_blur",
+            n=int(blurred.sum()),
+            known=int(known.sum()),
+            blur_px=float(blur[blurred].max()),
+            at_rest_px=float(np.median(at_rest[known])),
+        ),
+    )
