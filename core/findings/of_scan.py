@@ -39,11 +39,11 @@ ROWS = (
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,
             "The relief under the fan fixes the scale to {percent:.2g} %."),
     Finding("scan.scale_weak", Weight.CAUTION, Effect.WIDENS_U,
-            "The relief under the fan fixes the scale only to {percent:.2g} %: {error_mm:.2g} mm on a height of "
-            "{height_mm:.0f} mm; {advice}."),
+            "The scale of heights is fixed only to {percent:.2g} %: {error_mm:.2g} mm on a height of {height_mm:.0f} "
+            "mm. {missing}"),
     Finding("scan.scale_unknown", Weight.CAUTION, Effect.WIDENS_U,
-            "The fan meets no relief, so nothing fixes the scale of heights; {advice}. Its own points and flat "
-            "faces are right all the same."),
+            "Nothing fixes the scale of heights. {missing} The fan's own points and flat faces are right all the "
+            "same."),
     # Light that is left out
     Finding("scan.second_bounces", Weight.CAUTION, Effect.NONE,
             "Second bounces: {n} piece of the hand-held laser's stripe is left out. Shiny sides mirror its light "

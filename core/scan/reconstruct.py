@@ -25,7 +25,7 @@ from core.scan.features.extraction import LOST, MOVED, ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.method import Method
-from core.scan.network.datum import Datum, datum_of, main_plane
+from core.scan.network.datum import Datum, datum_of, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
@@ -44,6 +44,9 @@ default)."""
 
 MANY_LOST = 0.1
 """Share of the points that are lost to a moving hand from which on it is told."""
+
+FAN_SAMPLE = 2000
+"""Points of the fan that tell its relief as well as all of them."""
 
 NEAREST_SHARE, FARTHEST_SHARE = 0.6, 1.5
 """Of the nearest and the farthest depth at which the fan sees the object: points beyond are reflections."""
@@ -154,6 +157,7 @@ def reconstruct(
         scale=sweeps.scale,
         notes=bounces.notes
         + _ordered(features.notes, solved)
+        + _datum_notes(solved.datum, found, camera)
         + (() if too_bright is None else (too_bright,))
         + notes_on_blur(exposure_blurs(features.frames, sheets, cloud, camera))
         + _unsure(found, cloud, solved, options)
@@ -186,6 +190,16 @@ def _drift_first(watched: FanRest) -> Iterator[None]:
             reason=error.what,
         )
         raise InputError(what, where=error.where, todo=WARM_UP) from error
+
+
+def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera) -> tuple[Message, ...]:
+    """What fixes the scale, or is missing, by what the fan's own points of all that was `found` show."""
+    if datum is None:
+        return ()
+    own = np.flatnonzero(found.sweep <= FAN)
+    own = own[:: max(1, len(own) // FAN_SAMPLE)]
+    relief = relief_mm(camera.rays(found.uv[own]), 1 / found.points[own, 2]) if len(own) else 0.0
+    return (note_on_datum(datum, relief),)
 
 
 def _together(options: ReconstructOptions) -> bool:
@@ -243,8 +257,7 @@ def _solve(
         + part.note(names, len(sweeps.frames))
         + of_hand
         + sweeps.notes
-        + (() if explained else sweeps.judged)
-        + (() if datum is None else (datum.note,)),
+        + (() if explained else sweeps.judged),
         datum,
         read_out,
         bool(watched.first_after or part.movements),

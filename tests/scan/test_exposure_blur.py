@@ -32,7 +32,7 @@ def leaning(sheet, up, foot, lean):
 
 
 @cache
-def scanned(oblique: bool) -> ExactScan:
+def scanned(oblique):
     """A flat table under sheets of light, upright or `oblique`."""
     scan = ExactScan.of(Scenario(object="plane", scale=0.35, frames=FRAMES))
     if not oblique:

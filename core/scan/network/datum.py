@@ -1,8 +1,11 @@
 """Datum of a scan: how well the fan fixes what sweeps among themselves cannot know, scale and place.
 
 Crossings between sweeps leave π → s π + c free, four numbers that only the fan fixes, and the scale only where it
-meets relief. Two figures of their covariance matter for measuring. With w = 1/z, a change s·w + c·r of the inverse
-depth moves the surface at depth z on ray r by −(s·z + z² c·r), and stretches small heights there by −(s + 2 z c·r).
+meets relief and sweeps carry it from the fan's lines to each other. So where the scale is weak, either the fan's own
+points lie on one plane, or the sweeps run alike, or too few of them cross the fan at different heights.
+
+Two figures of their covariance matter for measuring. With w = 1/z, a change s·w + c·r of the inverse depth moves the
+surface at depth z on ray r by −(s·z + z² c·r), and stretches small heights there by −(s + 2 z c·r).
 
 The four numbers of an error δπ of all sweeps are those that come nearest to it where the sweeps are crossed: the
 S-transformation of geodesy with every crossing's ray as a datum point, weighted by how well the sweep is known there.
@@ -35,6 +38,12 @@ LEAST_RELIEF_MM = 5.0
 UNKNOWN = 0.1
 """Relative σ of the scale from which on it counts as not fixed at all."""
 
+ALIKE = np.radians(10.0)
+"""Range of the stripes' directions below which sweeps run alike and hardly cross each other: a hand that tilts the
+laser has 60° to 80°, one that does not 3°."""
+_TILT_QUANTILES = [0.1, 0.9]
+"""Of the directions: a single frame that lies aslant does not tie the others."""
+
 _RIDGE = 1e-13
 """Added to the normal matrix relative to its trace: a direction that the crossings do not fix stays solvable."""
 
@@ -51,12 +60,13 @@ class Datum:
     """Strength with which scale and place of a scan are fixed, without the uncertainty of camera and fan.
 
     `scale` is the relative standard uncertainty of heights, `depth_mm` that of the depth in the middle of the scene;
-    `relief_mm` how much relief the sweeps saw.
+    `relief_mm` how much relief the sweeps saw; `tilt` in rad the range of the directions of 80 % of their stripes.
     """
 
     scale: float
     depth_mm: float
     relief_mm: float
+    tilt: float
 
     @property
     def height_mm(self) -> float:
@@ -68,22 +78,37 @@ class Datum:
         """Whether that exceeds WEAK_MM."""
         return self.height_mm > WEAK_MM
 
-    @property
-    def note(self) -> Message:
-        """Note for the technician, with advice if the scale is weak."""
-        advice = Message("scan.advice_relief", "put a step beside the part, or let the fan meet more relief")
-        percent = 100 * self.scale
-        if self.scale > UNKNOWN:
-            return note_of("scan.scale_unknown", advice=advice)
-        if not self.weak:
-            return note_of("scan.scale_fixed", percent=percent)
-        return note_of(
-            "scan.scale_weak",
-            percent=percent,
-            error_mm=self.height_mm,
-            height_mm=max(self.relief_mm, LEAST_RELIEF_MM),
-            advice=advice,
+
+def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
+    """Note for the technician; where the scale is weak, with what is missing.
+
+    `fan_relief_mm` is the relief that the fan's own points show (`relief_mm`), whether sweeps cross them or not.
+    """
+    percent = 100 * datum.scale
+    if not datum.weak and datum.scale <= UNKNOWN:
+        return note_of("scan.scale_fixed", percent=percent)
+    if fan_relief_mm < LEAST_RELIEF_MM:
+        missing = Message(
+            "scan.missing_relief",
+            "The fan meets no relief: let it cross part and table. A block laid beside the part gives height, too, but "
+            "is a second pair of faces: outline those of the part then.",
         )
+    elif datum.tilt < ALIKE:
+        missing = Message("scan.missing_tilt", "The sweeps run alike: tilt the laser to and fro by 30°.")
+    else:
+        missing = Message(
+            "scan.missing_sweeps",
+            "Too few sweeps cross the fan at different heights: sweep more across its lines on part and table.",
+        )
+    if datum.scale > UNKNOWN:
+        return note_of("scan.scale_unknown", missing=missing)
+    return note_of(
+        "scan.scale_weak",
+        percent=percent,
+        error_mm=datum.height_mm,
+        height_mm=max(datum.relief_mm, LEAST_RELIEF_MM),
+        missing=missing,
+    )
 
 
 def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Camera) -> Datum | None:
@@ -115,12 +140,27 @@ def datum_of(pis: Array, covariance: Array, crossings: CrossingTable, camera: Ca
     return Datum(
         float(np.sqrt(max(heights @ of_gauge @ heights, 0.0))),
         float(np.sqrt(max(place @ of_gauge @ place, 0.0))),
-        _relief(rays[located], inverse_depths[located]),
+        relief_mm(rays[located], inverse_depths[located]),
+        _tilt(crossings, len(pis)),
     )
 
 
-def _relief(rays: Array, inverse_depths: Array) -> float:
-    """Range in mm of 95 % of the depths about the plane that most lie on."""
+def _tilt(crossings: CrossingTable, sweeps: int) -> float:
+    """Range in rad of the directions of 80 % of the stripes, each the mean of its tangents at the crossings."""
+    turned = np.zeros(sweeps, dtype=np.complex128)  # twice the angle: a stripe runs both ways
+    between = ~crossings.with_fan
+    for sweep, tangent in ((crossings.a, crossings.tangent_a), (crossings.b[between], crossings.tangent_b[between])):
+        np.add.at(turned, sweep, (tangent[:, 0] + 1j * tangent[:, 1]) ** 2)
+    turned = turned[turned != 0]
+    if not len(turned):
+        return 0.0
+    off = np.angle(turned / np.sum(turned / np.abs(turned))) / 2
+    low, high = np.quantile(off, _TILT_QUANTILES)
+    return float(high - low)
+
+
+def relief_mm(rays: Array, inverse_depths: Array) -> float:
+    """Range in mm of 95 % of the depths about the plane that most lie on, at `inverse_depths` (M,) on `rays` (M, 3)."""
     plane, _ = main_plane(rays, inverse_depths)
     low, high = np.quantile(1 / inverse_depths - 1 / np.maximum(rays @ plane, 1e-6), _RELIEF_QUANTILES)
     return float(high - low)

@@ -187,7 +187,7 @@ def _judged(
     if has_collapsed(equations, solution.pis):  # the part is dark: the bright pieces know nothing of depth
         return np.zeros(len(table)), np.zeros(len(table), dtype=np.bool_)
     covariance = equations.covariance(solution)[0].reshape(len(frames), 3, len(frames), 3)
-    for sweep, free in enumerate(_free_turns(renumbered, equations.geometry, len(frames))):
+    for sweep, free in enumerate(free_turns(renumbered, equations.geometry, len(frames))):
         covariance[sweep, :, sweep, :] += PRIOR_SD**2 * np.outer(free, free)
     scale = max(1.0, mad_sd(solution.residuals))
     place = np.searchsorted(frames, np.arange(max(frames[-1], table.a.max(initial=0), table.b.max(initial=0)) + 1))
@@ -207,7 +207,7 @@ def _judged(
     return np.where(misses, np.abs(off / gain_a), 0.0), ~misses & sharp
 
 
-def _free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) -> Array:
+def free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) -> Array:
     """Unit vectors (S, 3) along which the planes are free, for their crossings' rays lie in one plane; else zero."""
     px = np.sqrt(np.abs(np.linalg.det(geometry.jacobians)))
     free = np.zeros((sweeps, 3))

@@ -1,10 +1,14 @@
 """How well the fan fixes the scale: stated from the covariance, and true."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
-from core.scan.network.datum import datum_of, main_plane
-from core.scan.reconstruct import reconstruct
+from core.model import LightPlane
+from core.scan.network.datum import datum_of, main_plane, note_on_datum
+from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.sweeps.fan_lines import FanLines
 from core.scan.sweeps.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactCrossings, ExactScan
@@ -38,20 +42,54 @@ def test_a_block_under_the_fan_needs_no_advice():
     assert sentence in map(str, result.notes)
 
 
-def test_a_flat_scene_is_advised_to_put_a_step_beside_the_part():
+def test_a_flat_scene_is_told_that_the_fan_meets_no_relief():
     scan = ExactScan.of(Scenario(object="plane", scale=0.5))
     result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan)
     assert result.datum.weak
     assert result.datum.depth_mm < 0.05  # its place is known all the same
-    assert "nothing fixes the scale of heights; put a step beside the part" in " ".join(map(str, result.notes))
+    told = " ".join(map(str, result.notes))
+    assert "Nothing fixes the scale of heights. The fan meets no relief: let it cross part and table." in told
+    assert "a second pair of faces: outline those of the part" in told
+
+
+def test_sweeps_that_run_alike_are_named_and_not_the_relief_that_the_fan_has():
+    """Parallel sweeps on the table beside a block: the fan crosses block and table."""
+    scenario = Scenario(scale=0.35, frames=16)
+    first = ExactScan.of(scenario)
+    up, foot = first.scene.pose_cam_table.rotation[:, 2], first.scene.pose_cam_table.translation
+    along = np.cross(up, np.cross(first.sheets[0].plane.normal, up))
+    along /= np.linalg.norm(along)
+    steps = np.linspace(-90.0, 90.0, scenario.frames)
+    sheets = [replace(first.sheets[0], plane=moved(first.sheets[0], step * along)) for step in steps]
+    sheets = [replace(one, emitter=one.emitter + step * along) for one, step in zip(sheets, steps, strict=True)]
+    scan = ExactScan.of(scenario, sheets=tuple(sheets))
+    on_table = tuple(tuple(c for c in curves if np.all((c.points - foot) @ up < 1.0)) for curves in scan.sweeps)
+    scan = replace(scan, sweeps=on_table)
+    options = ReconstructOptions(sigma_cut_mm=1e6)
+    result = reconstruct(scan.measured(1), scan.rig.camera, scan.rig.fan, options, fan_lines=lines_of(scan))
+    assert result.datum.weak
+    assert result.datum.tilt < np.radians(5)
+    told = " ".join(map(str, result.notes))
+    assert "The sweeps run alike: tilt the laser to and fro by 30°." in told
+    assert "relief" not in told
+
+
+def moved(sheet, shift):
+    """The light plane of a sheet shifted by so many mm."""
+    normal = sheet.plane.normal
+    return LightPlane.from_normal(normal, sheet.plane.d_mm + normal @ shift)
+
+
+def lines_of(scan):
+    return FanLines.settled_as(scan.fan_line)
 
 
 def test_few_sweeps_across_low_relief_are_weak():
     scan = ExactScan.of(Scenario(height_mm=6.0, scale=0.25, frames=14))
     found = datum(scan)
     assert found.weak
-    assert "fixes the scale only to" in str(found.note)
-    assert "put a step beside the part" in str(found.note)
+    assert "is fixed only to" in str(note_on_datum(found, 6.0))
+    assert "Too few sweeps cross the fan at different heights" in str(note_on_datum(found, 6.0))
 
 
 @pytest.mark.accuracy
