@@ -25,12 +25,16 @@ from superqt import QElidingLabel
 
 SLACK = 1
 """Pixels that a text may be wider than its place: Qt rounds widths."""
+NESTED = 20
+"""Layouts within layouts, at most."""
 
 
 def clipped(window: QWidget) -> dict[str, str]:
     """Every text that is seen in part only, and why; a text cut with an ellipsis is seen by its tip."""
-    # A text told in this very turn of the event loop has its place when what Qt has posted to the layouts is done.
-    QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest.value)
+    # A text told in this very turn of the event loop has its place when what Qt has posted to the layouts is done: a
+    # layout tells the one around it, which Qt does not hear of within the same call.
+    for _ in range(NESTED):
+        QCoreApplication.sendPostedEvents(None, QEvent.Type.LayoutRequest.value)
     found = {}
     for widget in window.findChildren(QWidget):
         if widget.isVisible():
