@@ -46,7 +46,16 @@ from workbench.theme import apply_theme, icon
 from workbench.views import ask
 from workbench.views.console import console_missing
 from workbench.views.instruction_bar import InstructionBar
-from workbench.views.layouts import Elided, UpAndDown, enable, in_column, in_row, keep_focus, resize_on_screen
+from workbench.views.layouts import (
+    Elided,
+    UpAndDown,
+    enable,
+    holding,
+    in_column,
+    in_row,
+    keep_focus,
+    resize_on_screen,
+)
 from workbench.views.lists.notice_list import Banner, NoticeList
 from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
@@ -235,7 +244,7 @@ class MainWindow(QMainWindow):
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
-        self.rail.set_narrow(self.width() < WIDE)
+        self._give_room()
         self._help.setVisible(self.height() >= HIGH)
 
     def dragEnterEvent(self, event: QDragEnterEvent) -> None:
@@ -248,10 +257,10 @@ class MainWindow(QMainWindow):
             self.projects.open_dropped(path)
 
     def _wizard(self) -> QWidget:
-        head = in_column(self._title, self._help, margins=(14, 6, 14, 0), spacing=1)
         self.missing.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
-        foot = in_row(self.back, (self.missing, 1), self.next, margins=(14, 4, 14, 4))
-        column = in_column(head, self.instructions, self.banner, (self._pages, 1), foot, spacing=2)
+        self._head = holding(in_column(self._title, self._help, margins=(14, 6, 14, 0), spacing=1))
+        self._foot = holding(in_row(self.back, (self.missing, 1), self.next, margins=(14, 4, 14, 4)))
+        column = in_column(self._head, self.instructions, self.banner, (self._pages, 1), self._foot, spacing=2)
         whole = QWidget()
         in_row(self.rail, (column, 1), on=whole, spacing=0)
         return whole
@@ -443,6 +452,7 @@ class MainWindow(QMainWindow):
         if not self.model.is_open:
             return
         self._show_instruction()
+        self._give_room()
         states = self.model.states
         self.rail.set_states({name: (str(state.state), state.sentence) for name, state in states.items()})
         last = why_not("next", facts)
@@ -451,6 +461,14 @@ class MainWindow(QMainWindow):
         self.next.setVisible(not last)
         self.missing.setText("" if last else missing)
         enable(self.back, why_not("back", facts), tr("Go back to the step before"))
+
+    def _give_room(self) -> None:
+        """What can only be done later is not seen while a page takes the window."""
+        taken = bool(self._current) and self.pages[self._current].takes_the_window
+        self._head.setVisible(not taken)
+        self._foot.setVisible(not taken)
+        self.instructions.setVisible(not taken and self._led_in is not None)
+        self.rail.set_narrow(taken or self.width() < WIDE)
 
     def _menu_facts(self) -> MenuFacts:
         page = self.presenters.get(self._current)

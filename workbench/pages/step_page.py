@@ -37,6 +37,11 @@ class StepPage(QWidget):
 
     card: StageCard
 
+    @property
+    def takes_the_window(self) -> bool:
+        """Whether what goes on here wants all the room there is: nothing else can be done meanwhile."""
+        return False
+
     def __init__(self, presenter: StepPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.refreshing = Refresh(self._refresh_if_seen, self)
@@ -51,7 +56,8 @@ class StepPage(QWidget):
         self.side = in_column(margins=(10, 8, 10, 8), spacing=8)
         self.splitter = QSplitter(Qt.Orientation.Horizontal)
         self.splitter.addWidget(holding(self.centre))
-        self.splitter.addWidget(self._side_panel())
+        self.side_panel = self._side_panel()
+        self.splitter.addWidget(self.side_panel)
         self.splitter.setStretchFactor(0, 1)
         self.splitter.setCollapsible(0, False)
         self.splitter.setSizes([900, SIDE_WIDTH])

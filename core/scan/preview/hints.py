@@ -9,6 +9,10 @@ from core.messages import Message
 MOST_HINTS = 2
 """Hints shown at a time: a hand can follow no more."""
 
+ENOUGH = 0.7
+"""Covered share of what was lit from which on a live scan may be stopped: what is left lies between stripes, in shadow,
+or beyond what the fan meets."""
+
 
 @dataclass(frozen=True, slots=True)
 class HintLimits:

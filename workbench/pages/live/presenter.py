@@ -361,13 +361,15 @@ class LivePresenter(QObject):
         self._send(Discard(name))
 
     def go_on(self) -> None:
-        """What the one key of a foot switch or presenter means now: answer, else take the picture, else pause."""
+        """What the one key of a foot switch or presenter means now: answer, else take the picture; of a scan, stop."""
         if self._ask is not None:
             self.answer()
-        elif self.step == "scan":
-            self.pause(not self.paused)
-        else:
+        elif self.step != "scan":
             self.capture()
+        elif self.paused:
+            self.pause(False)
+        else:
+            self.stop()
 
     @property
     def sound(self) -> bool:
@@ -456,14 +458,14 @@ class LivePresenter(QObject):
                 self._take_shutter(event)
                 self.started.emit(event)
             case LiveTaken():
-                self._sound()
+                self.beep()
                 self.taken.emit(event)
             case LiveAsk() | LiveAnswered():
                 self.asked.emit(*self.question)
             case LiveNotice():
                 if event.refused:
-                    self._sound()
-                    QTimer.singleShot(TWICE_MS, self, self._sound)
+                    self.beep()
+                    QTimer.singleShot(TWICE_MS, self, self.beep)
                 self.notice.emit(text_of(event.sentence))
                 self.bench.notices.info(text_of(event.sentence))
             case LiveSaving() if self.stopping:
@@ -491,7 +493,8 @@ class LivePresenter(QObject):
         )  # fmt: skip
         self.bench.notices.info(said)
 
-    def _sound(self) -> None:
+    def beep(self) -> None:
+        """Have a sound heard, unless none is wanted."""
         if self.sound:
             self.sounded.emit()
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from PySide6.QtCore import QEvent, Qt, QTimer
 from PySide6.QtGui import QKeyEvent, QKeySequence, QShortcut
-from PySide6.QtWidgets import QSizePolicy, QStackedWidget, QWidget
+from PySide6.QtWidgets import QAbstractSpinBox, QComboBox, QLineEdit, QSizePolicy, QStackedWidget, QWidget
 
 from core.pipeline.live.events import LiveView, ScanDetail
 from core.scan.preview.preflight import Check
@@ -16,6 +16,7 @@ from workbench.pages.scan import words
 from workbench.pages.scan.bar import FrameBar
 from workbench.pages.scan.check_card import CheckCard
 from workbench.pages.scan.cloud import ScanCloud
+from workbench.pages.scan.guide import GuideBand
 from workbench.pages.scan.panels import ResultPanel, RunningPanel, ScanCard, SettingsPanel
 from workbench.pages.scan.picture import ScanPicture, View
 from workbench.pages.scan.presenter import ScanPresenter
@@ -40,6 +41,8 @@ def unchecked(check: Check) -> bool:
     return check.name == "check" and check.state == "unknown"
 
 
+EXCHANGE, LEGEND = Qt.Key.Key_X, Qt.Key.Key_L
+"""Keys while frames are recorded."""
 _STEPS = {Qt.Key.Key_Left: -1, Qt.Key.Key_Right: 1}
 """Keys that go through the frames."""
 
@@ -52,15 +55,16 @@ class ScanPage(StepPage):
 
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
-        self.strip, self.views = LiveStrip(presenter.live), SideBySide()
+        self.guide, self.strip = GuideBand(presenter), LiveStrip(presenter.live, asks=False)
+        self.views = SideBySide()
         self.check_strip = LiveStrip(presenter.check_live)
         self.picture = ScanPicture(presenter, lambda: self.source.next_action(presenter.live))
         self.cloud = ScanCloud(presenter)
         self.views.add_view(tr("Picture"), self.picture)
         self.views.add_view(tr("Points"), self.cloud)
         self.running, self.bar = RunningPanel(), FrameBar(presenter)
-        self.centre.addWidget(self.strip)
-        self.centre.addWidget(self.check_strip)
+        for above in (self.guide, self.strip, self.check_strip):
+            self.centre.addWidget(above)
         self.centre.addWidget(self.views, 1)
         self.below = QStackedWidget()  # one as high as the other: the views keep their size
         self.below.addWidget(self.bar)
@@ -74,7 +78,7 @@ class ScanPage(StepPage):
         self.add_to_side(self.check)
         self.checks = ChecksCard()
         self.add_to_side(self.checks)
-        self.live_panel = LivePanel(presenter.live)
+        self.live_panel = LivePanel(presenter.live, keys_on=self)
         self.source = SourceChooser(self.live_panel, what=tr("Folder with the frames of a scan"))
         self.source_fold = self.add_panel(tr("Recording"), self.source)
         self.frames = ViewList(thumbnails_later=True)
@@ -87,12 +91,22 @@ class ScanPage(StepPage):
         self.result = ResultPanel(presenter)  # last: there it pushes nothing as it comes
         self.result_fold = self.add_panel(tr("Result"), self.result)
         self._rows: Any = None
+        self._room = False
+        self._keys = {key: QShortcut(QKeySequence(key), self) for key in (EXCHANGE, LEGEND, Qt.Key.Key_Space)}
         self._connect()
+
+    @property
+    def takes_the_window(self) -> bool:
+        return self.presenter.recording
 
     def refresh(self) -> None:
         p, stage = self.presenter, self.presenter.stage
-        live, busy = stage is Stage.LIVE, stage in (Stage.LIVE, Stage.MEASURING)
+        live = stage is Stage.LIVE
+        self._take_room(self.takes_the_window)
+        self.guide.setVisible(live)
+        self.guide.refresh()
         self.card.refresh()
+        self.card.setVisible(not live)
         self.check.refresh()
         before = p.live_stage in STAGES_BEFORE
         self.checks.show_checks([one for one in p.live.checks if before or one.state == "failed" or unchecked(one)])
@@ -101,8 +115,9 @@ class ScanPage(StepPage):
         self.live_panel.refresh()
         if live:
             self.source.set_mode("live")
-        self.below.setVisible(busy or p.scrubbing)
-        self.below.setCurrentWidget(self.running if busy else self.bar)
+        measuring = stage is Stage.MEASURING
+        self.below.setVisible(measuring or p.scrubbing)
+        self.below.setCurrentWidget(self.running if measuring else self.bar)
         if p.scrubbing:
             self.bar.refresh()
         self.settings.refresh()
@@ -139,11 +154,39 @@ class ScanPage(StepPage):
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
+        self.guide.exchange_wanted.connect(self._exchange)
+        does = {EXCHANGE: self._exchange, LEGEND: self._show_legend, Qt.Key.Key_Space: p.live.go_on}
+        for key, shortcut in self._keys.items():
+            shortcut.setEnabled(False)
+            shortcut.activated.connect(does[key])
+        p.live.asked.connect(self._focus_answer)
         self.picture.image.installEventFilter(self)
         for key, by in _STEPS.items():
             shortcut = QShortcut(QKeySequence(key), self)
             shortcut.setContext(Qt.ShortcutContext.WidgetWithChildrenShortcut)
             shortcut.activated.connect(lambda by=by: self._step(by))
+
+    def _take_room(self, wanted: bool) -> None:
+        """While frames are recorded: the picture with a few points beside it, and nothing at the side, no legend."""
+        if wanted == self._room:
+            return
+        self._room = wanted
+        self.side_panel.setVisible(not wanted)
+        self.picture.image.set_legend_visible(not wanted)
+        self._main = 0
+        self.views.show_main(self._main if wanted else None)
+        for shortcut in self._keys.values():
+            shortcut.setEnabled(wanted)
+
+    def _exchange(self) -> None:
+        """Let the picture and the points change places."""
+        self._main = 1 - self._main
+        self.views.show_main(self._main)
+
+    def _show_legend(self) -> None:
+        """Show the legend, or hide it."""
+        image = self.picture.image
+        image.set_legend_visible(not image.legend_titles)
 
     def _begin_check(self, _: object) -> None:
         self.picture.refresh()
@@ -175,9 +218,17 @@ class ScanPage(StepPage):
         self.views.show_alone(None)
         self.source.set_mode("live" if scan_begins_live(self.presenter.model) else "folder")
 
+    def _focus_answer(self, asked: str, _button: str) -> None:
+        """The Space bar answers, unless something is being typed in or chosen at the side."""
+        if (
+            asked
+            and self.guide.isVisible()
+            and not isinstance(self.window().focusWidget(), QLineEdit | QComboBox | QAbstractSpinBox)
+        ):
+            self.guide.go.setFocus()
+
     def _begin_live(self, _: Any) -> None:
         self.source_fold.expand(animate=False)
-        self.running.show_detail(None, 0.0)
         self.cloud.begin_live()
 
     def _begin_measuring(self) -> None:
@@ -191,8 +242,7 @@ class ScanPage(StepPage):
     def _show_live(self, view: LiveView) -> None:
         self.picture.show_live(view)
         self.cloud.show_live(view)
-        detail = view.detail if isinstance(view.detail, ScanDetail) else None
-        self.running.show_detail(detail, view.picture.shape[1] * view.scale)
+        self.guide.refresh()
 
     def _show_check(self, view: LiveView) -> None:
         self.picture.show_check(view)

@@ -78,8 +78,8 @@ class ScanCard(StageCard):
                 return tr("Listing the frames …"), ""
             case Stage.EMPTY:
                 return tr("No frames there"), p.work.no_frames or tr("The folder holds no frames; choose another one.")
-            case Stage.LIVE:
-                return self._live_words()
+            case Stage.LIVE:  # the band above the picture says what goes on
+                return "", ""
             case Stage.RECORDED:
                 title = tr("{count} frames, not measured yet", count=len(p.work.names))
                 return title, p.cannot_measure or tr("Press Measure; no setting is needed.")
@@ -108,23 +108,6 @@ class ScanCard(StageCard):
         if self._presenter.calibrated:
             return begin
         return tr("{begin} It can be measured once camera and laser planes are accepted.", begin=begin)
-
-    def _live_words(self) -> tuple[str, str]:
-        tips = {
-            "reference": tr("Only the three-line laser is on; nothing moves."),
-            "ready": tr("The reference is taken. Switch the hand-held laser on and press Start."),
-            "scanning": tr("Sweep the line slowly over the part, at different tilts, so that it crosses the fan. "
-                                "Stop when enough is covered; then it is measured."),
-            "paused": tr("Nothing is recorded now; Resume goes on."),
-        }  # fmt: skip
-        titles = {
-            "reference": tr("Taking the reference"),
-            "ready": tr("Ready to scan"),
-            "scanning": tr("Scanning"),
-            "paused": tr("Paused"),
-        }
-        stage = self._presenter.live_stage
-        return titles.get(stage, self._presenter.live.state_text()), tips.get(stage, "")
 
 
 class SettingsPanel(QWidget):

@@ -23,6 +23,7 @@ from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan import stability
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import RigCheck
+from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
@@ -65,6 +66,7 @@ class ScanPresenter(StepPresenter):
         self.whole: MeasuringAll | None = None
         """The whole job, offered here too where the window has it: the next part of a series begins on this page."""
         self.live_stage = ""
+        self._seen: ScanDetail | None = None
         self._shown = False
         self.live.changed.connect(self._look_again)
         self.live.started.connect(self._live_started)
@@ -108,6 +110,19 @@ class ScanPresenter(StepPresenter):
             frames=bool(work.frames),
             counting=not self.project.options.excluded.issuperset(work.names),
             read_only=self.model.is_read_only,
+        )
+
+    @property
+    def recording(self) -> bool:
+        """Whether frames of a live scan are recorded, or it has only been paused."""
+        return self.stage is Stage.LIVE and self.live_stage in ("scanning", "paused")
+
+    @property
+    def guidance(self) -> Guidance:
+        """What is said to the hand now."""
+        live = self.live
+        return guidance(
+            Situation(live.state_text(), live.gone, live.stopping, live.question, live.paused, self._seen, live.checks)
         )
 
     @property
@@ -355,11 +370,15 @@ class ScanPresenter(StepPresenter):
             self.check.start()
 
     def _live_started(self) -> None:
-        self._leaving = False
+        self._leaving, self._seen = False, None
         self._set_live_stage("")
 
     def _live_view(self, view: LiveView) -> None:
         if isinstance(view.detail, ScanDetail):
+            had_enough = self._seen is not None and is_enough(self._seen)
+            self._seen = view.detail
+            if is_enough(view.detail) and not had_enough:
+                self.live.beep()
             self._set_live_stage(view.detail.stage)
 
     def _set_live_stage(self, stage: str) -> None:
@@ -369,7 +388,7 @@ class ScanPresenter(StepPresenter):
 
     def _live_ended(self, ended: LiveEnded) -> None:
         """The recording is the source by now: measure it, if that can be done."""
-        self.live_stage = ""
+        self.live_stage, self._seen = "", None
         if not ended.recorded or self.folder != ended.folder or self._leaving:
             return
         if self.calibrated:

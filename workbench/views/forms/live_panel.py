@@ -34,12 +34,13 @@ MARK = (QKeySequence(Qt.Key.Key_B), QKeySequence(Qt.Key.Key_Period))
 class LivePanel(QWidget):
     """Which source, its settings, start, pause, take, auto; and how many pictures there are.
 
-    `live` is the page's LivePresenter.
+    `live` is the page's LivePresenter; its keys mean something as long as `keys_on` is seen, by default the panel.
     """
 
-    def __init__(self, live: Any, parent: QWidget | None = None) -> None:
+    def __init__(self, live: Any, parent: QWidget | None = None, *, keys_on: QWidget | None = None) -> None:
         super().__init__(parent)
         self.live = live
+        keys_on = keys_on or self
         self._refreshing = Refresh(self.refresh, self)
         self.form = SourceForm(live)
         self.start, self.pause, self.take, self.mark = QPushButton(), QPushButton(), QPushButton(), QPushButton()
@@ -47,8 +48,8 @@ class LivePanel(QWidget):
         self.add = QCheckBox(tr("Add to the pictures that are there"))
         self.sound = QCheckBox(tr("Sound"))
         self.state, self.counts = QLabel(), QLabel()
-        self._go_on, self._pause_key = QShortcut(GO_ON, self), QShortcut(PAUSE, self)
-        self._mark_keys = [QShortcut(key, self) for key in MARK]
+        self._go_on, self._pause_key = QShortcut(GO_ON, keys_on), QShortcut(PAUSE, keys_on)
+        self._mark_keys = [QShortcut(key, keys_on) for key in MARK]
         self._lay_out()  # first: what is shown before it has a parent is a window of its own
         self._dress()
         self._connect()
@@ -176,12 +177,12 @@ def ask_to_stop_other(parent: QWidget, live: Any, question: str) -> None:
 class LiveStrip(QWidget):
     """What the recording asks, with the button that answers; whether the source is gone, too fast, or badly exposed.
 
-    Hidden while there is nothing to say.
+    Hidden while there is nothing to say. Where the page itself says what is asked, it does not (`asks`).
     """
 
-    def __init__(self, live: Any, parent: QWidget | None = None) -> None:
+    def __init__(self, live: Any, parent: QWidget | None = None, *, asks: bool = True) -> None:
         super().__init__(parent)
-        self.live = live
+        self.live, self._asks = live, asks
         self._gone = _Card("mdi6.power-plug-off-outline")
         self._lost = _Card("mdi6.speedometer")
         self._advice = _ButtonCard("mdi6.brightness-6")
@@ -206,7 +207,7 @@ class LiveStrip(QWidget):
         """Show what is asked and what is wrong now."""
         sentence, button = self.live.question
         self.answer.setText(button)
-        self._ask.say(sentence)
+        self._ask.say(sentence if self._asks else "")
         advice = self.live.advice
         self.take_advice.setVisible(advice.settings is not None)
         self._advice.say("" if advice.sentence is None else text_of(advice.sentence))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from PySide6.QtCore import QSize, Qt, Signal
-from PySide6.QtGui import QMouseEvent
+from PySide6.QtGui import QMouseEvent, QResizeEvent
 from PySide6.QtWidgets import QLabel, QSplitter, QToolButton, QWidget
 
 from workbench.language import tr
@@ -12,6 +12,10 @@ from workbench.views.layouts import STRETCH, in_column, in_row
 
 NARROWEST = 160
 """No view is made narrower than so many pixels."""
+
+
+INSET = 300
+"""Pixels of the others beside the main view; more on a wide page, where a picture does not fill the rest."""
 
 
 GAP = 4
@@ -62,6 +66,7 @@ class SideBySide(QSplitter):
         self.setChildrenCollapsible(False)
         self._panes: list[tuple[PaneTitle, QWidget]] = []
         self._alone: int | None = None
+        self._main: int | None = None
 
     def add_view(self, title: str, view: QWidget) -> PaneTitle:
         """Put a view at the right end."""
@@ -87,3 +92,19 @@ class SideBySide(QSplitter):
         for index, (head, pane) in enumerate(self._panes):
             pane.setVisible(place is None or index == place)
             head.show_maximised(maximised=index == place)
+
+    def show_main(self, place: int | None) -> None:
+        """Give most of the room to the view at this place, and keep it so; None: to all alike."""
+        self._main = place
+        self._share_out()
+
+    def resizeEvent(self, event: QResizeEvent) -> None:
+        super().resizeEvent(event)
+        if self._main is not None:
+            self._share_out()
+
+    def _share_out(self) -> None:
+        sizes = [10_000 if self._main is None else INSET] * len(self._panes)
+        if self._main is not None:
+            sizes[self._main] = max(self.width() - INSET * (len(self._panes) - 1), INSET)
+        self.setSizes(sizes)

@@ -6,8 +6,9 @@ import math
 import time
 from collections.abc import Mapping, Sequence
 from itertools import pairwise
+from typing import Any
 
-from PySide6.QtCore import QEvent, QPointF, QRectF, QSize, Qt, QTimer
+from PySide6.QtCore import QEvent, QObject, QPointF, QRectF, QSize, Qt, QTimer, Signal
 from PySide6.QtGui import QColor, QHideEvent, QPainter, QPaintEvent, QPolygonF
 from PySide6.QtWidgets import QFrame, QLabel, QSizePolicy, QWidget
 
@@ -131,6 +132,45 @@ class Meter(QWidget):
             start = end
 
 
+class Steady(QObject):
+    """What is said changes at most once a second, so nothing flickers; the last of what was wanted comes then."""
+
+    shown = Signal(object)
+    """What is to be said from now on."""
+
+    def __init__(self, parent: QObject) -> None:
+        super().__init__(parent)
+        self.now: Any = None
+        """What is said; None before there is anything."""
+        self._wanted: Any = None
+        self._since = -math.inf
+        self._clock = QTimer(self)
+        self._clock.setSingleShot(True)
+        self._clock.timeout.connect(self._show)
+
+    def want(self, said: Any, *, at_once: bool = False) -> None:
+        """Have it said: now where it may not wait or the last has stood long enough, else when it has."""
+        self._wanted = said
+        if said == self.now:
+            self._clock.stop()
+            return
+        left = STAYS_MS - 1000 * (time.monotonic() - self._since)
+        if left <= 0 or at_once:
+            self._clock.stop()
+            self._show()
+        elif not self._clock.isActive():
+            self._clock.start(math.ceil(left))
+
+    def wait_no_longer(self) -> None:
+        """Nobody looks: what waits is dropped."""
+        self._clock.stop()
+
+    def _show(self) -> None:
+        if self._wanted != self.now:
+            self.now, self._since = self._wanted, time.monotonic()
+            self.shown.emit(self.now)
+
+
 class HintBar(QFrame):
     """What to do now. A sentence stays for at least a second, so nothing flickers; an empty list stays calm too."""
 
@@ -138,32 +178,19 @@ class HintBar(QFrame):
         """`idle` is shown, muted, while there is no hint."""
         super().__init__(parent)
         self._idle = idle
-        self._shown: tuple[str, ...] = ()
-        self._wanted: tuple[str, ...] = ()
-        self._since = -math.inf
         self._sign, self._label = IconLabel(18), QLabel()
         self._label.setWordWrap(True)
         self._label.setAccessibleName(tr("Hint"))
         row = in_row(on=self, margins=(10, 6, 10, 6), spacing=8)
         row.addWidget(self._sign, 0, Qt.AlignmentFlag.AlignTop)
         row.addWidget(self._label, 1)
-        self._clock = QTimer(self)
-        self._clock.setSingleShot(True)
-        self._clock.timeout.connect(self._show)
+        self._steady = Steady(self)
+        self._steady.shown.connect(self._dress)
         self._dress()
 
     def set_hints(self, hints: Sequence[str]) -> None:
         """The sentences that hold now, the most important first."""
-        self._wanted = tuple(hints)
-        if self._wanted == self._shown:
-            self._clock.stop()
-            return
-        left = STAYS_MS - 1000 * (time.monotonic() - self._since)
-        if left <= 0 or not self._shown:
-            self._clock.stop()
-            self._show()
-        elif not self._clock.isActive():
-            self._clock.start(math.ceil(left))
+        self._steady.want(tuple(hints), at_once=not self._steady.now)
 
     @property
     def text(self) -> str:
@@ -176,19 +203,14 @@ class HintBar(QFrame):
             self._dress()
 
     def hideEvent(self, event: QHideEvent) -> None:
-        self._clock.stop()
+        self._steady.wait_no_longer()
         super().hideEvent(event)
 
-    def _show(self) -> None:
-        if self._wanted != self._shown:
-            self._shown, self._since = self._wanted, time.monotonic()
-            self._dress()
-
-    def _dress(self) -> None:
-        s = shades()
-        self._label.setText("   ".join(self._shown) or self._idle)
-        dress(self._label, "" if self._shown else f"color: {s.muted};")
-        colour = "accent" if self._shown else "muted"
-        symbol = "mdi6.lightbulb-on-outline" if self._shown else "mdi6.lightbulb-outline"
+    def _dress(self, *_: object) -> None:
+        s, shown = shades(), self._steady.now or ()
+        self._label.setText("   ".join(shown) or self._idle)
+        dress(self._label, "" if shown else f"color: {s.muted};")
+        colour = "accent" if shown else "muted"
+        symbol = "mdi6.lightbulb-on-outline" if shown else "mdi6.lightbulb-outline"
         self._sign.show_icon(symbol, colour)
         dress(self, f"HintBar {{ background: {s.panel}; border: 1px solid {s.line}; border-radius: 5px; }}")

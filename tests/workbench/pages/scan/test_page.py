@@ -16,8 +16,9 @@ from core.findings.proof import OF_SCAN
 from core.inspect.shown.view_frame import FrameKind
 from core.messages import plain
 from core.model import LightPlane
-from core.pipeline.live.commands import Resume
-from core.pipeline.live.events import LiveAsk, LiveChecks, LiveEnded, LiveStarted
+from core.pipeline.live.commands import Resume, Stop
+from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveChecks, LiveEnded, LiveStarted
+from core.scan.preview.hints import ENOUGH
 from core.scan.preview.preflight import Check
 from tests.code import ROOT
 from tests.workbench.hand_lane import HandLane
@@ -515,20 +516,24 @@ def test_a_live_scan_goes_from_the_reference_to_the_result(page, lane, measuring
     start_live(page, lane, qtbot)
     lane.current.view.emit(cases.live_view(0, stage="reference"))
     page.refreshing.at_once()
-    assert page.card.title.text() == "Taking the reference"
-    assert page.running.condition.said == "–"
+    assert page.guide.sentence.text().startswith("Taking the reference") and page.card.isHidden()
+    assert not page.takes_the_window and not page.side_panel.isHidden()
     lane.current.reported.emit(LiveAsk(plain("Switch the hand-held laser on, press Start."), "Start", Resume()))
     page.refreshing.at_once()
-    assert not page.strip.isHidden() and page.strip.answer.text() == "Start"
-    qtbot.mouseClick(page.strip.answer, LEFT)
+    assert (
+        page.guide.go.text() == "Start" and page.guide.sentence.text() == "Switch the hand-held laser on, press Start."
+    )
+    assert page.strip.isHidden(), "what is asked is said once"
+    qtbot.mouseClick(page.guide.go, LEFT)
     page.presenter.do_capture()
     page.refreshing.at_once()
     assert [type(sent) for sent in lane.sent[-2:]] == [Resume, Resume]
+    lane.current.reported.emit(LiveAnswered())
     lane.current.view.emit(cases.live_view(1, renewed=True, condition=np.inf))
     page.refreshing.at_once()
-    assert page.card.title.text() == "Scanning"
+    assert page.guide.go.text() == "Stop" and page.guide.covered.text() == "63 %"
+    assert page.guide.counts.text() == "2 frames" and page.guide.needed.text() == "of 70 % needed"
     assert {"covered", "fan 3", "sweep", "good", "weak", "left out"} <= set(page.picture.image.layer_names())
-    assert page.running.condition.said == "too flat"
     assert "2 frames recorded" in page.live_panel.counts.text()
     assert page.cloud.scene.state().points == 30
     assert lane.sent.count("shown") == 2
@@ -579,7 +584,46 @@ def test_while_paused_no_sweep_and_no_crossings_are_shown(page, lane, qtbot):
     lane.current.view.emit(cases.live_view(0, stage="paused"))
     page.refreshing.at_once()
     assert "good" not in page.picture.image.layer_names()
-    assert page.running.condition.said == "–" and page.card.title.text() == "Paused"
+
+
+def test_while_frames_are_recorded_the_picture_has_the_page_and_nothing_else_is_asked(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(cases.live_view(0))
+    page.refreshing.at_once()
+    assert page.takes_the_window and page.side_panel.isHidden() and page.below.isHidden() and not page.guide.isHidden()
+    assert page.picture.image.legend_titles == []
+    qtbot.waitUntil(lambda: page.views.sizes()[0] > 1.5 * page.views.sizes()[1])
+    qtbot.keyClick(page, Qt.Key.Key_X)
+    assert page.views.sizes()[0] < page.views.sizes()[1]
+    qtbot.keyClick(page, Qt.Key.Key_L)
+    assert page.picture.image.legend_titles != []
+    qtbot.keyClick(page, Qt.Key.Key_Space)
+    assert isinstance(lane.sent[-1], Stop)
+    page.refreshing.at_once()
+    assert page.guide.sentence.text() == "Stopping …" and not page.guide.go.isEnabled()
+
+
+def test_after_the_recording_the_page_is_as_it_was(page, lane, scan_folder, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(cases.live_view(0))
+    page.refreshing.at_once()
+    lane.finish(LiveEnded(scan_folder, cases.FRAMES, 0))
+    page.refreshing.at_once()
+    assert not page.takes_the_window and not page.side_panel.isHidden() and page.guide.isHidden()
+    qtbot.waitUntil(lambda: abs(page.views.sizes()[0] - page.views.sizes()[1]) < 50)
+    sent = len(lane.sent)
+    qtbot.keyClick(page, Qt.Key.Key_Space)
+    assert len(lane.sent) == sent, "its keys are off"
+
+
+def test_a_sound_says_once_that_enough_is_covered(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    sounds = []
+    page.presenter.live.sounded.connect(lambda: sounds.append(1))
+    for number, share in enumerate((0.5, ENOUGH, 0.8)):
+        view = cases.live_view(number)
+        lane.current.view.emit(replace(view, detail=replace(view.detail, share=share)))
+    assert len(sounds) == 1
 
 
 def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
@@ -587,6 +631,7 @@ def test_without_calibrations_a_live_scan_shows_stripes_only(page, lane, qtbot):
     presenter.model.edit("x", type(presenter.project)(presenter.project.info, presenter.project.rig))
     start_live(page, lane, qtbot)
     lane.current.view.emit(cases.live_view(0))
+    page.picture.image.set_legend_visible(True)
     assert page.picture.image.legend_titles.count("sweep") == 1
     assert "good" not in page.picture.image.layer_names()
     assert "no points without accepted calibrations" in page.cloud.scene._message

@@ -12,9 +12,10 @@ from PySide6.QtWidgets import QApplication, QLabel
 from core.acquire.source import Capabilities, Region, SourceInfo, SourceSettings
 from core.files.project.data import new_project
 from core.messages import Message, plain
-from core.pipeline.live.commands import Auto, Capture, Mark, Pause, Resume, TakeReference
+from core.pipeline.live.commands import Auto, Capture, Mark, Pause, Resume, Stop, TakeReference
 from core.pipeline.live.events import (
     LiveAdvice,
+    LiveAnswered,
     LiveAsk,
     LiveEnded,
     LiveNotice,
@@ -110,6 +111,24 @@ def test_the_two_keys_of_a_presenter_take_and_pause_while_it_is_live(panel, lane
     lane.current.reported.emit(LiveAsk(Message("t.leave", "Leave it."), "Continue", Resume()))
     qtbot.keyClick(panel, Qt.Key.Key_PageDown)
     assert [type(one) for one in lane.sent] == [Capture, Pause, Resume]
+
+
+def test_the_key_of_a_foot_switch_answers_resumes_and_stops_a_scan(live, lane, qtbot):
+    panel = LivePanel(LivePresenter(live.bench, "scan"))
+    qtbot.addWidget(panel)
+    panel.show()
+    panel.activateWindow()
+    qtbot.waitUntil(panel.isActiveWindow)
+    qtbot.mouseClick(panel.start, LEFT)
+    open_source(lane)
+    lane.current.reported.emit(LiveAsk(Message("t.leave", "Leave it."), "Start", Resume()))
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    lane.current.reported.emit(LiveAnswered())
+    qtbot.keyClick(panel, Qt.Key.Key_PageUp)
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    assert [type(one) for one in lane.sent] == [Resume, Pause, Resume], "paused, it goes on"
+    qtbot.keyClick(panel, Qt.Key.Key_PageDown)
+    assert isinstance(lane.sent[-1], Stop)
 
 
 def test_a_presenter_s_third_key_marks_the_frame_of_a_scan(live, lane, qtbot):
