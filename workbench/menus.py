@@ -28,7 +28,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("close", "Ctrl+W", label("Close project")),
     ("quit", "Ctrl+Q", label("Quit")),
     ("undo", "Ctrl+Z", label("Undo")),
-    ("redo", "Ctrl+Shift+Z", label("Redo")),
+    ("redo", "Ctrl+Shift+Z, Ctrl+Y", label("Redo")),
     ("back", "Alt+Left", label("Back")),
     ("next", "Alt+Right", label("Next")),
     ("step", "Ctrl+1 … Ctrl+6", label("Go to a step")),
@@ -52,6 +52,7 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("cut", "X", label("Inspect, 3D view: lay a plane through the surface")),
     ("click", "C, Shift+C", label("Inspect, 3D view: click a face, or two, to measure them")),
     ("frames", "Left, Right", label("Scan: go through the frames")),
+    ("recording", "Space, X, L", label("Live scan: stop; exchange picture and points; legend")),
     ("polygon", "Return, Esc", label("Drawing a region, clicking a face: take it, give it up")),
 )
 """Every key the window knows: name, key and meaning. The list under ? shows them, the actions are made from them."""
@@ -188,7 +189,7 @@ class Menus(QObject):
             ("undo", undo_stack.createUndoAction(self, tr("Undo"))),
             ("redo", undo_stack.createRedoAction(self, tr("Redo"))),
         ):
-            action.setShortcut(QKeySequence(KEYS[name]))
+            action.setShortcuts([QKeySequence(key) for key in KEYS[name].split(", ")])
             edit.addAction(action)
             self.actions[name] = action
 

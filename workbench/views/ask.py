@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFileDialog,
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 )
 
 from workbench.language import tr
+from workbench.views.common import Choice
 from workbench.views.layouts import in_row
 
 
@@ -135,7 +135,7 @@ class _NameAndPin(QDialog):
     def __init__(self, parent: QWidget | None, title: str, names: Sequence[str]) -> None:
         super().__init__(parent)
         self.setWindowTitle(title)
-        self._name, self._pin = QComboBox(), QLineEdit()
+        self._name, self._pin = Choice(), QLineEdit()
         self._name.addItems(list(names))
         self._pin.setEchoMode(QLineEdit.EchoMode.Password)
         buttons = QDialogButtonBox(QDialogButtonBox.StandardButton.Ok | QDialogButtonBox.StandardButton.Cancel)

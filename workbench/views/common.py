@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 from PySide6.QtCore import QLocale, QRect, QRectF, QSize, Qt
-from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QPen, QValidator
-from PySide6.QtWidgets import QDoubleSpinBox, QFileDialog, QLabel, QWidget
+from PySide6.QtGui import QColor, QGuiApplication, QPainter, QPaintEvent, QPen, QValidator, QWheelEvent
+from PySide6.QtWidgets import QComboBox, QDoubleSpinBox, QFileDialog, QLabel, QSlider, QWidget
 
 from core.messages import MINUS
 from workbench.language import number, tr
@@ -97,7 +99,31 @@ def breakable(path: str) -> str:
     return path.replace("/", "/\u200b").replace("\\", "\\\u200b")
 
 
-class SpinBox(QDoubleSpinBox):
+class WheelIfFocused:
+    """A field over which the wheel scrolls what is around it, unless it was chosen: nobody changes it in passing."""
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:
+        super().__init__(*args, **kwargs)
+        field: Any = self
+        field.setFocusPolicy(Qt.FocusPolicy.StrongFocus)  # the wheel does not choose it
+
+    def wheelEvent(self, event: QWheelEvent) -> None:
+        field: Any = self
+        if field.hasFocus():
+            super().wheelEvent(event)  # type: ignore[misc]
+        else:
+            event.ignore()
+
+
+class Choice(WheelIfFocused, QComboBox):
+    """One of several."""
+
+
+class Slider(WheelIfFocused, QSlider):
+    """A place between two ends."""
+
+
+class SpinBox(WheelIfFocused, QDoubleSpinBox):
     """A number as the window's language writes it; it can be typed with either decimal sign and either minus."""
 
     def __init__(self, parent: QWidget | None = None) -> None:

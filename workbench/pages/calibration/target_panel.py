@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 from PySide6.QtCore import Qt, SignalInstance
-from PySide6.QtWidgets import QComboBox, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from core.calibrate.board_shape import MADE
 from core.files.recording.rig import SMALLEST_PRINTED_MM
@@ -15,6 +15,7 @@ from workbench.language import tr
 from workbench.pages.calibration.target import PAPERS, USUAL_U
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.common import Choice
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import in_column, in_row
@@ -42,7 +43,7 @@ class TargetPanel(QWidget):
         self._holder.setContentsMargins(0, 0, 0, 0)
         self.form = SettingsForm()
         self._holder.addWidget(self.form)
-        self.paper, self.print = QComboBox(), QPushButton(icon("mdi6.printer-outline"), tr("Printable PDF …"))
+        self.paper, self.print = Choice(), QPushButton(icon("mdi6.printer-outline"), tr("Printable PDF …"))
         for paper in PAPERS:
             self.paper.addItem(paper, paper)
         self.paper.setCurrentText("A4")

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QComboBox, QWidget
+from PySide6.QtWidgets import QWidget
 
 from core.pipeline.live.events import CameraDetail
 from workbench.language import tr
@@ -14,6 +14,7 @@ from workbench.pages.calibration.picture import PictureTab
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
 from workbench.views.colours import CORNER_LEFT_OUT
+from workbench.views.common import Choice
 from workbench.views.forms.source_chooser import NextAction
 
 FACTORS = (1, 30, 100, 300, 1000)
@@ -30,7 +31,7 @@ class ViewTab(PictureTab):
     ) -> None:
         self._drawn: Any = None
         super().__init__(presenter, next_action, parent)
-        self.factor = QComboBox()
+        self.factor = Choice()
         for factor in FACTORS:
             self.factor.addItem(tr("residuals × {factor}", factor=factor), factor)
         self.factor.setCurrentIndex(FACTORS.index(300))

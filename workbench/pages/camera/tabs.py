@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from PySide6.QtWidgets import QComboBox, QPushButton, QWidget
+from PySide6.QtWidgets import QPushButton, QWidget
 
 from core.messages import capital
 from core.report.facts.of_kept import CHANGE_HEADS, kept_cameras
@@ -19,6 +19,7 @@ from workbench.pages.camera.presenter import CameraPresenter
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.colours import CORNER
+from workbench.views.common import Choice
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import enable, heading, in_column, in_row, muted
 from workbench.views.lists.data_table import DataTable
@@ -100,7 +101,7 @@ class ExpectedTab(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self._drawn: Any = None
-        self.map, self.words, self.at_depth = HeatMap(), muted(), QComboBox()
+        self.map, self.words, self.at_depth = HeatMap(), muted(), Choice()
         for title in (tr("nearest depth"), tr("middle depth"), tr("farthest depth")):
             self.at_depth.addItem(title)
         self.at_depth.setCurrentIndex(1)

@@ -8,17 +8,15 @@ import numpy as np
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
     QButtonGroup,
-    QComboBox,
     QHBoxLayout,
     QLabel,
     QPushButton,
-    QSlider,
     QWidget,
 )
 
 from core.inspect.shown.shown_scan import DEPTH
 from workbench.language import tr
-from workbench.views.common import SpinBox
+from workbench.views.common import Choice, Slider, SpinBox
 from workbench.views.layouts import Folding, enable, in_row
 
 if TYPE_CHECKING:
@@ -52,7 +50,7 @@ class SurfaceChoices(QWidget):
         self._tips: dict[Shape, str] = {}
         self._nominal = False
         self._before = "height"
-        self.colours, self.limit, self.slider = QComboBox(), SpinBox(), QSlider(Qt.Orientation.Horizontal)
+        self.colours, self.limit, self.slider = Choice(), SpinBox(), Slider(Qt.Orientation.Horizontal)
         look, limit = in_row(spacing=4), in_row(spacing=4)
         self._make_shapes(look)
         look.addSpacing(4)
@@ -124,7 +122,7 @@ class SurfaceChoices(QWidget):
 
     def _make_colours(self, bar: QHBoxLayout) -> None:
         self.colours.setAccessibleName(tr("Colour by"))
-        self.colours.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.colours.setSizeAdjustPolicy(Choice.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.colours.setMinimumContentsLength(7)
         self.colours.setToolTip(tr("What the colours of the surface mean"))
         for name, text in (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 
 from PySide6.QtCore import QSignalBlocker
-from PySide6.QtWidgets import QBoxLayout, QComboBox, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QBoxLayout, QLabel, QPushButton, QWidget
 
 from core.inspect.shown.cut_plane import AXES
 from workbench.language import tr
@@ -13,7 +13,7 @@ from workbench.pages.inspect.cut import InspectCut
 from workbench.pages.step_page import ANY_HEIGHT
 from workbench.theme import icon
 from workbench.views.colours import PROPOSED
-from workbench.views.common import SpinBox
+from workbench.views.common import Choice, SpinBox
 from workbench.views.layouts import STRETCH, Folding, enable, in_column, in_row
 from workbench.views.plots.lines import LineChart
 
@@ -38,14 +38,14 @@ class CutPanel(QWidget):
         self.views.setSpacing(4)
         self.views.addWidget(surface, SHARES[0])
         self._names = ("", "")
-        self.axis, self.at = QComboBox(), SpinBox()
+        self.axis, self.at = Choice(), SpinBox()
         self.keep = QPushButton(icon("mdi6.plus"), tr("Add as a section"))
         for name in AXES:
             self.axis.addItem(tr("square to {axis}", axis=name))
         self.axis.setAccessibleName(tr("What the cut is square to"))
         self.at.setAccessibleName(tr("Where the cut is"))
         self.at.setToolTip(tr("Where the cut is, in the frame of the view; or drag the ring in the 3D view"))
-        self.side = QComboBox()
+        self.side = Choice()
         for side, word in zip(SIDES, _hiding(AXES[0]), strict=True):  # Qt keeps the least width of its first words
             self.side.addItem(word, side)
         self.side.setAccessibleName(tr("What the cut hides"))

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from PySide6.QtWidgets import QComboBox, QLabel, QWidget
+from PySide6.QtWidgets import QLabel, QWidget
 
 from core.inspect.plan.feature_spec import FaceAt, Polygon
 from workbench.language import tr
@@ -13,6 +13,7 @@ from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
 from workbench.pages.inspect.stage import Stage
 from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
+from workbench.views.common import Choice
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column, in_row, muted
 
@@ -35,8 +36,8 @@ class PictureTab(QWidget):
         self._laid: tuple[object, ...] = ()
         self._feature: tuple[object, ...] = ()
         self._regions = 0
-        self.image, self.pictures, self.line = ImageView(), QComboBox(), muted()
-        self.pictures.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToContents)  # more come when there is a scan
+        self.image, self.pictures, self.line = ImageView(), Choice(), muted()
+        self.pictures.setSizeAdjustPolicy(Choice.SizeAdjustPolicy.AdjustToContents)  # more come when there is a scan
         self.pictures.setAccessibleName(tr("Picture"))
         self.pictures.setToolTip(tr("The surface as the camera sees it, or a picture of the recording"))
         self.pictures.setMinimumContentsLength(22)

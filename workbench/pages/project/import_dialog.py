@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 from PySide6.QtCore import Qt, QTimer, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QDialog,
     QDialogButtonBox,
     QFormLayout,
@@ -27,6 +26,7 @@ from core.files.recording.import_plan import ImportedPicture, ImportPlan, Import
 from workbench.bench import Bench
 from workbench.language import joined, named, sentence, text_of, tr
 from workbench.views import ask
+from workbench.views.common import Choice
 from workbench.views.image.side_by_side import SideBySide
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import NO_MARGINS, Folding, in_row, resize_on_screen
@@ -57,7 +57,7 @@ class ImportDialog(QDialog):
         resize_on_screen(self, 1100, 720)
         self.camera, self.planes, self.planes_off = (QLineEdit() for _ in range(3))
         self.scan, self.check, self.check_off = (QLineEdit() for _ in range(3))
-        self.target, self.order = QLineEdit(str(set_folder)), QComboBox()
+        self.target, self.order = QLineEdit(str(set_folder)), Choice()
         self.order.addItem(tr("By name (2 before 10)"), Order.NAME)
         self.order.addItem(tr("By the time they were taken"), Order.TIME)
         self.table, self.on, self.off, self.words = DataTable(), ImageView(), ImageView(), QLabel()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QAction, QDesktopServices
-from PySide6.QtWidgets import QCheckBox, QComboBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
+from PySide6.QtWidgets import QCheckBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from core.files.results.export_list import EXPORTS
 from core.report.template import PAPERS
@@ -16,6 +16,7 @@ from workbench.pages.report.words import SHORT_TITLES, USUAL_EXPORTS, export_wor
 from workbench.pages.step_page import StepPage
 from workbench.theme import icon
 from workbench.views import ask
+from workbench.views.common import Choice
 from workbench.views.layouts import enable, muted, say
 from workbench.views.pages.page_scroll import PageScroll
 from workbench.views.stage_card import CardButton, StageCard
@@ -38,7 +39,7 @@ class ReportPage(StepPage):
         self.add_to_side(self.card)
         self.add_to_side(self.warning)
         self.boxes: dict[str, QCheckBox] = {}
-        self.paper, self.language = QComboBox(), QComboBox()
+        self.paper, self.language = Choice(), Choice()
         self.template, self.no_template, self.template_name = QPushButton(), QPushButton(), QLabel()
         self.add_panel(tr("In the report"), self._choices(), kept="choices")
         self.exports: dict[str, QPushButton | QAction] = {}

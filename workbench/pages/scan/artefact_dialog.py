@@ -8,7 +8,7 @@ from datetime import date
 from typing import cast
 
 from PySide6.QtCore import Qt
-from PySide6.QtWidgets import QComboBox, QDialog, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QDialog, QLabel, QPushButton, QWidget
 
 from core.messages import capital
 from core.report.wording import with_uncertainty
@@ -18,7 +18,7 @@ from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.words import wording
 from workbench.theme import icon, shades
 from workbench.views import ask
-from workbench.views.common import dress
+from workbench.views.common import Choice, dress
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import STRETCH, enable, heading, in_column, in_row, muted, resize_on_screen, say
@@ -58,7 +58,7 @@ class ArtefactDialog(QDialog):
         self.compare.setProperty("primary", True)
         for button in (self.add, self.change, self.remove, self.compare, self.close_it):
             button.setAutoDefault(False)
-        self.length_title, self.length = QLabel(tr("Compared is")), QComboBox()
+        self.length_title, self.length = QLabel(tr("Compared is")), Choice()
         self.length_title.setBuddy(self.length)
         self._arrange()
         self.table.current_row_changed.connect(self._chosen)

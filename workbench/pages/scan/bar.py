@@ -8,7 +8,6 @@ from PySide6.QtWidgets import (
     QCheckBox,
     QHBoxLayout,
     QPushButton,
-    QSlider,
     QToolButton,
     QWidget,
 )
@@ -19,6 +18,7 @@ from workbench.pages.scan.picture import View
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
 from workbench.theme import icon
+from workbench.views.common import Slider
 from workbench.views.layouts import Elided, Folding, enable, in_column, in_row
 
 
@@ -32,7 +32,7 @@ class FrameBar(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.back, self.on, self.next_mark = QToolButton(), QToolButton(), QToolButton()
-        self.slider, self.used, self.said = QSlider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), Elided()
+        self.slider, self.used, self.said = Slider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), Elided()
         self.stages: dict[View, QPushButton] = {}
         self._group = QButtonGroup(self)
         self._lay_out()

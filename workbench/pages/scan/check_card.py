@@ -7,7 +7,7 @@ from itertools import chain
 from pathlib import Path
 
 from PySide6.QtCore import QEvent
-from PySide6.QtWidgets import QApplication, QComboBox, QFrame, QLabel, QPushButton, QWidget
+from PySide6.QtWidgets import QApplication, QFrame, QLabel, QPushButton, QWidget
 
 from core.calibrate.results import ProposedReadjustment
 from core.files.results.check_file import InterimCheck
@@ -30,7 +30,7 @@ from workbench.pages.words import fact_lines, show_facts
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.colours import Level
-from workbench.views.common import IconLabel, dress
+from workbench.views.common import Choice, IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
 from workbench.views.layouts import enable, heading, in_column, in_row, muted, rename, say
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRows
@@ -48,7 +48,7 @@ class CheckCard(QFrame):
         self._check, self._artefacts, self._live, self._seen = check, artefacts, live, ""
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
         self.word.setWordWrap(True)
-        self.chart, self.charted = ControlPlot(), QComboBox()
+        self.chart, self.charted = ControlPlot(), Choice()
         self.charted.setAccessibleName(tr("What the chart shows"))
         self.charted.activated.connect(self._choose_chart)
         self._wanted_chart = ""

@@ -6,10 +6,10 @@ import math
 from dataclasses import dataclass
 
 from PySide6.QtCore import QEvent, Qt, QTimer, Signal
-from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator, QWheelEvent
-from PySide6.QtWidgets import QCheckBox, QComboBox, QLineEdit, QPlainTextEdit
+from PySide6.QtGui import QFocusEvent, QHideEvent, QKeyEvent, QKeySequence, QValidator
+from PySide6.QtWidgets import QCheckBox, QLineEdit, QPlainTextEdit
 
-from workbench.views.common import SpinBox
+from workbench.views.common import Choice, SpinBox
 
 WIDEST_CHOICE = 22
 """Letters of a choice that a field has room for at least; longer ones only where there is more."""
@@ -68,7 +68,6 @@ class NumberEditor(SpinBox):
         self.setSuffix(within.unit if within.unit in ("", "°") else f" {within.unit}")
         if within.none_text is not None:
             self.setSpecialValueText(within.none_text)
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
         self.setKeyboardTracking(False)
         self.setAlignment(Qt.AlignmentFlag.AlignRight)
         self._stepping = QTimer(self)
@@ -112,12 +111,6 @@ class NumberEditor(SpinBox):
         if self._none_text is not None and self._typed(text) in ("", self._none_text):
             return self.minimum()
         return super().valueFromText(text)
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
 
     def hideEvent(self, event: QHideEvent) -> None:
         if self._stepping.isActive():
@@ -217,7 +210,7 @@ class MultilineEditor(QPlainTextEdit):
             self.committed.emit()
 
 
-class ChoiceEditor(QComboBox):
+class ChoiceEditor(Choice):
     """One of several."""
 
     committed = Signal()
@@ -226,8 +219,7 @@ class ChoiceEditor(QComboBox):
         super().__init__()
         self._values = [value for value, _ in choices]
         self.addItems([text for _, text in choices])
-        self.setFocusPolicy(Qt.FocusPolicy.StrongFocus)
-        self.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.setSizeAdjustPolicy(Choice.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setMinimumContentsLength(min(max(len(text) for _, text in choices), WIDEST_CHOICE) if choices else 0)
         self.activated.connect(lambda _: self._tell())
         self._told: object = self.content()
@@ -241,12 +233,6 @@ class ChoiceEditor(QComboBox):
         if value in self._values:
             self.setCurrentIndex(self._values.index(value))
         self._told = self.content()
-
-    def wheelEvent(self, event: QWheelEvent) -> None:
-        if self.hasFocus():
-            super().wheelEvent(event)
-        else:
-            event.ignore()
 
     def _tell(self) -> None:
         if self.content() != self._told:

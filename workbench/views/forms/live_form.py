@@ -8,7 +8,6 @@ from typing import Any
 
 from PySide6.QtCore import Qt, Signal
 from PySide6.QtWidgets import (
-    QComboBox,
     QDoubleSpinBox,
     QFormLayout,
     QLabel,
@@ -23,7 +22,7 @@ from core.pipeline.live.sources import SOURCES
 from workbench.language import text_of, tr
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.common import SpinBox
+from workbench.views.common import Choice, SpinBox
 from workbench.views.layouts import enable, in_column, in_row, say
 
 
@@ -36,11 +35,11 @@ class DeviceField(QWidget):
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._is_folder = False
-        self.box, self.button = QComboBox(), QToolButton()
+        self.box, self.button = Choice(), QToolButton()
         self.box.setEditable(True)
-        self.box.setInsertPolicy(QComboBox.InsertPolicy.NoInsert)
+        self.box.setInsertPolicy(Choice.InsertPolicy.NoInsert)
         self.box.setMinimumContentsLength(8)
-        self.box.setSizeAdjustPolicy(QComboBox.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
+        self.box.setSizeAdjustPolicy(Choice.SizeAdjustPolicy.AdjustToMinimumContentsLengthWithIcon)
         self.setFocusProxy(self.box)
         in_row((self.box, 1), self.button, on=self, spacing=4)
         self.box.activated.connect(lambda _: self.chosen.emit(str(self.box.currentData() or "")))
@@ -131,7 +130,7 @@ class NumberField(SpinBox):
         self.blockSignals(False)
 
 
-class ChoiceField(QComboBox):
+class ChoiceField(Choice):
     """One of several words; the first entry is "as it is", which is None."""
 
     edited = Signal(object)
@@ -182,13 +181,13 @@ class SourceForm(QWidget):
     def __init__(self, live: Any, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.live = live
-        self.kind, self.device = QComboBox(), DeviceField()
+        self.kind, self.device = Choice(), DeviceField()
         as_it_is = tr("as it is")
         self.exposure = NumberField(as_it_is, " ms", 0.01, 60000.0, 2)
         self.gain = NumberField(as_it_is, " dB", -40.0, 80.0, 1)
         self.rate = NumberField(as_it_is, " /s", 0.1, 1000.0, 1)
         self.trigger, self.pixel_format, self.region = ChoiceField(as_it_is), ChoiceField(as_it_is), RegionField()
-        self.files = QComboBox()
+        self.files = Choice()
         self.missing, self.complaint = QLabel(), QLabel()
         self._device_label = QLabel()
         self._lay_out()

@@ -12,7 +12,6 @@ from PySide6.QtWidgets import (
     QLabel,
     QMenu,
     QPushButton,
-    QSlider,
     QToolButton,
     QWidget,
     QWidgetAction,
@@ -20,6 +19,7 @@ from PySide6.QtWidgets import (
 
 from workbench.language import number, tr
 from workbench.theme import icon
+from workbench.views.common import Slider
 from workbench.views.layouts import in_row
 
 _STEPS = 20
@@ -113,8 +113,8 @@ class ToneMenu(QMenu):
         self.gain.setValue(0)
         self.gamma.setValue(0)
 
-    def _slider(self, low: int, high: int) -> tuple[QSlider, QLabel]:
-        slider = QSlider(Qt.Orientation.Horizontal)
+    def _slider(self, low: int, high: int) -> tuple[Slider, QLabel]:
+        slider = Slider(Qt.Orientation.Horizontal)
         slider.setRange(low, high)
         slider.setMinimumWidth(180)
         slider.valueChanged.connect(self._say)

@@ -6,10 +6,11 @@ import numpy as np
 import pyqtgraph as pg
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import QRectF, QSignalBlocker
-from PySide6.QtWidgets import QComboBox, QGraphicsEllipseItem, QGraphicsRectItem, QLabel, QWidget
+from PySide6.QtWidgets import QGraphicsEllipseItem, QGraphicsRectItem, QLabel, QWidget
 
 from workbench.language import tr
 from workbench.theme import shades
+from workbench.views.common import Choice
 from workbench.views.layouts import in_row
 from workbench.views.plots.base import Plot, written
 from workbench.views.scene.colours import nice_step
@@ -32,10 +33,10 @@ class ResidualPlot(Plot):
         self._size = (1, 1)
         self._rms: float | None = None
         super().__init__(parent, least_height=170)
-        self.kind = QComboBox()
+        self.kind = Choice()
         self.kind.addItems([tr("On the picture"), tr("Scatter")])
         self.kind.setToolTip(tr("Where the residuals are, or how they scatter"))
-        self.factor = QComboBox()
+        self.factor = Choice()
         self.factor.addItem(tr("automatic"), 0)
         for factor in FACTORS:
             self.factor.addItem(f"× {factor}", factor)
