@@ -33,33 +33,59 @@ _STAGES: Mapping[str, Mapping[str, tuple[float, float | None]]] = {
 does all of the stage. They are the sample's, measured on two cores; only the shares matter."""
 
 
-def _job(*steps: str, beside: bool = False) -> dict[str, float]:
-    """Seconds of the stages of these steps, in the order of work."""
-    stages = [stage for step in GRAPH if step.name in steps for stage in _STAGES.get(step.name, {}).items()]
-    return {name: seconds for name, both in stages if (seconds := both[beside]) is not None}
-
-
 _SET = ("gauge", *(step.name for step in GRAPH if not step.on_request))
 """What is done of a recording set."""
 
+_STEPS: Mapping[str, tuple[str, ...]] = {
+    "run": _SET,
+    "camera": ("camera",),
+    "planes": ("planes",),
+    "scan": ("scan",),
+    "measure_scan": ("scan", "gauge"),
+    "measure_watched": ("scan", "gauge"),
+    "make_report": ("report",),
+    "measure_set": _SET,
+    "measure_all": tuple(step.name for step in IN_PROJECT),
+}
+"""What each job does: functions that the window asks for, and commands."""
+
+_BESIDE = ("run",)
+"""Jobs that have a second process beside them."""
+
+
+def _steps_of(job: str) -> tuple[str, ...]:
+    """Its steps in the order of work, but for those that take no time."""
+    return tuple(step.name for step in GRAPH if step.name in _STEPS.get(job, ()) and step.name in _STAGES)
+
+
+def _stages_of(job: str) -> dict[str, float]:
+    """Seconds of the stages of a job, in the order of work."""
+    stages = [stage for step in _steps_of(job) for stage in _STAGES[step].items()]
+    return {name: seconds for name, both in stages if (seconds := both[job in _BESIDE]) is not None}
+
+
 USUAL_S: Mapping[str, Mapping[str, float]] = MappingProxyType(
     {
-        "run": _job(*_SET, beside=True),
-        "camera": _job("camera"),
-        "planes": _job("planes"),
-        "scan": _job("scan"),
+        **{job: _stages_of(job) for job in _STEPS},
         "find_views": {"camera views": 0.63},
         "solve_views": {"Calibrating the camera": 0.25},
         "find_poses": {"plane poses": 5.0},
         "solve_poses": {"fan poses": 0.2},
-        "measure_scan": _job("scan", "gauge"),
-        "measure_watched": _job("scan", "gauge"),
-        "make_report": _job("report"),
-        "measure_set": _job(*_SET),
-        "measure_all": _job(*(step.name for step in IN_PROJECT)),
     }
 )
-"""Seconds of each stage, in their order, by the name of the job: functions that the window asks for, and commands."""
+"""Seconds of each stage, in their order, by the name of the job."""
+
+COUNTED = ("camera views", "plane poses", "fan poses", "frames")
+"""Stages whose progress is a number of pictures."""
+
+
+def page_of(job: str, stage: str) -> tuple[int, int, str] | None:
+    """Page of a job's stage: its number from 1, of how many, its name; None where the job has one alone."""
+    done = {step.name: step.page for step in GRAPH if step.name in _steps_of(job)}
+    pages = list(dict.fromkeys(done.values()))
+    page = next((page for step, page in done.items() if stage in _STAGES[step]), None)
+    return None if page is None or len(pages) == 1 else (pages.index(page) + 1, len(pages), page)
+
 
 _TRUSTED = 0.05
 """From this share of a stage on its own pace counts."""

@@ -5,7 +5,7 @@ import random
 
 import pytest
 
-from core.remaining import USUAL_S, Remaining, in_words
+from core.remaining import COUNTED, USUAL_S, Remaining, in_words, page_of
 
 SMALL_SET_S = {
     **{"camera views": 1.21, "Calibrating the camera": 0.9, "plane poses": 2.88, "fan poses": 0.17, "crossings": 0.08},
@@ -56,6 +56,15 @@ def test_a_whole_job_has_the_stages_of_its_steps_in_the_order_of_work():
     assert list(USUAL_S["measure_all"]) == [*steps, "faces", "features", "report"]
     beside = [stage for stage in USUAL_S["measure_set"] if stage in USUAL_S["run"]]
     assert list(USUAL_S["run"]) == beside and "frames" not in beside, "the second process looks at the frames"
+
+
+def test_a_stage_of_a_job_of_several_steps_is_told_by_its_step_and_their_number():
+    assert page_of("measure_all", "plane poses") == (2, 5, "planes")
+    assert page_of("measure_all", "features") == page_of("measure_all", "faces") == (4, 5, "inspect")
+    assert page_of("measure_scan", "frames") == (1, 2, "scan")
+    assert page_of("camera", "camera views") is None, "there is no other step"
+    assert page_of("measure_all", "something else") is None
+    assert all(any(stage in stages for stages in USUAL_S.values()) for stage in COUNTED)
 
 
 @pytest.mark.parametrize("slower", [0.3, 1.0, 8.0])

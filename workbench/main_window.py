@@ -20,7 +20,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.remaining import USUAL_S, Remaining
+from core.remaining import COUNTED, USUAL_S, Remaining, page_of
 from core.translations import languages, own_name
 from workbench import first_measurement
 from workbench.bench import Bench
@@ -517,14 +517,14 @@ class MainWindow(QMainWindow):
 
     def _task_started(self, task: Task) -> None:
         self._task = task
-        self._stage = ""
+        self._stage, self._counted = "", (0, 0)
         name = name_of(task.job)
         self._remaining = Remaining(USUAL_S.get(name, {}), self.bench.settings.stage_seconds(name))
         self.task_bar.begin(task.label)
         self._refreshing.soon()
 
     def _task_progressed(self, _: Task, stage: str, done: int, total: int) -> None:
-        self._stage = stage
+        self._stage, self._counted = stage, (done, total)
         self._remaining.tell(stage, done, total)
         self._show_progress()
 
@@ -532,8 +532,21 @@ class MainWindow(QMainWindow):
         if self._task is None or self._task.cancelling:
             return
         words = time_left(self._remaining.left)
-        self.task_bar.progress(self._task.label, tr(self._stage), self._remaining.share, words)
+        label, stage = self._what_goes_on(self._task)
+        self.task_bar.progress(label, stage, self._remaining.share, words)
         self.operator.show_progress(tr(self._stage), self._remaining.share, words)
+
+    def _what_goes_on(self, task: Task) -> tuple[str, str]:
+        """The step of how many, or the job where it has one alone; and the stage, with the number of its pictures."""
+        (done, total), stage = self._counted, tr(self._stage)
+        if self._stage in COUNTED and total > 1:
+            stage = tr("{stage}, {done} of {total}", stage=stage, done=done, total=total)
+        place = page_of(name_of(task.job), self._stage)
+        if place is None:
+            return task.label, stage
+        number, count, name = place
+        title = next(tr(step.title) for step in STEPS if step.name == name)
+        return tr("{number} of {count}, {step}", number=number, count=count, step=title), stage
 
     def _task_ended(self, task: Task) -> None:
         if task is self._task:

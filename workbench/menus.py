@@ -52,7 +52,6 @@ SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("cut", "X", label("Inspect, 3D view: lay a plane through the surface")),
     ("click", "C, Shift+C", label("Inspect, 3D view: click a face, or two, to measure them")),
     ("frames", "Left, Right", label("Scan: go through the frames")),
-    ("recording", "Space, X, L", label("Live scan: stop; exchange picture and points; legend")),
     ("polygon", "Return, Esc", label("Drawing a region, clicking a face: take it, give it up")),
 )
 """Every key the window knows: name, key and meaning. The list under ? shows them, the actions are made from them."""

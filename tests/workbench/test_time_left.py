@@ -25,6 +25,18 @@ def test_a_job_that_was_never_done_says_from_the_start_how_long_it_takes(window:
     assert begun(window, jobs.MEASURE_SCAN, "Scan", "reference") == "about 5 s left"
 
 
+def test_the_step_of_how_many_and_the_picture_of_how_many_are_named(window: MainWindow) -> None:
+    task = Task(window.bench.measuring, window, 1, jobs.MEASURE_ALL, "Measuring everything")
+    window.bench.measuring.task_started.emit(task)
+    window.bench.measuring.task_progressed.emit(task, "plane poses", 7, 9)
+    said = window.task_bar._label.text()
+    window.bench.measuring.task_progressed.emit(task, "network", 1, 3)
+    without = window.task_bar._label.text()
+    window.bench.measuring.task_ended.emit(task)
+    assert said == "2 of 5, Laser planes: plane poses, 7 of 9"
+    assert without == "3 of 5, Scan: network", "what is no picture is not counted"
+
+
 def test_what_it_took_the_last_time_counts_more(window: MainWindow) -> None:
     window.bench.settings.keep_stage_seconds("measure_scan", {"frames": 50.0})
     assert begun(window, jobs.MEASURE_SCAN, "Scan", "reference") == "about 53 s left"

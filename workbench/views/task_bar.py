@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QTimer, Signal
+from PySide6.QtCore import QSize, Qt, QTimer, Signal
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QProgressBar, QPushButton, QSizePolicy, QStatusBar, QWidget
 
 from core.remaining import in_words
@@ -11,6 +11,8 @@ from workbench.views.layouts import Elided, enable
 
 LONG_S = (59.0, 59 * 60.0)
 """Seconds left whose words are as long as any: what stands beside them does not move when they change."""
+LABEL_PX = 270
+"""Pixels of what is being done."""
 ROOM_PX = 2
 """Beside the words, for what Qt rounds."""
 
@@ -45,6 +47,16 @@ class StatusBar(QStatusBar):
         return str(self._said.text())
 
 
+class _Doing(Elided):
+    """What is being done, in a place that stays as its words change; a small window has less room for it."""
+
+    def sizeHint(self) -> QSize:
+        return QSize(LABEL_PX, super().sizeHint().height())
+
+    def minimumSizeHint(self) -> QSize:
+        return QSize(LABEL_PX // 4, super().minimumSizeHint().height())
+
+
 class TaskBar(QWidget):
     """Shows one running job; hidden while there is none."""
 
@@ -53,10 +65,11 @@ class TaskBar(QWidget):
 
     def __init__(self, parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._label, self._left = Elided(), QLabel()
+        self._label, self._left = _Doing(), QLabel()
         self._left.setObjectName("muted")
         self._bar = QProgressBar()
-        self._bar.setFixedWidth(220)
+        self._label.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
+        self._bar.setFixedWidth(180)
         self._bar.setTextVisible(False)
         self.setSizePolicy(QSizePolicy.Policy.Maximum, QSizePolicy.Policy.Preferred)
         self.cancel = QPushButton(tr("Cancel"))

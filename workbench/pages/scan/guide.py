@@ -44,7 +44,7 @@ class Large(QLabel):
         return QSize(320, SMALLEST)
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(160, SMALLEST)
+        return QSize(110, SMALLEST)
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
@@ -70,7 +70,7 @@ class GuideBand(QFrame):
     def __init__(self, presenter: ScanPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self._light, self.sentence, self.beside = IconLabel(72), Large(), Elided()
+        self._light, self.sentence, self.beside = IconLabel(60), Large(), Elided()
         self.covered, self.needed, self.counts = QLabel(), QLabel(), QLabel()
         self.go, self.exchange = QPushButton(), QToolButton()
         self.sentence.setAccessibleName(tr("Hint"))
@@ -86,7 +86,7 @@ class GuideBand(QFrame):
         font.setPixelSize(24)
         self.go.setFont(font)
         self.go.setStyleSheet("font-size: 24px; padding: 0 18px;")
-        self.go.setMinimumSize(170, HEIGHT - 36)
+        self.go.setMinimumSize(130, HEIGHT - 36)
         self.go.clicked.connect(presenter.live.go_on)
         self.exchange.setIcon(icon("mdi6.swap-horizontal"))
         self.exchange.setIconSize(QSize(28, 28))
@@ -101,6 +101,7 @@ class GuideBand(QFrame):
             on=self, margins=(14, 8, 12, 8), spacing=14,
         )  # fmt: skip
         self.setFixedHeight(HEIGHT)
+        self.hide()
         self._steady = Steady(self)
         self._steady.shown.connect(self._show)
 
