@@ -27,6 +27,7 @@ from core.files.project.lock import ProjectLock, held_by, take_lock
 from core.files.project.people import Person, Rules, read_rules, reason_wanted, refused, with_pin
 from core.files.step_graph import CALIBRATED
 from core.messages import Message
+from workbench.language import spoken
 from workbench.step_state import StepState, step_states
 
 AUTOSAVE_MS = 1000
@@ -113,7 +114,7 @@ class ProjectModel(QObject):
         """Asks for the reason of the edit of this name; nothing: it is not to be made."""
         self._lock: ProjectLock | None = None
         self._access = Access.ALONE
-        self._states_of: ProjectFile | None = None
+        self._states_of: tuple[ProjectFile | None, str] = None, ""
         self._states: Mapping[str, StepState] = {}
         self._accepted: dict[tuple[str, str], Done] = {}
         self._recording: set[QObject] = set()
@@ -144,9 +145,10 @@ class ProjectModel(QObject):
 
     @property
     def states(self) -> Mapping[str, StepState]:
-        """How far each step is, by its name; worked out once for each project, as every page asks several times."""
-        if self._states_of is not self._file:
-            self._states, self._states_of = step_states(self.project, self.results), self._file
+        """How far each step is, by its name; worked out once for project and language, as every page asks often."""
+        file, language = self._states_of
+        if file is not self._file or language != spoken():
+            self._states, self._states_of = step_states(self.project, self.results), (self._file, spoken())
         return self._states
 
     @property

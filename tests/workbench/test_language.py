@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import re
 from collections.abc import Iterator
 from dataclasses import replace
 
@@ -13,11 +14,14 @@ from PySide6.QtGui import QFontDatabase, QFontInfo
 from PySide6.QtWidgets import QApplication, QPushButton
 
 import workbench.language
-from core.translations import language
+from core.translations import PSEUDO, language
+from tests.workbench.pseudo import FOREIGN, told_past_the_catalogues
+from tests.workbench.test_pseudo_dialogs import ALIKE
 from workbench.app import build_window, speak
 from workbench.bench import Bench
 from workbench.language import choose, joined, named, sentence, sentences, spoken
 from workbench.main_window import MainWindow
+from workbench.steps import STEPS
 from workbench.work import jobs
 
 
@@ -67,6 +71,26 @@ def test_the_window_speaks_another_language_at_once_and_shows_the_same_step(wind
     second.menus.actions["language en"].trigger()
     qtbot.waitUntil(lambda: speaks(windows, "en", 3))
     assert {one.text() for one in windows[2].findChildren(QPushButton)} >= {"Back", "Next", "Messages"}
+
+
+@pytest.mark.accuracy
+def test_nothing_of_the_language_before_is_left_on_any_page(windows, bench, qtbot, measured_project):
+    bench.model.open(measured_project)
+
+    def shown(window: MainWindow) -> Iterator[str]:
+        for step in STEPS:
+            window.go_to(step.name)
+            qtbot.waitUntil(lambda: not bench.quick.busy, timeout=60_000)
+            qtbot.wait(20)
+            yield step.name
+
+    assert len(list(shown(windows[0]))) == len(STEPS)
+    windows[0].language_wanted.emit(PSEUDO)
+    qtbot.waitUntil(lambda: speaks(windows, PSEUDO, 2))
+    alike = ("Block", "Gauge block", "Somebody", measured_project.name, *FOREIGN, *ALIKE)
+    foreign = re.compile("|".join(rf"\b{one}\b" for one in alike))
+    left = {page: told_past_the_catalogues(windows[1], foreign) for page in shown(windows[1])}
+    assert {page: texts for page, texts in left.items() if texts} == {}
 
 
 def test_while_something_is_measured_the_language_changes_at_the_next_start(windows, bench, qtbot):

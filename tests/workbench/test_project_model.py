@@ -15,6 +15,8 @@ from core.files.project.keys import finished
 from core.files.project.lock import LOCK, ProjectInUse
 from core.files.project.people import Rules, person, write_rules
 from core.files.recording.rig import GaugeSpec
+from core.translations import language
+from workbench.language import choose
 from workbench.project_model import Access, ProjectModel
 from workbench.step_state import State, step_states
 
@@ -41,6 +43,17 @@ def test_an_edit_can_be_undone_and_done_again(model: ProjectModel) -> None:
     assert model.project.info.name == "Other"
     assert seen == [("Block", "Other"), ("Other", "Block"), ("Block", "Other")]
     assert model.undo_stack.undoText() == "rename"
+
+
+def test_what_is_said_of_a_step_is_in_the_language_spoken_now(model: ProjectModel, qapp: Any) -> None:
+    english = model.states["scan"].sentence
+    choose(language("de"), qapp)
+    try:
+        german = model.states["scan"].sentence
+    finally:
+        choose(language("en"), qapp)
+    assert english.startswith("First:") and german.startswith("Zuerst")
+    assert model.states["scan"].sentence == english
 
 
 def test_an_edit_that_changes_nothing_leaves_no_undo(model: ProjectModel) -> None:
