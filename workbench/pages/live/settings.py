@@ -17,9 +17,24 @@ from core.messages import Message
 from core.pipeline.live.sources import SOURCES
 from workbench.bench import Bench
 from workbench.language import sentence, text_of, tr
+from workbench.settings import AppSettings
 from workbench.work import jobs
 
 FIRST = next(iter(SOURCES))
+"""The kind that is always there: the simulated rig."""
+OWN = "opencv"
+"""What a rig of one's own has as long as nothing else was chosen: any camera the system knows."""
+
+
+def choose_simulated(settings: AppSettings) -> None:
+    """The next project is one of the simulated rig."""
+    settings.keep_text("live/kind", FIRST)
+
+
+def choose_own(settings: AppSettings) -> None:
+    """The next project is one of a rig of one's own: its source is a camera, the one chosen last if there was one."""
+    if settings.text("live/kind", FIRST) == FIRST:
+        settings.keep_text("live/kind", settings.text("live/own kind", OWN))
 
 
 class LiveSettings(QObject):
@@ -34,7 +49,7 @@ class LiveSettings(QObject):
         super().__init__(parent)
         self._bench, self._step = bench, "planes" if step == "check" else step  # both show the plane target
         self._known: dict[SourceChoice, Capabilities] = {}
-        self.devices: tuple[SourceInfo, ...] = ()
+        self._listed: tuple[str, tuple[SourceInfo, ...]] = "", ()
         self.looking = False
         self.missing = ""
         """Why sources of this kind cannot be used on this computer, and what to install; "" as far as is known."""
@@ -47,6 +62,12 @@ class LiveSettings(QObject):
         """One of SOURCES."""
         kind = self._bench.settings.text("live/kind", FIRST)
         return kind if kind in SOURCES else FIRST
+
+    @property
+    def devices(self) -> tuple[SourceInfo, ...]:
+        """The sources of this kind that were found last."""
+        kind, found = self._listed
+        return found if kind == self.kind else ()
 
     @property
     def choice(self) -> SourceChoice:
@@ -78,7 +99,9 @@ class LiveSettings(QObject):
         """Choose the kind of source; its last device and settings come back."""
         if kind != self.kind:
             self._bench.settings.keep_text("live/kind", kind)
-            self.devices, self.looking, self.missing, self.complaint = (), False, "", ""
+            if kind != FIRST:
+                self._bench.settings.keep_text("live/own kind", kind)
+            self.looking, self.missing, self.complaint = False, "", ""
             self.devices_changed.emit()
             self.changed.emit()
 
@@ -126,7 +149,7 @@ class LiveSettings(QObject):
 
         def found(devices: Any, missing: Message | None = None) -> None:
             if kind == self.kind:
-                self.devices, self.looking = tuple(devices), False
+                self._listed, self.looking = (kind, tuple(devices)), False
                 self.missing = "" if missing is None else sentence(text_of(missing))
                 self.devices_changed.emit()
 

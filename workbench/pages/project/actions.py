@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -26,6 +27,7 @@ from core.files.recording.unfinished import Unfinished, forget_recording, unfini
 from core.simulate.sample import simulated_project
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
+from workbench.pages.live.settings import choose_own, choose_simulated
 from workbench.pages.project.audit import AuditWindow
 from workbench.pages.project.copies import PACKED, ProjectCopies
 from workbench.pages.project.import_dialog import ImportDialog
@@ -58,8 +60,9 @@ class ProjectActions(QObject):
         self.model.recordings_over.connect(self._recordings_over, Qt.ConnectionType.QueuedConnection)
 
     def new_project(self) -> None:
-        """Ask for a name and make an empty project."""
-        self._make(tr("New project"), tr("New project"), new_project)
+        """Ask for a name and make an empty project, for a rig of one's own."""
+        own = partial(choose_own, self.bench.settings)
+        self._make(tr("New project"), tr("New project"), new_project, then=own)
 
     def choose_project(self) -> None:
         """Ask for a project folder and open it."""
@@ -170,6 +173,7 @@ class ProjectActions(QObject):
 
     def try_simulated(self) -> None:
         """A new project whose live source is the simulated rig."""
+        choose_simulated(self.bench.settings)
         folder = free_folder(self.bench.settings.projects_folder, tr("Simulated rig"))
         self._create(folder, simulated_project, folder.name, then=lambda: self.go_to.emit("camera"))
 

@@ -24,6 +24,7 @@ from core.files.project.people import Rules, person, write_rules
 from core.files.recording.unfinished import note_recording
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
+from workbench.pages.live.settings import LiveSettings
 from workbench.pages.project.actions import ProjectActions
 from workbench.pages.project.audit import AuditWindow
 from workbench.views import ask
@@ -534,6 +535,23 @@ def test_a_folder_that_is_in_the_samples_way_is_left_alone(projects: ProjectActi
     qtbot.waitUntil(lambda: projects.model.is_open)
     assert projects.model.folder == base / "Sample 2"
     assert list((base / "Sample").iterdir()) == []
+
+
+def test_a_new_project_for_a_rig_of_one_s_own_does_not_begin_with_the_simulated_one(
+    projects: ProjectActions, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    names = iter(("first", "second"))
+    monkeypatch.setattr(ask, "ask_name_and_folder", lambda *_: (next(names), tmp_path))
+    live = LiveSettings(projects.bench, "scan")
+    projects.try_simulated()
+    assert live.kind == "simulated"
+    projects.new_project()
+    assert live.kind == "opencv", "nothing else was chosen before"
+    live.set_kind("aravis")
+    projects.try_simulated()
+    assert live.kind == "simulated"
+    projects.new_project()
+    assert live.kind == "aravis", "the camera chosen last"
 
 
 def test_trying_the_simulated_rig_makes_a_project_of_its_own_each_time(projects: ProjectActions) -> None:
