@@ -241,6 +241,7 @@ def test_a_text_that_is_cut_is_seen(line, seen):
 
 BY_CODE = {
     "core/messages.py": "finds the text of a message in the reader's language",
+    "core/image/exclusion.py": "finds what excludes a picture in a file, which older files tell by its words",
     "core/inspect/uncertainty/causes.py": "finds the cause that a file names, which older files name by its words",
     "core/findings/table.py": "finds how grave a note is",
     # This still decides by a code; it goes as soon as the fact stands in a field.

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.sitting import Taken
 from core.findings.table import note_of
+from core.image.exclusion import Excludable, Exclusion, Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Fan, Pose
@@ -21,17 +22,14 @@ from core.model.arrays import Array
 CAMERA_PARAMETERS = ("alpha", "beta", "gamma", "u0", "v0", "k1", "k2", "p1", "p2", "k3")
 """Names and order of the camera's parameters in covariances."""
 
-LEFT_OUT = Message("set.left_out_by_hand", "left out by hand")
-"""Reason of a view, a pose or a frame that the technician has left out."""
-
 
 @dataclass(frozen=True, eq=False, slots=True)
-class ViewQuality:
+class ViewQuality(Excludable):
     """Quality of one view: how it fits the calibrated camera.
 
     Residuals are observed − predicted, (N, 2) in pixels. `counted` (N,) is False for single corners left out as
     misfound; `rms_px` and `mean_px` are of the residual vectors' lengths of those that count. `tilt` is the angle in
-    rad between the target's normal and the optical axis. A view that was left out says why in `reason`; if not even
+    rad between the target's normal and the optical axis. A view that was left out says why in `exclusion`; if not even
     a pose could be found for it, its residuals are NaN.
     """
 
@@ -42,7 +40,7 @@ class ViewQuality:
     mean_px: float
     tilt: float
     used: bool
-    reason: Message | None = None
+    exclusion: Reason | None = None
     counted: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=np.bool_))
 
     @property
@@ -89,13 +87,13 @@ class CameraCalibration:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class PlanePose:
+class PlanePose(Excludable):
     """One pose of the plane target in the fan's calibration.
 
     `points[k]` are the (n_k, 3) points in mm in the camera frame on fan line k, `distances[k]` their signed
     distances in mm from the plane in use; both empty for a line this pose does not show. `pose` is the target's pose
     after it was adjusted together with the fan, `target_rms_px` how well the target alone fits its own pose. A pose
-    that was left out says why in `reason`; where none could be found it is the identity and the RMS are NaN.
+    that was left out says why in `exclusion`; where none could be found it is the identity and the RMS are NaN.
     `prediction_mm` is the RMS distance of its stripes from the light planes that the other poses give, the target where
     its own points put it; NaN where that is not known.
     """
@@ -107,7 +105,7 @@ class PlanePose:
     distances: tuple[Array, ...]
     rms_mm: float
     used: bool
-    reason: Message | None = None
+    exclusion: Reason | None = None
     prediction_mm: float = math.nan
 
 
@@ -224,7 +222,11 @@ class FanCalibration:
     @property
     def minority(self) -> Message | None:
         """What is to be decided where fewer than half of the poses that show target and stripes are used."""
-        speaking = [pose for pose in self.poses if pose.used or (np.isfinite(pose.rms_mm) and pose.reason != LEFT_OUT)]
+        speaking = [
+            pose
+            for pose in self.poses
+            if pose.used or (np.isfinite(pose.rms_mm) and pose.exclusion is not Exclusion.BY_HAND)
+        ]
         used = sum(pose.used for pose in speaking)
         if 2 * used >= len(speaking):
             return None

@@ -12,11 +12,6 @@ from typing import Any
 
 from numpy.typing import NDArray
 
-from core.messages import Message
-
-REPEATED = Message("set.picture_repeated", "the same picture as an earlier one, pixel for pixel: it counts once")
-"""Why a picture that is an earlier one again is not looked at."""
-
 _ROWS = 8
 """Every so many rows the noise is hashed safely; of the rest a checksum is enough, which takes a fifth of the time."""
 

@@ -6,6 +6,7 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
+from core.image.exclusion import Exclusion
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
 from core.messages import Message
@@ -14,7 +15,7 @@ from core.plan.design import Design, PlanError
 from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
 from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent, steps
-from core.scan.features.extraction import NO_STRIPE, FrameFeatures, ScanFeatures, gather
+from core.scan.features.extraction import FrameFeatures, ScanFeatures, gather
 from core.simulate.rig import Rig
 from core.simulate.scan import LAMP
 from core.simulate.scene.image import generator
@@ -58,7 +59,7 @@ def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = 
         stage.camera.image_size,
         fan,
         [
-            FrameFeatures(index, f"sweep {index + 1}", pieces, None if pieces else NO_STRIPE)
+            FrameFeatures(index, f"sweep {index + 1}", pieces, None if pieces else Exclusion.WITHOUT_STRIPE)
             for index, pieces in enumerate(frames)
         ],
         (_settings(fan_lines), _settings(every)),

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.findings.table import note_of
+from core.image.exclusion import MOVEMENTS
 from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -21,7 +22,7 @@ from core.progress import Progress, StepProgress, silent
 from core.scan.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
-from core.scan.features.extraction import LOST, MOVED, ScanFeatures
+from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.method import Method
@@ -329,13 +330,13 @@ def _ordered(of_features: tuple[Message, ...], solved: _Solved) -> tuple[Message
 
 def _left_out(features: ScanFeatures) -> int:
     """How many frames show the fan's light elsewhere, or not at all."""
-    return sum(frame.reason in (MOVED, LOST) for frame in features.frames)
+    return sum(frame.exclusion in MOVEMENTS for frame in features.frames)
 
 
 def _require_rest(features: ScanFeatures, watched: FanRest) -> None:
     """InputError if something moved and too few frames are left between which nothing did."""
     left = [frame for frame in features.frames if frame.centrelines and watched.at_rest[frame.index]]
-    moved = [frame for frame in features.frames if frame.reason in (MOVED, LOST) or not watched.at_rest[frame.index]]
+    moved = [frame for frame in features.frames if frame.exclusion in MOVEMENTS or not watched.at_rest[frame.index]]
     if len(left) >= LEAST_SWEEPS or len(moved) < LEAST_FRAMES:
         return
     raise InputError(

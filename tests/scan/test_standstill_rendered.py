@@ -2,7 +2,8 @@
 
 import pytest
 
-from core.scan.features.extraction import MOVED, FeatureOptions, extract_features
+from core.image.exclusion import Exclusion
+from core.scan.features.extraction import FeatureOptions, extract_features
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.records import MOVED_FRAME
 from core.simulate.recording import scan_of
@@ -33,7 +34,7 @@ def test_frames_after_the_push_are_not_used(seed):
     camera = stage.rig.camera
     features = extract_features(stage.reference(), pictures, FRAMES, FeatureOptions(camera=camera))
     result = reconstruct(features, camera, stage.rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
-    assert {frame.reason for frame in result.frames[AT:]} <= {MOVED, MOVED_FRAME}
+    assert {frame.reason for frame in result.frames[AT:]} <= {Exclusion.MOVED.message, MOVED_FRAME}
     assert sum(frame.used for frame in result.frames[:AT]) > 0.8 * AT
     assert result.datum.scale < 0.003
     assert "moved" in " ".join(map(str, result.notes))

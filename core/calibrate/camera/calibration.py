@@ -37,9 +37,10 @@ from core.calibrate.camera.screening import screen
 from core.calibrate.camera.skew import SKEW, skew_helps
 from core.calibrate.camera.third_radial import third_radial
 from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
-from core.calibrate.results import LEFT_OUT, CameraCalibration, ViewQuality
+from core.calibrate.results import CameraCalibration, ViewQuality
 from core.errors import InputError
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
@@ -98,7 +99,7 @@ def calibrate_camera(
         return calibration
     solved = iter(calibration.views)
     qualities = tuple(
-        view_without_part(view, calibration.camera, LEFT_OUT, calibration.board)
+        view_without_part(view, calibration.camera, Exclusion.BY_HAND, calibration.board)
         if view.name in excluded
         else next(solved)
         for view in views

@@ -16,6 +16,7 @@ from core.calibrate.camera.screening import Verdict, screen
 from core.calibrate.camera.zhang import pose_from_homography
 from core.calibrate.results import CameraCalibration, ViewQuality
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion, Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Pose
@@ -42,27 +43,29 @@ def fitted_view(view: TargetView, camera: Camera, pose: Pose, verdict: Verdict, 
     """Compute how `view` of a `board` fits `camera` at `pose`."""
     errors = view.uv - camera.project_pose(pose, board.shaped(view.points))
     rms, mean = rms_and_mean(errors[verdict.counted])
-    return ViewQuality(view, pose, errors, rms, mean, tilt(pose), verdict.used, verdict.reason, verdict.counted)
+    return ViewQuality(view, pose, errors, rms, mean, tilt(pose), verdict.used, verdict.exclusion, verdict.counted)
 
 
-def unfitted_view(view: TargetView, reason: Message) -> ViewQuality:
+def unfitted_view(view: TargetView, exclusion: Reason) -> ViewQuality:
     """Make the quality of a view without a pose."""
     nowhere, none = np.full(view.uv.shape, np.nan), np.zeros(len(view.uv), dtype=np.bool_)
-    return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, reason, none)
+    return ViewQuality(view, Pose.identity(), nowhere, np.nan, np.nan, np.nan, False, exclusion, none)
 
 
-def view_without_part(view: TargetView, camera: Camera, reason: Message, board: BoardShape) -> ViewQuality:
+def view_without_part(view: TargetView, camera: Camera, exclusion: Exclusion, board: BoardShape) -> ViewQuality:
     """Compute how a view that had no part in calibrating `camera` fits it at its best pose.
 
-    A view that does not even look like the target has no pose; why is added to the `reason`.
+    A view that does not even look like the target has no pose; why is added to the `exclusion`.
     """
     homography = screen(view)
     if isinstance(homography, Message):
-        return unfitted_view(view, Message("camera.two_reasons", "{reasons:;}", reasons=(reason, homography)))
+        return unfitted_view(
+            view, Message("camera.two_reasons", "{reasons:;}", reasons=(exclusion.message, homography))
+        )
     alone = Bundle(camera, (pose_from_homography(camera.matrix, homography),))
     seen = Observed(board.shaped(view.points), view.uv, (float(np.median(view.sigma)) / view.sigma) ** 2)
     (pose,) = refine_robustly(alone, [seen], NO_PARAMETERS).poses
-    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), reason), board)
+    return fitted_view(view, camera, pose, Verdict(False, np.ones(len(view.uv), dtype=np.bool_), exclusion), board)
 
 
 def view_qualities(

@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.camera.bundle import RAYLEIGH_MEDIAN
 from core.calibrate.camera.zhang import homography, homography_misfit
+from core.image.exclusion import Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model.arrays import Array
@@ -48,7 +49,7 @@ class Verdict:
 
     used: bool
     counted: NDArray[np.bool_]
-    reason: Message | None = None
+    exclusion: Reason | None = None
 
 
 def screen(view: TargetView) -> Array | Message:

@@ -12,18 +12,19 @@ from core.calibrate.camera.coverage import MAP_COLUMNS, picture_cells
 from core.calibrate.camera.expected_error import ExpectedError, ResidualField, expected_error, residual_field
 from core.calibrate.camera.missing import what_is_missing
 from core.calibrate.results import CameraCalibration
+from core.image.exclusion import Excludable, Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.progress import Progress, silent
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class SeenView:
-    """One picture: the target found in it, or the reason why it was not; size (width, height) if it could be read."""
+class SeenView(Excludable):
+    """One picture: the target found in it, or what excludes it; size (width, height) if it could be read."""
 
     name: str
     view: TargetView | None = None
-    reason: Message | None = None
+    exclusion: Reason | None = None
     size: tuple[int, int] | None = None
 
 
@@ -71,7 +72,7 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
     size = calibration.camera.image_size
     return SeenViews(
         tuple(
-            SeenView(quality.name, quality.view if len(quality.view.uv) else None, quality.reason, size)
+            SeenView(quality.name, quality.view if len(quality.view.uv) else None, quality.exclusion, size)
             for quality in calibration.views
         ),
         where,

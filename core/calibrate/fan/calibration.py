@@ -30,9 +30,10 @@ from core.calibrate.fan.stripe_distances import BOWS
 from core.calibrate.fan.summary import summarise
 from core.calibrate.fan.verdict import Constrained, judge
 from core.calibrate.levenberg import MOST_STEPS
-from core.calibrate.results import LEFT_OUT, FanCalibration
+from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion
 from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -132,7 +133,9 @@ def fit_fan(
         If no pose is usable, fewer lines are seen than promised, or the poses are too alike to determine a plane.
     """
     located = [locate(pose, camera) for pose in steps(features, progress, "fan poses", len(features))]
-    located = [pose.left_out(LEFT_OUT) if pose.used and pose.features.name in excluded else pose for pose in located]
+    located = [
+        pose.left_out(Exclusion.BY_HAND) if pose.used and pose.features.name in excluded else pose for pose in located
+    ]
     _check_poses(located)
     located, rough = _assigned(located, camera, options)
     _check_spread(located, options.lines)

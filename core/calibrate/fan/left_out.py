@@ -5,8 +5,9 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from core.calibrate.results import LEFT_OUT, PlanePose
+from core.calibrate.results import PlanePose
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion
 from core.messages import Message
 
 
@@ -14,7 +15,7 @@ def note_on_left_out(poses: Sequence[PlanePose]) -> Message | None:
     """Which of all poses are left out and why, and how far off they are where that is known; None if all count."""
     out = [
         Message("fan.pose_and_reason", "{pose} ({reason})", pose=pose.name, reason=pose.reason)
-        if math.isnan(pose.rms_mm) or pose.reason == LEFT_OUT
+        if math.isnan(pose.rms_mm) or pose.exclusion is Exclusion.BY_HAND
         else Message(
             "fan.pose_reason_and_distance",
             "{pose} ({reason}; {off:.2f} mm off)",

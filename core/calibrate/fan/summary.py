@@ -137,7 +137,7 @@ def _plane_pose(
         distances=tuple(distances),
         rms_mm=_rms(distances),
         used=located.used,
-        reason=located.reason,
+        exclusion=located.exclusion,
         prediction_mm=prediction_mm,
     )
 

@@ -30,6 +30,7 @@ from core.files.arrays_file import (
     whole,
     write_arrays,
 )
+from core.image.exclusion import known_exclusion
 from core.image.targets.target_view import TargetView
 from core.messages import Command, Message, as_text, from_text
 
@@ -83,7 +84,7 @@ def read_views(path: Path, key: str) -> SeenViews | None:
         return None
     with unpacking(path, todo=_TODO):
         names = unpack_texts(arrays["names"])
-        reasons = unpack_messages(arrays["reasons"])
+        reasons = map(known_exclusion, unpack_messages(arrays["reasons"]))
         columns = zip(names, unpack_views(names, arrays), reasons, arrays["sizes"], strict=True)
         views = tuple(
             SeenView(name, view, reason, (int(size[0]), int(size[1])) if size.any() else None)
@@ -137,7 +138,7 @@ def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
         names,
         unpack_views(names, arrays),
         unpack_centrelines("stripe", arrays),
-        unpack_messages(arrays["reasons"]),
+        map(known_exclusion, unpack_messages(arrays["reasons"])),
         (tuple(note for line in said.splitlines() if (note := from_text(line))) for said in notes),
         np.where(moved_px == _NOT_KNOWN, math.nan, moved_px).tolist(),
         strict=True,

@@ -14,8 +14,9 @@ from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes
 from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_channel
 from core.files.recording.recording_set import RecordingSet
+from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import ALL_SITES, Sites, even_grey, sites_of
-from core.image.repeated import REPEATED, Repeats, pixels_of
+from core.image.repeated import Repeats, pixels_of
 from core.messages import Message
 from core.progress import Progress, silent, steps
 from core.stage_times import StageTimes, stage
@@ -135,10 +136,10 @@ class PictureReader:
         text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
-    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Message]]:
+    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Reason]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
-        For one that is an earlier one again, REPEATED. `times` learns what decoding costs.
+        For one that is an earlier one again, `Exclusion.REPEATED`. `times` learns what decoding costs.
 
         Raises
         ------
@@ -163,7 +164,7 @@ class PictureReader:
             if not isinstance(result, Message):
                 first = first or (name, result)
                 _check_depth(path, result, *first)
-            yield name, REPEATED if repeats.again(pixels) else result
+            yield name, Exclusion.REPEATED if repeats.again(pixels) else result
 
 
 def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:

@@ -27,6 +27,7 @@ from core.files.tables import (
     counted_pose,
     kept,
 )
+from core.image.exclusion import known_exclusion
 from core.image.targets.target_view import TargetView
 from core.messages import Command, Message
 from core.model import Camera
@@ -232,6 +233,6 @@ def _quality(view: _View) -> ViewQuality:
         mean_px=view.mean_px,
         tilt=math.radians(view.tilt_deg),
         used=view.used,
-        reason=view.reason,
+        exclusion=known_exclusion(view.reason),
         counted=np.array(view.counted, dtype=np.bool_),
     )

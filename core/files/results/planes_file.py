@@ -30,6 +30,7 @@ from core.files.tables import (
     counted_pose,
     kept,
 )
+from core.image.exclusion import known_exclusion
 from core.messages import Command, Message, label
 from core.model import Camera, Fan, LightPlane
 
@@ -409,5 +410,5 @@ def _plane_pose(pose: _Pose) -> PlanePose:
         rms_mm=pose.rms_mm,
         used=pose.used,
         prediction_mm=pose.prediction_mm,
-        reason=pose.reason,
+        exclusion=known_exclusion(pose.reason),
     )

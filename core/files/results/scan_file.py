@@ -33,6 +33,7 @@ from core.files.arrays_file import (
     wrong_shape,
 )
 from core.findings.proof import ScanFacts
+from core.image.exclusion import known_exclusion
 from core.image.stripes.stripe import StripeSettings
 from core.inspect.uncertainty.causes import CALIBRATIONS
 from core.messages import Command, Message
@@ -211,7 +212,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
     frames = zip(
         unpack_texts(arrays["frame_names"]),
         unpack_centrelines("sweep", arrays),
-        unpack_messages(arrays["frame_reasons"]),
+        map(known_exclusion, unpack_messages(arrays["frame_reasons"])),
         arrays["frame_shift_px"].tolist(),
         [0.0] * len(arrays["frame_names"]),
         _unpack_shifts(arrays),

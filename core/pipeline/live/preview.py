@@ -5,12 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 from core.acquire.source import Frame, Picture
+from core.image.exclusion import Exclusion
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera, Fan
 from core.scan.features.extraction import (
-    NO_STRIPE,
     FeatureOptions,
     FrameFeatures,
     FrameReader,
@@ -78,8 +78,8 @@ class ScanPreviewer:
         """Whether a picture still suits the reference."""
         if self._reference is None:
             return ReferenceMismatch(None)
-        reason = FrameReader(self._reference, None)((0, ("", picture))).reason
-        return ReferenceMismatch(None if reason == NO_STRIPE else reason)
+        seen = FrameReader(self._reference, None)((0, ("", picture)))
+        return ReferenceMismatch(None if seen.exclusion is Exclusion.WITHOUT_STRIPE else seen.reason)
 
     def fan_cloud(self) -> PreviewCloud:
         """The fan's own points."""
@@ -141,7 +141,7 @@ class ScanPreviewer:
         features = self._features(reference, index, name, picture)
         if self._preview is not None:
             return self._preview(features)
-        return replace(empty_preview(index, name, features.reason), centrelines=features.centrelines)
+        return replace(empty_preview(index, name, features.exclusion), centrelines=features.centrelines)
 
     def _features(self, reference: ReferenceFeatures, index: int, name: str, picture: Picture) -> FrameFeatures:
         """With the stripe as it is known; before it has been seen once, as if it were like the fan's."""
@@ -150,7 +150,7 @@ class ScanPreviewer:
             stripe = sorted(self._seen, key=lambda seen: seen.contrast)[len(self._seen) // 2]
         features = FrameReader(reference, stripe or reference.stripe)((index, (name, picture)))
         learning = self._stripe is None and len(self._seen) < SETTINGS_FROM
-        if learning and features.reason in (None, NO_STRIPE):  # moved, dark: nothing to be learned of the stripe
+        if learning and features.exclusion in (None, Exclusion.WITHOUT_STRIPE):  # of others nothing is learned
             self._to_learn_from = picture
         return features
 

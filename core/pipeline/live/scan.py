@@ -13,6 +13,7 @@ from core.acquire.settings import FREE_RUNNING, SourceSettings
 from core.acquire.source import Frame, Lasers, Picture, Unplugged
 from core.errors import InputError
 from core.files.recording.marks import mark_frame
+from core.image.exclusion import MOVEMENTS
 from core.messages import Message, label
 from core.pipeline.live.checks import ScanChecks
 from core.pipeline.live.commands import Command, Configure, Mark, Pause, Resume, TakeReference
@@ -20,7 +21,6 @@ from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
 from core.pipeline.live.preview import PreviewedFrame, PreviewFailed, ReferenceMismatch, ScanPreviewer
 from core.pipeline.live.warm_up import get_ready_for_live
-from core.scan.features.extraction import LOST, MOVED
 from core.scan.preview.shown import FramePreview, PreviewCloud, cloud_of
 from core.scan.surface.coverage_map import CoverageMap
 
@@ -317,7 +317,7 @@ class LiveScan:
 
     def _add(self, preview: FramePreview) -> None:
         """Keep what the frame adds until it is shown."""
-        self._moved = self._moved + 1 if preview.reason in (MOVED, LOST) else 0
+        self._moved = self._moved + 1 if preview.exclusion in MOVEMENTS else 0
         if self._moved == MOVED_FRAMES:
             self._context.notice(
                 Message(

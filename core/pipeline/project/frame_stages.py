@@ -13,6 +13,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.step_settings import ScanSettings
 from core.image.display import in_8_bit, white_level
+from core.image.exclusion import Reason
 from core.image.mosaic import Sites
 from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import StripeSettings
@@ -180,7 +181,7 @@ def _common(recording: _Recording) -> _Common:
     stripe = sites.stripe_of(settled.sweep_stripe if settled else settings.stripe)
     if stripe is None:
         stream = pictures.stream(recording.taken[:LOOK_AHEAD])
-        ahead = [(name, sites.of(picture)) for name, picture in stream if not isinstance(picture, Message)]
+        ahead = [(name, sites.of(picture)) for name, picture in stream if not isinstance(picture, Reason)]
         stripe = choose_sweep_stripe(ahead, reference, told.within_step)
     told("reference", 2, 2)
     return _Common(reference, stripe, of_whole(reference, sites, picture), sites, white_level(picture))

@@ -23,8 +23,8 @@ from core.files.recording.recording_set import RecordingSet, require_camera
 from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion, Reason
 from core.image.hot_pixels import hot_pixels, standing_out
-from core.image.repeated import REPEATED
 from core.image.targets import Target, detect
 from core.image.targets.target_view import OtherBoard, TargetView
 from core.messages import Field, Message
@@ -82,17 +82,17 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
     require_camera(recording_set)
     target = recording_set.rig.camera_target
 
-    def look(item: tuple[str, Picture | Message]) -> tuple[SeenView, NDArray[np.int64] | None]:
+    def look(item: tuple[str, Picture | Reason]) -> tuple[SeenView, NDArray[np.int64] | None]:
         name, picture = item
-        if isinstance(picture, Message):
-            return SeenView(name, reason=picture), None
+        if isinstance(picture, Reason):
+            return SeenView(name, exclusion=picture), None
         size = (picture.shape[1], picture.shape[0])
         try:
             with stage(progress, "camera views"):
                 view = known.get(name) or detect(target, picture, name)
                 return SeenView(name, view, size=size), standing_out(picture)
         except InputError as error:
-            return SeenView(name, reason=error.what, size=size), None
+            return SeenView(name, exclusion=error.what, size=size), None
 
     seen: list[SeenView] = []
     bright: list[NDArray[np.int64]] = []
@@ -111,7 +111,7 @@ def see_views(pictures: PictureReader, progress: Progress = silent) -> SeenViews
 
 
 def _require_this_board(
-    target: Target, first: Sequence[tuple[str, Picture | Message]], found: RecordingSet
+    target: Target, first: Sequence[tuple[str, Picture | Reason]], found: RecordingSet
 ) -> dict[str, TargetView]:
     """InputError if the first pictures all show the whole of one board of another size: the others will, too.
 
@@ -120,7 +120,7 @@ def _require_this_board(
     """
     shown: list[OtherBoard] = []
     for name, picture in first:
-        if isinstance(picture, Message):
+        if isinstance(picture, Reason):
             return {}
         try:
             return {name: detect(target, picture, name, thorough=False)}
@@ -206,8 +206,8 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
         return calibration
     solved = iter(calibration.views)
     views = tuple(next(solved) if one.view is not None else _lost(one) for one in seen.views)
-    without = [one for one in lost if one.reason != REPEATED]
-    repeated = [one.name for one in lost if one.reason == REPEATED]
+    without = [one for one in lost if one.exclusion is not Exclusion.REPEATED]
+    repeated = [one.name for one in lost if one.exclusion is Exclusion.REPEATED]
     notes = list(calibration.notes)
     if without:
         name, reason = without[0].name, without[0].reason
@@ -217,7 +217,11 @@ def _with_lost(calibration: CameraCalibration, seen: SeenViews) -> CameraCalibra
     if repeated:
         notes.append(
             note_of(
-                "camera.views_repeated", n=len(repeated), all=len(seen.views), reason=REPEATED, names=tuple(repeated)
+                "camera.views_repeated",
+                n=len(repeated),
+                all=len(seen.views),
+                reason=Exclusion.REPEATED.message,
+                names=tuple(repeated),
             )
         )
     return replace(calibration, views=views, notes=tuple(notes))
@@ -235,4 +239,4 @@ def _with_hot_pixels(calibration: CameraCalibration, seen: SeenViews) -> CameraC
 
 def _lost(one: SeenView) -> ViewQuality:
     nothing = TargetView(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), one.name)
-    return ViewQuality(nothing, Pose.identity(), np.zeros((0, 2)), np.nan, np.nan, np.nan, False, one.reason)
+    return ViewQuality(nothing, Pose.identity(), np.zeros((0, 2)), np.nan, np.nan, np.nan, False, one.exclusion)

@@ -25,8 +25,9 @@ from core.files.recording.set_listing import FURTHER, PlanePair
 from core.files.recording.step_settings import PlanesSettings, excluded_told, stripe_told
 from core.files.results.camera_file import read_camera
 from core.files.results.planes_file import planes_id, read_planes, write_planes
+from core.image.exclusion import Exclusion
 from core.image.mosaic import ALL_SITES
-from core.image.repeated import REPEATED, Repeats, pixels_of
+from core.image.repeated import Repeats, pixels_of
 from core.image.stripes.exchanged import EXCHANGED, PAIRS_TRIED, are_exchanged, light_off_over_on
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
@@ -131,7 +132,7 @@ def measure_poses(
         ratios += [] if ratio is None else [ratio]
         if len(ratios) == min(PAIRS_TRIED, pairs) > 1 and are_exchanged(ratios):
             raise InputError(EXCHANGED, where=recording_set.where(part), todo=_EXCHANGE)
-        features.append(PoseFeatures(pose.name, None, (), REPEATED) if repeats.again(*pixels) else pose)
+        features.append(PoseFeatures(pose.name, None, (), Exclusion.REPEATED) if repeats.again(*pixels) else pose)
         progress("plane poses", len(features), total)
     of_all = (*chosen.notes(part), *told_width_notes(stripe, [usual_stripe(features)]))
     features[0] = replace(features[0], notes=(*of_all, *features[0].notes))
@@ -164,7 +165,7 @@ def _measure(
     features = _pose_features(pictures, camera, stripe, pair, (on, off, beside), progress)
     ratio = None if off is None else light_off_over_on(on, off)
     if features.view is not None and not features.target_moved and ratio is not None and are_exchanged([ratio]):
-        features = replace(features, centrelines=(), reason=EXCHANGED)  # between the dark lines there seem to be some
+        features = replace(features, centrelines=(), exclusion=EXCHANGED)  # between dark lines there seem to be some
     return features, pictures.hashes, (pixels, ratio)
 
 

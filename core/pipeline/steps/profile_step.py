@@ -19,6 +19,7 @@ from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
 from core.files.step_graph import resting_on
 from core.findings.table import note_of
+from core.image.exclusion import Reason, message_of
 from core.inspect.face_region import inside_polygon
 from core.inspect.gauge import adjusted, doubted
 from core.inspect.results import GaugeResult
@@ -105,8 +106,8 @@ def profile_step(
         stream = log.pictures.stream(paths)
         for index, (name, picture) in enumerate(stream):
             progress("profiles", index, len(paths))
-            if isinstance(picture, Message):
-                pictures.append(PictureStep.none(index, name, picture))
+            if isinstance(picture, Reason):
+                pictures.append(PictureStep.none(index, name, message_of(picture)))
                 continue
             check_size(paths[index], picture.shape, camera)
             try:

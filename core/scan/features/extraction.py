@@ -13,10 +13,9 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
+from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import Sites
-from core.image.repeated import REPEATED
 from core.image.stripes.bracket import Exposure, Exposures, fused
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -29,7 +28,7 @@ from core.messages import Message
 from core.progress import Progress, StepProgress, silent, steps
 from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingTable
-from core.scan.features.frames import LOST, MOVED, NO_STRIPE, FrameFeatures, notes_on
+from core.scan.features.frames import FrameFeatures, notes_on
 from core.scan.features.reference import FeatureOptions, Picture, ReferenceFeatures, check_reference, read_reference
 from core.scan.features.straightening import bent_back, straightened
 from core.stage_times import StageTimes, stage
@@ -37,9 +36,6 @@ from core.threads import ordered_map
 
 __all__ = [
     "LOOK_AHEAD",
-    "LOST",
-    "MOVED",
-    "NO_STRIPE",
     "FeatureOptions",
     "Frame",
     "FrameFeatures",
@@ -59,8 +55,8 @@ __all__ = [
     "saturated_pixels",
 ]
 
-Frame = tuple[str, Picture | Message]
-"""A frame's name and its picture, or why it could not be read."""
+Frame = tuple[str, Picture | Reason]
+"""A frame's name and its picture, or what excludes it."""
 
 LOOK_AHEAD = 8
 """How many frames are looked at for the stripe's width and contrast when they are not given."""
@@ -230,7 +226,7 @@ def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:
     wanted = LOOK_AHEAD
     for name, picture in frames:
         ahead.append((name, picture))
-        wanted -= not isinstance(picture, Message) or picture not in (LEFT_OUT, REPEATED)
+        wanted -= picture is not Exclusion.BY_HAND and picture is not Exclusion.REPEATED
         if not wanted:
             break
     return ahead
@@ -249,7 +245,7 @@ def choose_sweep_stripe(
     """The median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
-        if not isinstance(picture, Message) and picture.shape == reference.base.shape:
+        if not isinstance(picture, Reason) and picture.shape == reference.base.shape:
             difference = reference.of_lasers(picture)[0].astype(np.float32, copy=False)
             settings = choose_settings(difference, reference.full_scale)
             if settings is not None:
@@ -328,7 +324,7 @@ class FrameReader:
 
     def __call__(self, item: tuple[int, Frame]) -> FrameFeatures:
         index, (name, picture) = item
-        if isinstance(picture, Message):
+        if isinstance(picture, Reason):
             return FrameFeatures(index, name, (), picture)
         base, full_scale, fan = self.reference.base, self.reference.full_scale, self.reference.fan
         if picture.shape != base.shape:
@@ -340,11 +336,11 @@ class FrameReader:
             check = check_reference(difference, fan)
             light = self.reference.light_change(change)
         if check.lost:
-            return FrameFeatures(index, name, (), LOST, check.shift_px, light)
+            return FrameFeatures(index, name, (), Exclusion.WITHOUT_FAN, check.shift_px, light)
         if check.shift_px > self.move_limit_px:
-            return FrameFeatures(index, name, (), MOVED, check.shift_px, light, check.shifts_px)
+            return FrameFeatures(index, name, (), Exclusion.MOVED, check.shift_px, light, check.shifts_px)
         if self.stripe is None:
-            return FrameFeatures(index, name, (), NO_STRIPE, check.shift_px, light, check.shifts_px)
+            return FrameFeatures(index, name, (), Exclusion.WITHOUT_STRIPE, check.shift_px, light, check.shifts_px)
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
             pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
@@ -353,8 +349,8 @@ class FrameReader:
         if others:
             pieces, told = fused(exposed(picture, pieces, saturated), list(others.values()))
             exposures = dict(zip(others, told, strict=True))
-        reason = None if pieces else NO_STRIPE
-        return FrameFeatures(index, name, pieces, reason, check.shift_px, light, check.shifts_px, exposures)
+        exclusion = None if pieces else Exclusion.WITHOUT_STRIPE
+        return FrameFeatures(index, name, pieces, exclusion, check.shift_px, light, check.shifts_px, exposures)
 
 
 def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from core.findings.table import note_of
+from core.image.exclusion import MOVEMENTS, Excludable, Reason
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model.arrays import Array
@@ -19,16 +20,7 @@ if TYPE_CHECKING:  # a window that holds these loads no search trees
     from core.image.stripes.bracket import Exposures
 
 NO_REASON = Message("scan.no_reason", "no reason recorded")
-MOVED = Message(
-    "scan.frame_moved",
-    "object or camera moved during the scan: the fan's light lies elsewhere than in the reference",
-)
-LOST = Message(
-    "scan.frame_without_fan",
-    "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off",
-)
 FEW_CROSSINGS = Message("scan.frame_few_crossings", "fewer than three crossings with the fan")
-NO_STRIPE = Message("scan.frame_without_stripe", "no stripe of the hand-held laser")
 
 LIGHT_CHANGED = "scan.room_light_changed"
 """Code of the note on room light that changed within the scan."""
@@ -38,8 +30,8 @@ _NAMED = 3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class FrameFeatures:
-    """The sweep's centrelines in one frame, or the `reason` there are none.
+class FrameFeatures(Excludable):
+    """The sweep's centrelines in one frame, or the `exclusion` that says why there are none.
 
     Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
     (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
@@ -50,7 +42,7 @@ class FrameFeatures:
     index: int
     name: str
     centrelines: tuple[Centreline, ...]
-    reason: Message | None = None
+    exclusion: Reason | None = None
     shift_px: float = 0.0
     light_change: float = 0.0
     fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
@@ -196,7 +188,7 @@ def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
 
 
 def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    moved = [frame for frame in frames if frame.reason in (MOVED, LOST)]
+    moved = [frame for frame in frames if frame.exclusion in MOVEMENTS]
     if not moved:
         return ()
     return (

@@ -177,7 +177,7 @@ class Preview:
         """Make the preview of one frame from its `features`; frames come in the order of time."""
         if not features.centrelines:
             self._before, self._speed_before = (), float("nan")
-            return self._with_updates(empty_preview(features.index, features.name, features.reason))
+            return self._with_updates(empty_preview(features.index, features.name, features.exclusion))
         sweep = self._tracker.add(features.index, features.centrelines)
         thin = tuple(piece.select(slice(None, None, self._options.thin)) for piece in features.centrelines)
         stripe = StripeRays.of(features.index, thin, self._camera)

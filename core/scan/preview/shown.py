@@ -9,6 +9,7 @@ from enum import IntEnum
 import numpy as np
 from numpy.typing import NDArray
 
+from core.image.exclusion import Excludable, Reason
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
@@ -56,7 +57,7 @@ class PreviewCloud:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class FramePreview:
+class FramePreview(Excludable):
     """Preview of one frame.
 
     Parameters
@@ -84,7 +85,7 @@ class FramePreview:
         (P, 2) where they are in the picture, in pixels.
     hints
         At most two short sentences for the hand.
-    reason
+    exclusion
         Why there are no points; None if there are.
     renewed
         Not None: all points so far, this frame's and the fan's own included, located anew; they replace all that was
@@ -108,7 +109,7 @@ class FramePreview:
     point_intensity: Array
     point_uv: Array
     hints: tuple[Message, ...]
-    reason: Message | None
+    exclusion: Reason | None
     renewed: PreviewCloud | None = None
     fan_lines: tuple[tuple[Centreline, ...], ...] | None = None
 
@@ -124,7 +125,7 @@ def cloud_of(preview: FramePreview) -> PreviewCloud:
     )
 
 
-def empty_preview(index: int, name: str, reason: Message | None) -> FramePreview:
+def empty_preview(index: int, name: str, exclusion: Reason | None) -> FramePreview:
     """Make the preview of a frame without a stripe, with the reason."""
     none, empty = np.zeros(0), np.zeros((0, 2))
     return FramePreview(
@@ -142,7 +143,7 @@ def empty_preview(index: int, name: str, reason: Message | None) -> FramePreview
         none,
         empty,
         (),
-        reason,
+        exclusion,
     )
 
 

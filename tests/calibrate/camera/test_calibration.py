@@ -9,8 +9,9 @@ from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.covariance import principal_deviations
 from core.calibrate.camera.reprojection import linearise, moved, parameters_of
-from core.calibrate.results import CAMERA_PARAMETERS, LEFT_OUT, CameraCalibration
+from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
 from core.errors import Cancelled, InputError
+from core.image.exclusion import Exclusion
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Pose
 from tests.calibrate.camera_views import TRUTH, board, changed, random_pose, synthetic_views
@@ -216,10 +217,10 @@ def test_views_left_out_by_hand_change_nothing_but_their_own_residuals_are_known
     assert with_them.rms_px == without.rms_px
     assert [quality.view for quality in with_them.views] == views
     good, shuffled, moved_aside = (with_them.views[i] for i in (2, 5, 9))
-    assert (good.used, good.reason) == (False, LEFT_OUT)
+    assert (good.used, good.exclusion) == (False, Exclusion.BY_HAND)
     assert good.rms_px < 2 * without.rms_px
     assert np.isnan(shuffled.residuals).all()
-    assert str(shuffled.reason).startswith(str(LEFT_OUT))
+    assert str(shuffled.reason).startswith(str(Exclusion.BY_HAND.message))
     assert "pattern" in str(shuffled.reason)
     assert moved_aside.rms_px < 1  # the pose takes up a shift
     assert str(with_them.notes[0]) == ("3 of 14 views are left out by hand: view02.png, view05.png, view09.png.")

@@ -11,7 +11,7 @@ from core.calibrate.camera.bundle import Bundle, Observed, refine, residuals
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.expected_error import expected_error, residual_field
 from core.calibrate.camera.reprojection import camera_of, parameters_of
-from core.calibrate.results import LEFT_OUT
+from core.image.exclusion import Exclusion
 from core.model import Pose
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
@@ -109,7 +109,7 @@ def test_a_shift_of_the_centre_is_for_the_most_part_a_turn_of_the_frame(calibrat
 
 def test_residuals_are_those_of_the_corners_that_count_in_used_views(calibration):
     views = list(calibration.views)
-    views[2] = replace(views[2], used=False, reason=LEFT_OUT)
+    views[2] = replace(views[2], used=False, exclusion=Exclusion.BY_HAND)
     keep = views[5].counted.copy()
     keep[:7] = False
     views[5] = replace(views[5], counted=keep)

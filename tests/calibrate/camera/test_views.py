@@ -28,7 +28,7 @@ def test_the_views_of_a_calibration_can_be_solved_again_without_their_pictures(c
 
 def test_a_lost_view_stays_lost_when_seen_again(calibration):
     nothing = TargetView(np.zeros((0, 3)), np.zeros((0, 2)), np.zeros(0), "camera/empty.png")
-    lost = replace(calibration.views[0], view=nothing, used=False, reason=plain("no board"))
+    lost = replace(calibration.views[0], view=nothing, used=False, exclusion=plain("no board"))
     seen = seen_again(replace(calibration, views=(*calibration.views, lost)), "somewhere")
     assert [(one.name, str(one.reason)) for one in seen.lost] == [("camera/empty.png", "no board")]
 
@@ -52,7 +52,7 @@ def test_views_left_out_cover_nothing(calibration):
 
 
 def test_no_readable_picture_is_judged_too():
-    judged = judge_views(SeenViews((SeenView("camera/a.png", reason=plain("damaged")),), "somewhere"))
+    judged = judge_views(SeenViews((SeenView("camera/a.png", exclusion=plain("damaged")),), "somewhere"))
     assert not judged.cells.any()
 
 

@@ -9,8 +9,9 @@ from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.pencil import Pencil, pencil_near, plane_distances
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.calibrate.results import LEFT_OUT, FanCalibration
+from core.calibrate.results import FanCalibration
 from core.errors import InputError
+from core.image.exclusion import Exclusion
 from core.messages import plain
 from core.model import Pose
 from tests.calibrate.fan_scenes import (
@@ -175,11 +176,11 @@ def test_a_pose_with_a_misfound_corner_is_left_out_and_named():
 def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
     seen = features(WHERE, Noise(), 2)
     without = fit_fan(seen, CAMERA, THREE, excluded={seen[1].name})
-    assert (without.poses[1].used, without.poses[1].reason) == (False, LEFT_OUT)
+    assert (without.poses[1].used, without.poses[1].exclusion) == (False, Exclusion.BY_HAND)
     assert without.poses[1].pose.translation[2] > 100
     rest = fit_fan([pose for i, pose in enumerate(seen) if i != 1], CAMERA, THREE)
     assert (without.fan.pis == rest.fan.pis).all()
-    assert any(f"{seen[1].name} ({LEFT_OUT})" in str(note) for note in without.notes)
+    assert any(f"{seen[1].name} ({Exclusion.BY_HAND.message})" in str(note) for note in without.notes)
 
 
 @pytest.mark.accuracy
@@ -315,7 +316,7 @@ def test_one_pose_is_not_enough():
 
 
 def test_no_usable_pose_gives_the_reasons():
-    useless = [replace(pose, reason=plain("the picture is all black")) for pose in features(WHERE, Noise(), 17)]
+    useless = [replace(pose, exclusion=plain("the picture is all black")) for pose in features(WHERE, Noise(), 17)]
     with pytest.raises(InputError, match=r"none of the 7 poses can be used.*all black"):
         fit_fan(useless, CAMERA, THREE)
     with pytest.raises(InputError, match="there are no poses"):

@@ -10,8 +10,8 @@ from core.files.pictures import write_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.files.recording.rig import Channels, default_rig, rig_to_toml
+from core.image.exclusion import Exclusion
 from core.image.mosaic import ALL_SITES, Sites
-from core.image.repeated import REPEATED
 from core.messages import Message
 
 RIG = rig_to_toml(default_rig())
@@ -299,7 +299,5 @@ def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):
     for frame in (1, 4):
         write_picture(folder / "scan" / f"frame_{frame:03d}.png", noise)
     found = open_set(folder)
-    assert [picture is REPEATED for _, picture in PictureReader(found).stream(found.frames)] == [False] * 4 + [
-        True,
-        False,
-    ]
+    again = [picture is Exclusion.REPEATED for _, picture in PictureReader(found).stream(found.frames)]
+    assert again == [False] * 4 + [True, False]

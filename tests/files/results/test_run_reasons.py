@@ -4,7 +4,8 @@ import json
 from datetime import UTC, datetime
 
 from core.files.results.run_file import RunRecord, read_run, write_run
-from core.scan.features.frames import NO_STRIPE, CrossingUse, FrameRecord
+from core.image.exclusion import Exclusion
+from core.scan.features.frames import CrossingUse, FrameRecord
 
 
 def test_reasons_of_crossings_are_written_and_read(tmp_path):
@@ -18,7 +19,7 @@ def test_reasons_of_crossings_are_written_and_read(tmp_path):
 
 
 def test_reasons_in_words_of_older_files_are_read(tmp_path):
-    frames = (FrameRecord(0, "frame0000", False, NO_STRIPE, left_out=9),)
+    frames = (FrameRecord(0, "frame0000", False, Exclusion.WITHOUT_STRIPE.message, left_out=9),)
     write_run(tmp_path / "run.json", RunRecord("set", "set", datetime(2026, 1, 1, tzinfo=UTC), frames=frames))
     written = json.loads((tmp_path / "run.json").read_text())
     written["frames"][0] |= {"reason": "no stripe", "left_out_reasons": {"disagrees with the fan": 9}}

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.project.data import Accepted
+from core.image.exclusion import Exclusion
 from core.image.stripes.stripe import StripeSettings
 from core.messages import plain
 from core.pipeline.project.calibration import accept_planes, find_poses, found_poses, solve_poses, solve_views
@@ -38,7 +38,7 @@ def test_a_view_left_out_has_no_part_in_the_camera_but_its_residuals_are_known(d
     name = done.seen.views[2].name
     without = solve_views(done.folder, done.with_options(excluded=frozenset({name})), done.seen)
     view = without.views[2]
-    assert (view.view.name, view.used, view.reason) == (name, False, LEFT_OUT)
+    assert (view.view.name, view.used, view.exclusion) == (name, False, Exclusion.BY_HAND)
     assert np.isfinite(view.residuals).all()
     assert 0 < view.rms_px < 1
     assert [v.view.name for v in without.views] == [v.view.name for v in done.camera.views]
@@ -71,7 +71,7 @@ def test_stripes_on_the_plate_are_looked_for_as_the_project_says_and_a_picture_s
 def test_a_pose_left_out_has_no_part_in_the_fan_and_says_so(done):
     without = solve_poses(done.folder, done.with_options(excluded=frozenset({"planes/pose02"})), done.poses)
     pose = without.poses[2]
-    assert (pose.name, pose.used, pose.reason) == ("pose02", False, LEFT_OUT)
+    assert (pose.name, pose.used, pose.exclusion) == ("pose02", False, Exclusion.BY_HAND)
     assert pose.pose.translation[2] > 100
     rest = tuple(pose for pose in done.poses if pose.name != "pose02")
     assert np.array_equal(without.fan.pis, solve_poses(done.folder, done.project, rest).fan.pis)
@@ -95,7 +95,7 @@ def test_a_fan_need_not_be_a_pencil(done, tmp_path):
 def test_a_fan_of_a_minority_of_poses_is_kept_only_by_a_decision(done, tmp_path):
     folder = copy_of(done.folder, tmp_path / "project")
     reason = plain("it disagrees")
-    poses = (replace(one, used=i < 2, reason=reason if i > 1 else None) for i, one in enumerate(done.fan.poses))
+    poses = (replace(one, used=i < 2, exclusion=reason if i > 1 else None) for i, one in enumerate(done.fan.poses))
     few = replace(done.fan, poses=tuple(poses))
     with pytest.raises(InputError, match="only 2 of"):
         accept_planes(folder, done.project, few, done.poses)

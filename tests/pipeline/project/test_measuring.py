@@ -9,10 +9,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.results import LEFT_OUT
 from core.errors import Cancelled, InputError
 from core.files.project.folder import results_folder
 from core.files.recording.rig import GaugeSpec
+from core.image.exclusion import Exclusion
 from core.pipeline.project.measuring import measure_gauge, measure_scan
 from core.pipeline.project.report import make_report
 from core.pipeline.project.results import load_results
@@ -107,7 +107,7 @@ def test_a_new_measurement_replaces_all_old_results_but_the_report(done, tmp_pat
     assert after["gauge.json"] != before["gauge.json"]
     assert after["report.pdf"] == report
     assert set(after) == set(before) - {".new/cloud.ply"}
-    assert {frame.name for frame in summary.frames if frame.reason == LEFT_OUT} == left_out
+    assert {frame.name for frame in summary.frames if frame.reason == Exclusion.BY_HAND.message} == left_out
 
 
 @pytest.mark.accuracy
@@ -116,7 +116,7 @@ def test_frames_left_out_keep_the_numbers_of_the_others(done, tmp_path):
     summary = measure_scan(folder, done.with_options(excluded=frozenset({"scan/frame0001.png"})))
     assert [frame.index for frame in summary.frames] == list(range(SMALL.frames))
     left_out = summary.frames[1]
-    assert (left_out.name, left_out.used, left_out.reason) == ("scan/frame0001.png", False, LEFT_OUT)
+    assert (left_out.name, left_out.used, left_out.reason) == ("scan/frame0001.png", False, Exclusion.BY_HAND.message)
     results = load_results(folder)
     assert 1 not in results.cloud.frame
     for frame in summary.frames:

@@ -10,6 +10,7 @@ from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
 from core.files.results.run_file import read_run, write_run
+from core.image.exclusion import Exclusion
 from core.messages import Message
 from core.pipeline.live.events import ScanDetail
 from core.pipeline.project.details import accepted_calibration, show_scan
@@ -17,7 +18,7 @@ from core.pipeline.project.results import load_results
 from core.pipeline.project.thumbnails import display_picture
 from core.pipeline.project.watched_scan import WatchReporter, measure_watched
 from core.report.facts.pictures import left_out
-from core.scan.features.frames import MOVED, left_out_notes
+from core.scan.features.frames import left_out_notes
 from tests.simulated import copy_of
 
 
@@ -91,7 +92,7 @@ def test_what_is_said_of_frames_left_out_is_shown_with_the_frames_alone(done, tm
     folder = copy_of(done.folder, tmp_path / "project")
     run = results_folder(folder) / "run.json"
     record = read_run(run)
-    frames = (replace(record.frames[0], used=False, reason=MOVED), *record.frames[1:])
+    frames = (replace(record.frames[0], used=False, reason=Exclusion.MOVED.message), *record.frames[1:])
     note = Message("scan.rig_not_checked", "Nobody knows.")
     write_run(run, replace(record, frames=frames, notes={"scan": (*left_out_notes(frames), note)}))
     assert show_scan(folder).notes == (note,)

@@ -12,7 +12,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.set_listing import pictures_in
 from core.files.recording.step_settings import ScanSettings
-from core.image.repeated import REPEATED
+from core.image.exclusion import Exclusion
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.check_step import measure_check
 from core.pipeline.steps.planes_step import measure_poses, planes_step
@@ -80,7 +80,7 @@ def test_frames_that_are_there_twice_give_the_same_points(both):
 )
 def test_each_step_tells_it_once_with_the_names(both, step, code, count, names):
     _, (*_, record) = both
-    told = [note for note in record.notes[step] if str(REPEATED) in str(note)]
+    told = [note for note in record.notes[step] if str(Exclusion.REPEATED.message) in str(note)]
     assert [note.code for note in told] == [code]
     assert told[0].values["n"] == count
     assert all(name in str(told[0]) for name in names)
@@ -93,5 +93,5 @@ def test_a_pose_of_the_check_that_is_one_picture_twice_counts_once(tiny_set, bot
     shutil.copy(folder / "check" / "pose00.png", folder / "check" / "pose99.png")
     found = open_set(folder)
     poses = measure_check(PictureReader(found), camera.camera)
-    assert [pose.name for pose in poses if pose.reason == REPEATED] == ["pose99"]
-    assert not any(pose.reason == REPEATED for pose in measure_poses(PictureReader(found), camera.camera))
+    assert [pose.name for pose in poses if pose.exclusion is Exclusion.REPEATED] == ["pose99"]
+    assert not any(pose.exclusion is Exclusion.REPEATED for pose in measure_poses(PictureReader(found), camera.camera))

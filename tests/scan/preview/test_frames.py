@@ -4,6 +4,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.image.exclusion import Exclusion
 from core.model import LightPlane
 from core.scan.features.extraction import (
     FrameFeatures,
@@ -12,7 +13,6 @@ from core.scan.features.extraction import (
     extract_features,
     read_reference,
 )
-from core.scan.features.frames import NO_STRIPE
 from core.scan.preview import frames as preview_module
 from core.scan.preview.frames import Preview, PreviewOptions
 from core.scan.preview.hints import HandState, HintLimits, hints_for
@@ -154,8 +154,8 @@ def test_what_is_shown_can_be_sent_to_another_process(block):
 
 def test_a_frame_without_a_stripe_passes_its_reason_on(block):
     preview = Preview(block.reference, block.camera, block.fan)
-    frame = preview(FrameFeatures(0, "frame0000.png", (), NO_STRIPE))
-    assert frame.reason == NO_STRIPE
+    frame = preview(FrameFeatures(0, "frame0000.png", (), Exclusion.WITHOUT_STRIPE))
+    assert frame.exclusion is Exclusion.WITHOUT_STRIPE
     assert len(frame.points) == 0
     assert np.isnan(frame.speed_px)
 

@@ -86,7 +86,7 @@ def preview(number: int, *, condition: float = 120.0, hints: tuple[str, ...] = (
         point_intensity=np.full(30, 90.0),
         point_uv=np.full((30, 2), 12.0),
         hints=tuple(map(plain, hints)),
-        reason=None,
+        exclusion=None,
     )
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
-from core.calibrate.results import LEFT_OUT, ViewQuality
+from core.calibrate.results import ViewQuality
 from core.files.project.data import Project
 from core.files.results.camera_file import camera_id
+from core.image.exclusion import Exclusion
 from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
 from workbench.bench import Bench
@@ -98,7 +99,7 @@ class CameraPresenter(CalibrationPresenter):
     def set_threshold(self, limit: float) -> None:
         """Leave out the views above a limit in px, and let those count that only the last limit left out."""
         before, self.threshold = self.threshold, limit
-        judged = {view.name: view.rms_px for view in self.views() if view.used or view.reason == LEFT_OUT}
+        judged = {one.name: one.rms_px for one in self.views() if one.used or one.exclusion is Exclusion.BY_HAND}
         above = {name for name, rms in judged.items() if rms > limit}
         freed = {name for name, rms in judged.items() if before is not None and before < rms <= limit}
         excluded = (self.project.options.excluded | above) - freed

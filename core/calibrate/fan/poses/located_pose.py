@@ -10,13 +10,14 @@ from core.calibrate.fan.poses.line_assignment import PoseLines
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.stripe_lines import StripeLine, straight_lines
 from core.calibrate.fan.poses.target_plane import target_plane, target_plane_covariance
+from core.image.exclusion import Excludable, Reason
 from core.image.targets import TargetNotFound, estimate_pose
 from core.messages import Message
 from core.model import Camera, Pose
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class LocatedPose:
+class LocatedPose(Excludable):
     """A pose of the target.
 
     Parameters
@@ -31,7 +32,7 @@ class LocatedPose:
         The straight stripes, on the target or not.
     stripes
         Fan line (from 0) → the stripe it draws here, once that is known.
-    reason
+    exclusion
         Why the pose is not used; None if it is.
     """
 
@@ -40,21 +41,21 @@ class LocatedPose:
     rms_px: float
     lines: tuple[StripeLine, ...]
     stripes: dict[int, StripeLine] = field(default_factory=dict)
-    reason: Message | None = None
+    exclusion: Reason | None = None
 
     @property
     def used(self) -> bool:
         """Whether the pose takes part in the fit."""
-        return self.reason is None
+        return self.exclusion is None
 
     @property
     def lines_left(self) -> tuple[StripeLine, ...]:
         """The straight stripes that no fan line drew."""
         return tuple(line for line in self.lines if all(line is not stripe for stripe in self.stripes.values()))
 
-    def left_out(self, reason: Message) -> LocatedPose:
+    def left_out(self, exclusion: Reason) -> LocatedPose:
         """The same pose, not used."""
-        return replace(self, stripes={}, reason=reason)
+        return replace(self, stripes={}, exclusion=exclusion)
 
     def as_lines(self, camera: Camera) -> PoseLines:
         """The stripes and the target's plane, for their assignment; no stripes if the pose is not used."""
@@ -66,8 +67,8 @@ class LocatedPose:
 
 def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
     """Pose of the target and straight lines among its stripes, or the reason why there are none."""
-    nowhere = LocatedPose(features, Pose.identity(), np.nan, (), reason=features.reason)
-    if features.reason is not None or features.view is None:
+    nowhere = LocatedPose(features, Pose.identity(), np.nan, (), exclusion=features.exclusion)
+    if not features.used or features.view is None:
         return nowhere
     try:
         estimate = estimate_pose(features.view, camera)

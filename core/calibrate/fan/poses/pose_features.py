@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from core.image.exclusion import Excludable, Reason
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
 from core.image.targets.target_view import TargetView
@@ -18,7 +19,7 @@ MOVED_PX = 0.5
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class PoseFeatures:
+class PoseFeatures(Excludable):
     """What the pictures of one pose show.
 
     Parameters
@@ -29,7 +30,7 @@ class PoseFeatures:
         The target's points; None if it was not found.
     centrelines
         The stripes on the plate around the target.
-    reason
+    exclusion
         Why the pose cannot be used; None if it can.
     notes
         For the technician.
@@ -40,14 +41,14 @@ class PoseFeatures:
     name: str
     view: TargetView | None
     centrelines: tuple[Centreline, ...]
-    reason: Message | None = None
+    exclusion: Reason | None = None
     notes: tuple[Message, ...] = ()
     moved_px: float = math.nan
 
     @property
     def used(self) -> bool:
         """Whether it can be used."""
-        return self.reason is None
+        return self.exclusion is None
 
     @property
     def target_moved(self) -> bool:

@@ -8,7 +8,6 @@ from pathlib import Path
 
 import numpy as np
 
-from core.calibrate.results import LEFT_OUT
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.laser_channel import LaserChannel
@@ -17,6 +16,7 @@ from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
 from core.files.recording.step_settings import ScanSettings
 from core.findings.table import note_of
+from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, fused
 from core.image.stripes.told_width import told_width_notes
@@ -138,7 +138,7 @@ def of_whole(reference: ReferenceFeatures, sites: Sites, picture: Picture) -> Re
 
 def _seen_at(sites: Sites, frames: Iterable[Frame]) -> Iterator[Frame]:
     """The frames at these sites alone."""
-    return ((name, each if isinstance(each, Message) else sites.of(each)) for name, each in frames)
+    return ((name, each if isinstance(each, Reason) else sites.of(each)) for name, each in frames)
 
 
 def _fan_seen(reference: ReferenceFeatures) -> Exposure:
@@ -168,7 +168,7 @@ def _exposures(
         return None
     again = [recording_set.further[path][number] for path in shots.values()]
     sample = list(pictures.stream([again[i] for i in sample_indices(len(again))]))
-    readable = [picture for _, picture in sample if not isinstance(picture, Message)]
+    readable = [picture for _, picture in sample if not isinstance(picture, Reason)]
     base = None if recording_set.reference is None else pictures.read_further(recording_set.reference, number)
     if base is None:
         if len(readable) < FEWEST_FOR_QUANTILE:
@@ -200,7 +200,7 @@ def stream_frames(pictures: PictureReader, settings: ScanSettings, times: StageT
     for path in recording_set.frames:
         name = recording_set.name_of(path)
         if name in settings.excluded:
-            yield name, LEFT_OUT
+            yield name, Exclusion.BY_HAND
             continue
         _, picture = next(taken)
         yield name, picture
@@ -243,7 +243,7 @@ def reference_picture(
     taken = taken_frames(recording_set, settings)
     sample = [taken[index] for index in sample_indices(len(taken))]
     stream = steps(pictures.stream(sample), progress, "reference", len(sample))
-    readable = [picture for _, picture in stream if not isinstance(picture, Message)]
+    readable = [picture for _, picture in stream if not isinstance(picture, Reason)]
     if len(readable) < FEWEST_FOR_QUANTILE:
         raise InputError(
             Message(

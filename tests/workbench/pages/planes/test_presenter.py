@@ -523,7 +523,7 @@ def test_planes_of_a_minority_are_accepted_only_by_a_decision(found: PlanesPrese
     calibration = found.work.calibration
     assert calibration is not None
     poses = tuple(
-        replace(pose, used=place < 2, reason=None if place < 2 else plain("it disagrees"))
+        replace(pose, used=place < 2, exclusion=None if place < 2 else plain("it disagrees"))
         for place, pose in enumerate(calibration.poses)
     )
     found.work.calibration = replace(calibration, poses=poses)

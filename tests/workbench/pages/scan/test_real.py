@@ -5,7 +5,7 @@ from pathlib import Path
 import pytest
 from PySide6.QtCore import Qt
 
-from core.calibrate.results import LEFT_OUT
+from core.image.exclusion import Exclusion
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
 from workbench.pages.scan.check import CheckStage
@@ -48,7 +48,7 @@ def test_a_finished_scan_is_shown_and_measured_again_without_stopping_the_window
         idle(page, qtbot)
     assert drawn
     assert dog.longest_ms < LIMIT_MS, [str(absence) for absence in dog.worst(3)]
-    assert p.record_of(p.work.names[0]).reason == LEFT_OUT
+    assert p.record_of(p.work.names[0]).reason == Exclusion.BY_HAND.message
     assert {"scan", "gauge"} <= set(p.model.results)
     assert [notice.text for notice in p.bench.notices.all if notice.level != "info"] == []
 

@@ -1,0 +1,76 @@
+"""Why a view, a pose or a frame counts for nothing. Light to import: a window holds these."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from enum import Enum, auto
+
+from core.messages import Message
+
+
+class Exclusion(Enum):
+    """What excludes a view, a pose or a frame whose pictures can be read, where something is decided by it."""
+
+    BY_HAND = auto()
+    REPEATED = auto()
+    MOVED = auto()
+    WITHOUT_FAN = auto()
+    WITHOUT_STRIPE = auto()
+
+    @property
+    def message(self) -> Message:
+        """The same in words."""
+        return _WORDS[self]
+
+
+_WORDS: Mapping[Exclusion, Message] = {
+    Exclusion.BY_HAND: Message("set.left_out_by_hand", "left out by hand"),
+    Exclusion.REPEATED: Message(
+        "set.picture_repeated", "the same picture as an earlier one, pixel for pixel: it counts once"
+    ),
+    Exclusion.MOVED: Message(
+        "scan.frame_moved",
+        "object or camera moved during the scan: the fan's light lies elsewhere than in the reference",
+    ),
+    Exclusion.WITHOUT_FAN: Message(
+        "scan.frame_without_fan",
+        "the fan's light is gone: object or camera moved far during the scan, or the three-line laser was off",
+    ),
+    Exclusion.WITHOUT_STRIPE: Message("scan.frame_without_stripe", "no stripe of the hand-held laser"),
+}
+MOVEMENTS = frozenset({Exclusion.MOVED, Exclusion.WITHOUT_FAN})
+"""Those of frames that show the fan's light elsewhere than the reference, or not at all."""
+
+Reason = Exclusion | Message
+"""What excludes something: one of these, or else what is wrong with it, in words alone."""
+
+
+def message_of(reason: Reason) -> Message:
+    """A reason in words."""
+    return reason.message if isinstance(reason, Exclusion) else reason
+
+
+class Excludable:
+    """Something that counts unless there is an `exclusion`."""
+
+    __slots__ = ()
+    exclusion: Reason | None
+
+    @property
+    def reason(self) -> Message | None:
+        """Why it does not count, in words; None if it does."""
+        return None if self.exclusion is None else message_of(self.exclusion)
+
+
+_KNOWN = {one.message.code: one for one in Exclusion} | {str(one.message): one for one in Exclusion}
+
+
+def known_exclusion(kept: Message | None) -> Reason | None:
+    """What a reason in a file excludes by: named by its code, or by its English words as in older files.
+
+    Examples
+    --------
+    >>> known_exclusion(Exclusion.MOVED.message)
+    <Exclusion.MOVED: 3>
+    """
+    return None if kept is None else _KNOWN.get(kept.code or str(kept), kept)
