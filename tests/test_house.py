@@ -244,8 +244,6 @@ BY_CODE = {
     "core/image/exclusion.py": "finds what excludes a picture in a file, which older files tell by its words",
     "core/inspect/uncertainty/causes.py": "finds the cause that a file names, which older files name by its words",
     "core/findings/table.py": "finds how grave a note is",
-    # This still decides by a code; it goes as soon as the fact stands in a field.
-    "core/scan/features/picture_faults.py": "which notes on a scan's pictures are of their faults",
 }
 """Modules that look something up by the code of a message, and what."""
 LOOK_UPS = frozenset(("get", "pop", "setdefault", "index", "count"))

@@ -46,6 +46,8 @@ class Finding:
     fact
         Of what takes away a proof: the field of `core.findings.proof.ScanFacts` that does so. "" where it is no fact
         of a scan, but of one result or of a study.
+    of_pictures
+        Whether it is a fault of a scan's pictures themselves, which may be why what is made of them is refused.
 
     Raises
     ------
@@ -59,6 +61,7 @@ class Finding:
     text: str
     many: str = ""
     fact: str = ""
+    of_pictures: bool = False
 
     def __post_init__(self) -> None:
         if self.effect in (Effect.NO_PROOF, Effect.NO_RESULT) and self.weight != Weight.GRAVE:

@@ -50,6 +50,12 @@ def is_grave(note: Message) -> bool:
     return weight_of(note) == Weight.GRAVE
 
 
+def is_fault_of_pictures(note: Message) -> bool:
+    """Whether a note tells a fault of a scan's pictures themselves."""
+    row = FINDINGS.get(note.code)
+    return row is not None and row.of_pictures
+
+
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:
     """Each note once, the gravest first, those of one weight in their order."""
     return tuple(sorted(dict.fromkeys(notes), key=lambda note: -weight_of(note)))

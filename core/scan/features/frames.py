@@ -22,9 +22,6 @@ if TYPE_CHECKING:  # a window that holds these loads no search trees
 NO_REASON = Message("scan.no_reason", "no reason recorded")
 FEW_CROSSINGS = Message("scan.frame_few_crossings", "fewer than three crossings with the fan")
 
-LIGHT_CHANGED = "scan.room_light_changed"
-"""Code of the note on room light that changed within the scan."""
-
 _NAMED = 3
 """So many frames are named in a note."""
 

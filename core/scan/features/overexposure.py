@@ -12,8 +12,6 @@ from core.image.exposure import BRIGHTEST
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 
-SHINES = "scan.shines"
-"""Code of the note on stripes that are saturated here and there."""
 MANY = 1 / 3
 """Share of a scan's stripe points whose saturation is told: what is left is darker surface and the stripes' ends."""
 SOME = 0.01

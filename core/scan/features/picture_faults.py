@@ -12,20 +12,14 @@ from contextlib import contextmanager
 import numpy as np
 
 from core.errors import InputError
-from core.findings.table import note_of
+from core.findings.table import is_fault_of_pictures, note_of
 from core.image.mosaic import PERIOD_PX, is_interpolated
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.precision import response_noise
 from core.image.stripes.stripe import filter_for
 from core.messages import Message
-from core.scan.features.frames import LIGHT_CHANGED
-from core.scan.features.overexposure import SHINES
 from core.scan.features.reference import ReferenceFeatures
-
-COMPRESSED, MOSAIC, RAW, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.raw_mosaic", "scan.speckled"
-FAULTS = frozenset({COMPRESSED, MOSAIC, RAW, SPECKLED, SHINES, LIGHT_CHANGED})
-"""Codes of the notes on faults."""
 
 SPECKLED_SHARE = 0.08
 """Scatter of the brightness along the fan's lines, as a share of it, from which on it is told: between what fine
@@ -114,7 +108,7 @@ def faults_first(notes: Sequence[Message]) -> Iterator[None]:
     try:
         yield
     except InputError as error:
-        faults = [note for note in notes if note.code in FAULTS]
+        faults = list(filter(is_fault_of_pictures, notes))
         if not faults:
             raise
         what = Message(

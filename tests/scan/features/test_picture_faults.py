@@ -11,10 +11,6 @@ from core.image.mosaic import sites_of
 from core.image.stripes.noise import Compression, NoiseModel
 from core.messages import Message
 from core.scan.features.picture_faults import (
-    COMPRESSED,
-    MOSAIC,
-    RAW,
-    SPECKLED,
     faults_first,
     faults_of,
     notes_on_compression,
@@ -24,6 +20,7 @@ from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 
+COMPRESSED, MOSAIC, RAW, SPECKLED = "scan.compressed", "scan.colour_mosaic", "scan.raw_mosaic", "scan.speckled"
 RIG = Scenario(scale=0.25, frames=4, seed=1)
 MOVED = Message("scan.moved_too_much", "object or camera moved")
 
