@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from core.calibrate.camera.bundle import RAYLEIGH_MEDIAN
 from core.calibrate.camera.zhang import homography, homography_misfit
-from core.image.exclusion import Reason
+from core.image.exclusion import Excludable, Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model.arrays import Array
@@ -44,7 +44,7 @@ _FLOOR_PX = 1e-3
 
 
 @dataclass(frozen=True, eq=False, slots=True)
-class Verdict:
+class Verdict(Excludable):
     """Whether a view is used, why not, and which of its corners count (N,)."""
 
     used: bool

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from core.image.exclusion import MOVEMENTS
 from core.pipeline.live.events import ScanDetail
 from core.scan.preview.hints import ENOUGH
 from core.scan.preview.preflight import Check
@@ -84,7 +85,7 @@ def _of_the_hand(detail: ScanDetail) -> tuple[Level, str]:
     if preview.hints:
         return "warn", text_of(preview.hints[0])
     if preview.reason is not None:
-        return "bad", sentence(text_of(preview.reason))
+        return "bad" if preview.exclusion in MOVEMENTS else "warn", sentence(text_of(preview.reason))
     return "good", tr("Good. Go on where there is no colour yet.")
 
 

@@ -1,11 +1,13 @@
 """What is said to the hand while a scan is recorded."""
 
 from dataclasses import replace
+from typing import Any
 
 import pytest
 from PySide6.QtCore import QSize
 from PySide6.QtGui import QFontMetrics
 
+from core.image.exclusion import Exclusion
 from core.messages import plain
 from core.scan.preview.hints import ENOUGH
 from core.scan.preview.preflight import Check
@@ -13,12 +15,13 @@ from tests.workbench.pages import scan_cases as cases
 from workbench.pages.scan.guidance import Situation, guidance
 from workbench.pages.scan.guide import LARGEST, SMALLEST, Large
 
-NOW = Situation("Live: Camera 1", False, False, ("", ""), False, cases.detail(0), ())
+DETAIL = cases.detail(0)
+NOW = Situation("Live: Camera 1", False, False, ("", ""), False, DETAIL, ())
 
 
-def with_preview(**changed):
-    detail = cases.detail(0)
-    return NOW._replace(detail=replace(detail, preview=replace(detail.preview, **changed)))
+def with_preview(**changed: Any) -> Situation:
+    assert DETAIL.preview is not None
+    return NOW._replace(detail=replace(DETAIL, preview=replace(DETAIL.preview, **changed)))
 
 
 @pytest.mark.parametrize(
@@ -26,9 +29,10 @@ def with_preview(**changed):
     [
         (NOW, "good", "Good. Go on", "Stop"),
         (with_preview(hints=(plain("Tilt the laser more."), plain("Slower."))), "warn", "Tilt the laser more.", "Stop"),
-        (with_preview(reason=plain("part or camera moved")), "bad", "Part or camera moved.", "Stop"),
-        (NOW._replace(detail=replace(NOW.detail, share=ENOUGH)), "good", "Enough is covered: stop.", "Stop"),
-        (NOW._replace(detail=replace(NOW.detail, stage="paused"), paused=True), "warn", "Paused", "Resume"),
+        (with_preview(exclusion=Exclusion.MOVED), "bad", "Object or camera moved", "Stop"),
+        (with_preview(exclusion=Exclusion.WITHOUT_STRIPE), "warn", "No stripe of the hand-held laser.", "Stop"),
+        (NOW._replace(detail=replace(DETAIL, share=ENOUGH)), "good", "Enough is covered: stop.", "Stop"),
+        (NOW._replace(detail=replace(DETAIL, stage="paused"), paused=True), "warn", "Paused", "Resume"),
         (NOW._replace(question=("Disk full.", "Continue"), paused=True), "", "Disk full.", "Continue"),
         (NOW._replace(detail=cases.detail(0, stage="reference")), "", "Taking the reference", "Stop"),
         (NOW._replace(detail=None), "", "Live: Camera 1", "Stop"),
