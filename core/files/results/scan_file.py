@@ -71,7 +71,6 @@ _MEMBERS = {
     "frame_shift_px": real("frames"),
     "notes": texts(None),
     "stripes": real(2, 2),
-    "change_p": real(optional=True),
     **{f"fact_{name}": truth(optional=True) for name in _FACTS},
     "of_the_day": texts(None, optional=True),
     "unsure_share": real(optional=True),
@@ -128,8 +127,6 @@ class ScanFile:
         Names what the features rest on: with the same key they need not be looked for again. Nothing if not known.
     speckle
         What the fan's own points and the sweeps are both wrong by; None if not known.
-    change_p
-        Probability that chance alone sets calibrations and pictures of the scan so far apart; 1 if not known.
     facts
         What decides whether anything measured in the scan can prove conformity; what the file lacks is not known.
     second_bounces
@@ -149,7 +146,6 @@ class ScanFile:
     features_key: str = ""
     common: CommonErrors | None = None
     speckle: FanSpeckle | None = None
-    change_p: float = 1.0
     facts: ScanFacts = field(default_factory=ScanFacts)
     second_bounces: tuple[tuple[int, int], ...] = ()
     unsure_share: float = 0.0
@@ -174,7 +170,6 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
         "notes": pack_messages(features.notes),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
-        "change_p": np.array(scan.change_p),
         **{f"fact_{name}": np.array(getattr(scan.facts, name)) for name in _known(scan.facts)},
         "of_the_day": pack_messages(scan.facts.of_the_day),
         "unsure_share": np.array(scan.unsure_share),
@@ -244,7 +239,6 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         features_key=str(arrays.get("features_key", "")),
         common=_common(arrays, (width, height)),
         speckle=_speckle(arrays),
-        change_p=float(arrays.get("change_p", 1.0)),
         facts=_facts(arrays),
         second_bounces=tuple(
             (frame, piece) for frame, piece in arrays.get("second_bounces", np.zeros((0, 2))).tolist()

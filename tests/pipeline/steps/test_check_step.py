@@ -151,7 +151,7 @@ def test_a_mount_that_turned_is_found_out_and_nothing_is_conforming_by_it(turned
     assert check.error_mm == pytest.approx(0.16, abs=0.08), "what it does to a step of 50 mm"
     measured = scan_step(work, COARSE.for_scan)
     assert measured.scan.notes[0].code == "scan.fan_has_moved", "said first"
-    assert read_scan(work.path("scan")).change_p < PROVES_NOTHING
+    assert read_scan(work.path("scan")).facts.rig_changed
     gauge = gauge_step(work)
     assert gauge.verdict is Verdict.NOT_PROVEN
     assert gauge.notes[0].code == "inspection.rig_has_changed"

@@ -69,7 +69,6 @@ def scan_file(
         second_bounces=tuple(sorted(scan.second_bounces.pieces)),
         unsure_share=scan.unsure_share,
         common=judgement.common,
-        change_p=judgement.change.p,
         facts=judgement.facts,
     )
 
