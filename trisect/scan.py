@@ -155,8 +155,8 @@ def solve_scan(
         How far the rig may have changed since its calibration; None: not known, and what is assumed is in the
         uncertainty.
     options
-        `sigma_cut_mm`: points whose depth is less sure are left out; `row_time_us`: from one row of a picture to the
-        next of a rolling shutter, 0 for a global one, None where it is not known.
+        `method`: how sweeps are located; `sigma_cut_mm`: points whose depth is less sure are left out; `row_time_us`:
+        from one row of a picture to the next of a rolling shutter, 0 for a global one, None where it is not known.
     compression
         Of the files, by `compression_of`.
     progress
@@ -221,7 +221,8 @@ def solve_scan(
     calibration = Calibration(camera, fan)
     solved = solved_scan(features, calibration, solving, progress)
     change_by = partial(_change_by_scan, calibration, stability)
-    judgement = judged_scan(solved, change_by, facts_of_planes(fan), progress=progress)
+    of_day = facts_of_planes(fan)
+    judgement = judged_scan(solved, change_by, of_day, method=solving.method, progress=progress)
     cloud = with_normals(solved.scan.cloud, progress=progress)
     cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
     notes = (*solved.scan.notes, *assumed_shutter(solving.row_time_us, solved.scan))

@@ -15,6 +15,7 @@ import pytest
 import trisect
 from core.findings.proof import SIZE_UNCONFIRMED
 from core.model import Camera
+from core.scan.method import Method
 from tests.simulated import CUT
 from trisect import promised
 
@@ -118,6 +119,22 @@ def test_what_nobody_states_of_the_rig_is_in_u_and_told(calibrated, solved):
     assert found.rig.stability is not None, "the simulated rig states it"
     assert trisect.measure_thickness(unstated).u_mm > trisect.measure_thickness(solved).u_mm
     assert any(note.code == "scan.shutter_assumed" for note in unstated.notes)
+
+
+def test_a_scan_is_judged_by_the_method_it_is_solved_by(calibrated, monkeypatch):
+    found, camera, fan = calibrated
+    frames, reference = frames_of(found)
+    judged_by: list[Method] = []
+
+    def judged(*_: object, method: Method = Method.NETWORK, **__: object) -> None:
+        judged_by.append(method)
+        raise trisect.Cancelled
+
+    monkeypatch.setattr("trisect.scan.judged_scan", judged)
+    options = trisect.ReconstructOptions(Method.THREE_CROSSINGS, sigma_cut_mm=5.0)
+    with pytest.raises(trisect.Cancelled):
+        trisect.solve_scan(frames, camera, fan, reference=reference, options=options)
+    assert judged_by == [Method.THREE_CROSSINGS]
 
 
 def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
