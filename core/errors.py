@@ -70,6 +70,10 @@ class NoThickness(InputError):
     """A part was measured, but no thickness could be found in what was measured."""
 
 
+class OwnCause(InputError):
+    """What is wrong is seen itself: that other things may be why is not said of it."""
+
+
 class WrongValue(ValueError):
     """A value that nothing can be made of, with a message for those who gave it.
 

@@ -13,7 +13,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from core.errors import InputError
+from core.errors import InputError, OwnCause
 from core.inspect.face_region import Region, inside_polygon
 from core.inspect.fit.plane_search import (
     FEWEST_POINTS,
@@ -25,9 +25,9 @@ from core.inspect.fit.plane_search import (
     search_tolerance,
 )
 from core.inspect.results import PairCandidate
-from core.messages import Field, Message
+from core.messages import Field, Message, plural_message
 from core.progress import Progress, silent
-from core.scan.surface.cloud import Cloud
+from core.scan.surface.cloud import FAN, Cloud
 
 DRAW_OVER_FACE = Message("feature.advice_draw_over_face", "draw it over a face that the scan covers")
 
@@ -49,6 +49,10 @@ SAME_FACE = 0.5
 """Two polygons hold one face if they share more than this part of the points of the smaller one."""
 PARALLEL = np.radians(2.0)
 """Faces are parallel within this angle; larger angles are another feature, not a worse gauge block."""
+ASKEW = np.radians(20.0)
+"""Faces that should be parallel lie against each other by less: a part on a burr, a chip or its edge, no side of it."""
+ONE_PLANE = 0.98
+"""Share of the fan's own points on the only face from which on no other is in view: they need no sweep to be known."""
 
 
 LIKE_SIZE = 0.25
@@ -108,19 +112,7 @@ def find_faces(
         if abs(a.normal @ b.normal) > np.cos(PARALLEL) and abs(a.distance - b.distance) > 2 * tolerance
     ]
     if not pairs:
-        raise InputError(
-            Message(
-                "gauge.no_parallel_faces",
-                "among {n} plane faces no two are parallel, so there is no thickness to measure",
-                n=len(large),
-            ),
-            where=POINT_CLOUD,
-            todo=Message(
-                "gauge.advice_outline_faces",
-                "scan both faces, or outline them as [gauge] upper_polygon_px and {lower}",
-                lower=Field("gauge.lower_polygon_px"),
-            ),
-        )
+        raise _no_pair(cloud, large, tolerance)
     pairs.sort(key=lambda pair: sorted(plane.region.area_mm2 for plane in pair), reverse=True)
     least = LIKE_SIZE * min(plane.region.area_mm2 for plane in pairs[0])
     found = [_Pair.of(cloud, *pair) for pair in pairs if min(plane.region.area_mm2 for plane in pair) >= least]
@@ -129,6 +121,64 @@ def find_faces(
         alike.sort(key=lambda one: abs(one.candidate.thickness_mm - nominal_mm))
     candidates = tuple(one.candidate for one in alike) if len(alike) > 1 else ()
     return FacePair(alike[0].upper.region.indices, alike[0].lower.region.indices, candidates)
+
+
+def _no_pair(cloud: Cloud, faces: list[FoundPlane], tolerance: float) -> InputError:
+    """Why no two of the `faces` are parallel: there is but one, the largest two near it lie askew, or none of both."""
+    if len(faces) < 2:
+        own = cloud.points[cloud.sweep <= FAN]
+        on = [np.abs(own @ face.normal - face.distance) < 2 * tolerance for face in faces if len(own)]
+        kind = OwnCause if on and np.mean(on) > ONE_PLANE else InputError
+        return kind(
+            plural_message(
+                "gauge.too_few_faces",
+                "only {n} plane face is in view, so there is no thickness to measure",
+                "{n} plane faces are in view, so there is no thickness to measure",
+                n=len(faces),
+            ),
+            where=POINT_CLOUD,
+            todo=Message(
+                "gauge.advice_both_in_view",
+                "let the fan and the sweeps cross both faces, the part and the table beside it: a part that fills the "
+                "picture needs a rig farther away",
+            ),
+        )
+    askew = [(a, b) for a, b in combinations(faces, 2) if PARALLEL <= _angle(a, b) < ASKEW]
+    if askew:
+        pair = max(askew, key=lambda pair: min(plane.region.area_mm2 for plane in pair))
+        return OwnCause(
+            Message(
+                "gauge.faces_askew",
+                "the upper face lies {deg:.1f}° against the table or the face below, and only faces within {most:.0f}° "
+                "of parallel have a thickness",
+                deg=np.degrees(_angle(*pair)),
+                most=np.degrees(PARALLEL),
+            ),
+            where=POINT_CLOUD,
+            todo=Message(
+                "gauge.advice_lay_flat",
+                "lay the part flat, without chips or burrs under it, and scan again; a part that is so gets a feature "
+                "for the angle",
+            ),
+        )
+    return InputError(
+        Message(
+            "gauge.no_parallel_faces",
+            "among {n} plane faces no two are parallel, so there is no thickness to measure",
+            n=len(faces),
+        ),
+        where=POINT_CLOUD,
+        todo=Message(
+            "gauge.advice_outline_faces",
+            "scan both faces, or outline them as [gauge] upper_polygon_px and {lower}",
+            lower=Field("gauge.lower_polygon_px"),
+        ),
+    )
+
+
+def _angle(one: FoundPlane, other: FoundPlane) -> float:
+    """Angle in rad between two planes."""
+    return float(np.arccos(min(abs(float(one.normal @ other.normal)), 1.0)))
 
 
 @dataclass(frozen=True, eq=False, slots=True)

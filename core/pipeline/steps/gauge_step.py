@@ -7,7 +7,7 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
-from core.errors import InputError, NoThickness
+from core.errors import InputError, NoThickness, OwnCause
 from core.files.recording.rig import GaugeSpec, Rig, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
@@ -25,6 +25,7 @@ from core.pipeline.steps.check_step import checked_on_the_day
 from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.fan_watch import WARM_UP
+from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
 
@@ -131,10 +132,25 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
 
 @contextmanager
 def unsure_first(scan: ScanFile) -> Iterator[None]:
-    """A complaint about faces begins with how many points the σ cut left out, if those are most: that may be why."""
+    """A complaint about faces begins with stripes that are overexposed, or with how many points the σ cut left out.
+
+    With these only if they are most: that may be why.
+    """
     try:
         yield
+    except OwnCause:
+        raise
     except InputError as error:
+        sweeps = [piece for frame in scan.features.frames for piece in frame.centrelines]
+        too_bright = overexposed(scan.features.fan, sweeps)
+        if too_bright is not None:
+            what = Message(
+                "gauge.overexposed_and_no_faces",
+                "{bright}; of the rest: {reason}",
+                bright=too_bright,
+                reason=error.what,
+            )
+            raise InputError(what, where=error.where, todo=ADVICE) from error
         if scan.unsure_share < UNSURE:
             raise
         what = Message(

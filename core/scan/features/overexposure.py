@@ -20,7 +20,10 @@ three times as bright as the rest saturates 1.5 % and more. The sweeps' share do
 fan its light is added, which saturates 1.7 % of the sample. Held by tests/scan/features/test_overexposure.py."""
 _BRIGHT = 90.0
 """Percentile of the heights of saturated stripes, by their flanks, that the exposure is to hold."""
-ADVICE = Message("scan.advice_expose_less", "expose shorter, close the lens's aperture, or turn the lasers down")
+ADVICE = Message(
+    "scan.advice_expose_less",
+    "take at least 1 stop less of light: expose shorter, close the lens's aperture, or turn the lasers down",
+)
 
 
 def saturated_share(pieces: Sequence[Centreline]) -> float:

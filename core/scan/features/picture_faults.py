@@ -11,7 +11,7 @@ from contextlib import contextmanager
 
 import numpy as np
 
-from core.errors import InputError
+from core.errors import InputError, OwnCause
 from core.findings.table import is_fault_of_pictures, note_of
 from core.image.mosaic import PERIOD_PX, is_interpolated
 from core.image.stripes.centreline import Centreline
@@ -107,6 +107,8 @@ def faults_first(notes: Sequence[Message]) -> Iterator[None]:
     """A complaint about what was made of pictures begins with their faults, if `notes` tell any: that may be why."""
     try:
         yield
+    except OwnCause:
+        raise
     except InputError as error:
         faults = list(filter(is_fault_of_pictures, notes))
         if not faults:

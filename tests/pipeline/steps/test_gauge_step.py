@@ -2,12 +2,22 @@
 
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
-from core.errors import InputError
+from core.errors import InputError, OwnCause
 from core.findings.proof import ScanFacts
+from core.findings.table import note_of
 from core.messages import Message
 from core.pipeline.steps import gauge_step
+from core.scan.features.picture_faults import faults_first
+
+
+def scan_of(*, unsure_share, saturated=0, notes=()):
+    """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
+    line = SimpleNamespace(saturated=np.arange(100) < saturated)
+    return SimpleNamespace(unsure_share=unsure_share, features=SimpleNamespace(fan=[line], frames=[], notes=notes))
+
 
 NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are parallel", n=1)
 
@@ -30,8 +40,24 @@ def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(facts,
 
 @pytest.mark.parametrize(("share", "said"), [(0.8, "80 % of the sweeps' points"), (0.2, "among 1 plane faces")])
 def test_faces_that_are_not_found_are_told_with_the_points_that_are_too_unsure(share, said):
-    with pytest.raises(InputError) as refused, gauge_step.unsure_first(SimpleNamespace(unsure_share=share)):
+    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=share)):
         raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
     assert said in str(refused.value)
     assert "no two are parallel" in str(refused.value)
     assert ("raise the scan's σ cut" in str(refused.value)) == (share > 0.5)
+
+
+def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():
+    bright = scan_of(unsure_share=0.8, saturated=53)
+    with pytest.raises(InputError) as refused, gauge_step.unsure_first(bright):
+        raise InputError(NO_FACES, where="point cloud")
+    for said in ("53 % of the fan's points", "no two are parallel", "1 stop less"):
+        assert said in str(refused.value)
+    assert "less sure than" not in str(refused.value)
+
+
+@pytest.mark.parametrize("first", [gauge_step.unsure_first, lambda scan: faults_first(scan.features.notes)])
+def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(first):
+    doubtful = scan_of(unsure_share=0.8, saturated=53, notes=(note_of("scan.speckled", percent=12.0),))
+    with pytest.raises(OwnCause, match=r"^point cloud: among 1 plane faces"), first(doubtful):
+        raise OwnCause(NO_FACES, where="point cloud")
