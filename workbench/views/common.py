@@ -100,7 +100,7 @@ def breakable(path: str) -> str:
 
 
 class WheelIfFocused:
-    """A field over which the wheel scrolls what is around it, unless it was chosen: nobody changes it in passing."""
+    """A field that the wheel changes only while it has the focus; else the wheel scrolls what is around the field."""
 
     def __init__(self, *args: Any, **kwargs: Any) -> None:
         super().__init__(*args, **kwargs)

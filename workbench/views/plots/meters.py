@@ -162,7 +162,7 @@ class Steady(QObject):
             self._clock.start(math.ceil(left))
 
     def wait_no_longer(self) -> None:
-        """Nobody looks: what waits is dropped."""
+        """Drop what waits, as the widget is hidden."""
         self._clock.stop()
 
     def _show(self) -> None:
