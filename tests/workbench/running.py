@@ -13,7 +13,7 @@ from pathlib import Path
 from core.compiled import FOLDER
 
 ROOT = Path(__file__).parents[2]
-START_S = 60.0
+START_S = 180.0
 
 
 class Running:
