@@ -40,9 +40,9 @@ ROWS = (
             "The relief under the fan fixes the scale to {percent:.2g} %."),
     Finding("scan.scale_weak", Weight.CAUTION, Effect.WIDENS_U,
             "The scale of heights is fixed only to {percent:.2g} %: {error_mm:.2g} mm on a height of {height_mm:.0f} "
-            "mm. {missing}"),
+            "mm. {missing}."),
     Finding("scan.scale_unknown", Weight.CAUTION, Effect.WIDENS_U,
-            "Nothing fixes the scale of heights. {missing} The fan's own points and flat faces are right all the "
+            "Nothing fixes the scale of heights. {missing}. The fan's own points and flat faces are right all the "
             "same."),
     # Light that is left out
     Finding("scan.second_bounces", Weight.CAUTION, Effect.NONE,

@@ -124,6 +124,8 @@ def reconstruct(
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
     if sweeps.collapsed and not _flat(features, lines, camera, fan):
+        if too_bright is not None:
+            raise InputError(too_bright, where="scan", todo=ADVICE)
         raise InputError(note_of("scan.collapsed_in_spite_of_relief"), where="scan", todo=TILT_MORE)
     reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)

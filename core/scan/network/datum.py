@@ -91,14 +91,14 @@ def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
         missing = Message(
             "scan.missing_relief",
             "The fan meets no relief: let it cross part and table. A block laid beside the part gives height, too, but "
-            "is a second pair of faces: outline those of the part then.",
+            "is a second pair of faces: outline those of the part then",
         )
     elif datum.tilt < ALIKE:
-        missing = Message("scan.missing_tilt", "The sweeps run alike: tilt the laser to and fro by 30°.")
+        missing = Message("scan.missing_tilt", "The sweeps run alike: tilt the laser to and fro by 30°")
     else:
         missing = Message(
             "scan.missing_sweeps",
-            "Too few sweeps cross the fan at different heights: sweep more across its lines on part and table.",
+            "Too few sweeps cross the fan at different heights: sweep more across its lines on part and table",
         )
     if datum.scale > UNKNOWN:
         return note_of("scan.scale_unknown", missing=missing)

@@ -112,4 +112,4 @@ def test_a_hidden_hint_bar_keeps_no_clock_running(qtbot):
     bar.set_hints(["a"])
     bar.set_hints(["b"])
     bar.hide()
-    assert not bar._clock.isActive()
+    assert not bar._steady._clock.isActive()

@@ -247,9 +247,9 @@ def test_it_is_said_when_nothing_is_missing_any_more(page, lane, qtbot):
     start_live(page, lane, qtbot)
     wanted = "Nothing is missing: press Stop, and it is calibrated."
     lane.current.view.emit(live_view())
-    assert wanted not in page.picture.hints._wanted
+    assert wanted not in page.picture.hints._steady._wanted
     lane.current.view.emit(live_view(missing=()))
-    assert page.picture.hints._wanted == ("Hold still.", wanted)
+    assert page.picture.hints._steady._wanted == ("Hold still.", wanted)
 
 
 def test_the_user_may_look_at_another_tab_while_views_are_taken(page, lane, qtbot):
