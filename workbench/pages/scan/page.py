@@ -104,7 +104,8 @@ class ScanPage(StepPage):
         live = stage is Stage.LIVE
         self._take_room(self.takes_the_window)
         self.guide.setVisible(live)
-        self.guide.refresh()
+        if live:
+            self.guide.refresh()
         self.card.refresh()
         self.card.setVisible(not live)
         self.check.refresh()
@@ -154,8 +155,8 @@ class ScanPage(StepPage):
         p.run.frame_seen.connect(self._show_measured)
         p.model.opened.connect(self._opened)
         self.cloud.scene.notice.connect(p.bench.notices.info)
-        self.guide.exchange_wanted.connect(self._exchange)
-        does = {EXCHANGE: self._exchange, LEGEND: self._show_legend, Qt.Key.Key_Space: p.live.go_on}
+        self.guide.exchange_wanted.connect(self.views.show_next)
+        does = {EXCHANGE: self.views.show_next, LEGEND: self._show_legend, Qt.Key.Key_Space: p.live.go_on}
         for key, shortcut in self._keys.items():
             shortcut.setEnabled(False)
             shortcut.activated.connect(does[key])
@@ -173,15 +174,9 @@ class ScanPage(StepPage):
         self._room = wanted
         self.side_panel.setVisible(not wanted)
         self.picture.image.set_legend_visible(not wanted)
-        self._main = 0
-        self.views.show_main(self._main if wanted else None)
+        self.views.show_main(0 if wanted else None)
         for shortcut in self._keys.values():
             shortcut.setEnabled(wanted)
-
-    def _exchange(self) -> None:
-        """Let the picture and the points change places."""
-        self._main = 1 - self._main
-        self.views.show_main(self._main)
 
     def _show_legend(self) -> None:
         """Show the legend, or hide it."""

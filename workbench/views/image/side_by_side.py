@@ -98,6 +98,11 @@ class SideBySide(QSplitter):
         self._main = place
         self._share_out()
 
+    def show_next(self) -> None:
+        """Give most of the room to the view after the main one, as they stand."""
+        if self._main is not None:
+            self.show_main((self._main + 1) % len(self._panes))
+
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         if self._main is not None:
