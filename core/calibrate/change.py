@@ -127,7 +127,7 @@ def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
     Three turns of the fan about the laser and three shifts of it, two shifts of the picture, and the focal length.
     """
     size = DEFAULT_STABILITY
-    pivot = _laser(fan)
+    pivot = laser_of(fan)
     turned = (displaced_fan(fan, size.turn * axis, pivot) for axis in np.eye(3))
     shifted = (displaced_fan(fan, np.zeros(3), pivot, size.shift_mm * axis) for axis in np.eye(3))
     here = parameters_of(camera)
@@ -337,7 +337,7 @@ def _vector(camera: Camera, fan: Fan) -> Array:
     return np.concatenate([parameters_of(camera), fan.pis.ravel()])
 
 
-def _laser(fan: Fan) -> Array:
+def laser_of(fan: Fan) -> Array:
     """Where the light planes meet, as near to the camera as they do (3,); of a single plane its nearest point.
 
     Planes at small angles meet along a line that is well known but for noise, which is taken for none.

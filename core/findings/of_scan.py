@@ -31,6 +31,10 @@ ROWS = (
     Finding("scan.fan_disagrees", Weight.GRAVE, Effect.NONE,
             "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
             "and that object and camera stood still."),
+    Finding("scan.explained_by_change", Weight.GRAVE, Effect.NO_PROOF,
+            "Camera or laser are not as calibrated: crossings disagree {times:.2g} times as much as their noise "
+            "explains. What would explain it: {changes:;}. Set sensor region, focus and mounts as they "
+            "were, or calibrate again.", fact="rig_changed"),
     Finding("scan.fan_off_in_region", Weight.CAUTION, Effect.WIDENS_U,
             "In the {place} of the picture the sweeps lie {mm:.2g} mm {where} than the fan's light, more than its "
             "speckle explains: laser or camera are not as calibrated, or something moved after the reference was "

@@ -31,6 +31,7 @@ from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.records import frame_records, reasons_of
 from core.scan.results import ScanResult
+from core.scan.single_change import Explanation, explain_by_change
 from core.scan.standstill import HOLD_STILL, LEAST_SWEEPS, still_part
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import OwnLine, join, triangulate
@@ -61,6 +62,14 @@ TILT_MORE = Message(
     "move and tilt the hand-held laser more between frames, and cross the fan on object and table; spray shiny sides "
     "that mirror it matt",
 )
+
+
+LOCATE_BETTER = Message(
+    "scan.advice_locate_better",
+    "cross more of the fan with each sweep and tilt the laser between sweeps, check {field}, or raise the σ cut",
+    field=Field("laser_fan.lines"),
+)
+AS_CALIBRATED = Message("scan.advice_as_calibrated", "scan again with the rig as it was at its calibration")
 
 
 @dataclass(frozen=True, slots=True)
@@ -136,14 +145,9 @@ def reconstruct(
         raise InputError(too_bright, where="scan", todo=ADVICE)
     if not np.any(cloud.sweep >= 0):
         raise InputError(
-            _no_points(options.sigma_cut_mm, sweeps.notes),
+            _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
             where="scan",
-            todo=Message(
-                "scan.advice_locate_better",
-                "cross more of the fan with each sweep and tilt the laser between sweeps, check {field}, or raise the "
-                "σ cut",
-                field=Field("laser_fan.lines"),
-            ),
+            todo=LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
         )
     records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
     sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
@@ -173,6 +177,7 @@ def reconstruct(
         second_bounces=bounces,
         drifted=watched.drifts,
         collapsed=sweeps.collapsed,
+        rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
     )
 
@@ -220,6 +225,7 @@ class _Solved:
     datum: Datum | None = None
     read_out: ReadOut = AT_ONCE
     moved: bool = False
+    explanation: Explanation | None = None
 
 
 def _solve(
@@ -242,6 +248,10 @@ def _solve(
         return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
     among, of_among = crossings.select(kept), line[kept]
     read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
+    explanation = None
+    if read_out.shifts_mm and options.row_time_us is None:  # what another change of the rig does looks like that, too
+        explanation = explain_by_change(among, of_among, camera, fan, progress)
+        read_out = AT_ONCE if explanation is not None else read_out
     part = still_part(among, of_among, camera, fan, names, progress, read_out)
     kept[kept] = part.kept
     among = crossings.select(kept)
@@ -250,7 +260,10 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed or sweeps.fan_silenced
+    explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed
+    if explanation is None and not explained and (sweeps.fan_silenced or sweeps.judged):
+        explanation = explain_by_change(among, line[kept], camera, fan, progress)
+    judged = sweeps.notes + (() if explained or sweeps.fan_silenced else sweeps.judged)
     datum = datum_of(middle, covariance, by_sweep(among, sweeps.frames), camera)
     return _Solved(
         sweeps,
@@ -259,11 +272,11 @@ def _solve(
         watched.note(names, len(sweeps.frames))
         + part.note(names, len(sweeps.frames))
         + of_hand
-        + sweeps.notes
-        + (() if explained else sweeps.judged),
+        + (judged if explanation is None else (explanation.note,)),
         datum,
         read_out,
         bool(watched.first_after or part.movements),
+        explanation,
     )
 
 
@@ -368,14 +381,15 @@ def _unsure_share(found: Cloud, cloud: Cloud) -> float:
     return 1 - left / max(swept, 1)
 
 
-def _no_points(sigma_cut_mm: float, notes: tuple[Message, ...]) -> Message:
-    if not notes:
+def _no_points(sigma_cut_mm: float, explanation: Explanation | None, notes: tuple[Message, ...]) -> Message:
+    reasons = notes if explanation is None else (explanation.note,)
+    if not reasons:
         return Message("scan.no_points", "no point of any sweep is known to {cut_mm} mm", cut_mm=sigma_cut_mm)
     return Message(
         "scan.no_points_because",
         "no point of any sweep is known to {cut_mm} mm ({reasons:;})",
         cut_mm=sigma_cut_mm,
-        reasons=notes,
+        reasons=reasons,
     )
 
 

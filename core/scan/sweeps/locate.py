@@ -94,7 +94,7 @@ def choose_numbering(
     """
     if len(numberings) == 1 and numberings[0].settled == len(numberings[0].line):
         return numberings[0]
-    crossings = _of_some_sweeps(crossings)
+    crossings = crossings.select(some_sweeps(crossings))
     one_crossing = 1 / max(int(np.count_nonzero(crossings.with_fan)), 1)
     judged: dict[tuple[int, ...], tuple[float, FanLines]] = {}
     best = np.inf
@@ -111,13 +111,16 @@ def choose_numbering(
     return first.agreed(others)
 
 
-def _of_some_sweeps(crossings: CrossingTable) -> CrossingTable:
-    """The crossings with the fan and with each other of NUMBERING_SWEEPS sweeps spread over the scan: they tell all."""
+def some_sweeps(crossings: CrossingTable) -> NDArray[np.bool_]:
+    """Which crossings (M,) are of NUMBERING_SWEEPS sweeps spread over the scan, with the fan or each other.
+
+    They tell of fan and camera what all do.
+    """
     frames = np.unique(crossings.a[crossings.with_fan])
     if len(frames) <= NUMBERING_SWEEPS:
-        return crossings
+        return np.ones(len(crossings), dtype=np.bool_)
     some = frames[np.linspace(0, len(frames) - 1, NUMBERING_SWEEPS).round().astype(np.int64)]
-    return crossings.select(np.isin(crossings.a, some) & (crossings.with_fan | np.isin(crossings.b, some)))
+    return np.isin(crossings.a, some) & (crossings.with_fan | np.isin(crossings.b, some))
 
 
 def _settled(lines: FanLines, all_of_them: CrossingTable, camera: Camera, fan: Fan, progress: Progress) -> FanLines:
