@@ -125,6 +125,22 @@ def test_a_recording_set_is_inspected_with_its_results(simulated, results):
     assert "--out" in refused.sentence
 
 
+def test_nothing_is_put_among_the_results_of_another_scan(results, tmp_path):
+    """A verdict on the part would be given by another part's thickness, and a report would show both as one."""
+    other = copy_of(results, tmp_path / "other")
+    plan = ("--plan", results / "plan.toml", "--out", other)
+    assert trisect("inspect", results, *plan).code == 0, "a copy is the same scan"
+    (other / "inspection.json").unlink()
+    (other / "cloud.ply").write_bytes((other / "cloud.ply").read_bytes()[:-1] + b"\0")
+    for source in (results, results / "cloud.ply"):
+        said = trisect("inspect", source, *plan)
+        assert said.code == 2
+        assert "another scan" in said.sentence and "--out" in said.sentence
+    (other / "cloud.ply").unlink()
+    assert trisect("inspect", results, *plan).code == 2, "its thickness is there"
+    assert not (other / "inspection.json").exists()
+
+
 def test_a_cloud_alone_is_inspected_and_says_what_is_not_known(results, tmp_path):
     (tmp_path / "lonely.ply").write_bytes((results / "cloud.ply").read_bytes())
     said = json.loads(trisect("inspect", tmp_path / "lonely.ply", "--plan", results / "plan.toml", "--json").out)

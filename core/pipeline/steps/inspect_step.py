@@ -7,8 +7,9 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import make_folder
+from core.files.atomic import ANOTHER_OUT, make_folder
 from core.files.plan.translation import plan_tables
+from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG
 from core.files.recording.rig import part_of, read_rig
 from core.files.results.inspection_file import NAME, write_inspection
@@ -114,7 +115,7 @@ def inspect_step(
     plan, nominals
         As for `inspect`.
     out
-        The folder of a recording set's results, or where the inspection of a cloud goes; None: nowhere for a cloud.
+        The folder of a recording set's results, or where the inspection goes; None: nowhere for a cloud.
     progress
         Called with how far it is; may raise Cancelled.
 
@@ -126,8 +127,11 @@ def inspect_step(
     Raises
     ------
     InputError
-        If there is no scan, the plan is wrong, no feature could be measured, or nothing can be written.
+        If there is no scan, `out` holds the results of another one, the plan is wrong, no feature could be measured, or
+        nothing can be written.
     """
+    if out is not None:
+        _check_results_of(out, source)
     scan = open_scan(source, out)
     inspection = inspect(scan, plan, nominals, progress)
     if plan.features and not inspection.characteristics and inspection.problems:
@@ -148,6 +152,21 @@ def inspect_step(
     path = make_folder(folder) / NAME
     write_inspection(path, inspection, scan.calibration_id, plan_tables(plan))
     return inspection, path
+
+
+def _check_results_of(out: Path, source: Path) -> None:
+    """InputError if `out` holds results of another scan than `source`: one verdict would be given on two parts.
+
+    A recording set without results has those in `out`. A copy of the same cloud is the same scan.
+    """
+    cloud = source / FILES["cloud"] if source.is_dir() else source
+    results = [out / FILES[name] for name in ("cloud", "profiles", "gauge") if (out / FILES[name]).is_file()]
+    if results and cloud.is_file() and file_hash(cloud) not in map(file_hash, results):
+        raise InputError(
+            Message("inspection.out_of_other_scan", "holds the results of another scan than {source}", source=source),
+            where=out,
+            todo=ANOTHER_OUT,
+        )
 
 
 def _part_in(folder: Path) -> Part:
