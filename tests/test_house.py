@@ -242,7 +242,7 @@ def test_a_text_that_is_cut_is_seen(line, seen):
 BY_CODE = {
     "core/messages.py": "finds the text of a message in the reader's language",
     "core/image/exclusion.py": "finds what excludes a picture in a file, which older files tell by its words",
-    "core/inspect/uncertainty/causes.py": "finds the cause that a file names, which older files name by its words",
+    "core/inspect/causes.py": "finds the cause that a file names, which older files name by its words",
     "core/findings/table.py": "finds how grave a note is",
 }
 """Modules that look something up by the code of a message, and what."""
@@ -302,6 +302,86 @@ def test_no_logic_decides_by_the_code_of_a_message():
 )
 def test_a_decision_by_a_code_is_seen(line, seen):
     assert any(map(decides_by_code, ast.walk(ast.parse(line)))) == seen
+
+
+MAKERS = ("Message", "plural_message", "plain", "note_of")
+"""What makes a message."""
+GATHERED = ("frozenset", "set", "tuple", "dict", "MappingProxyType")
+
+
+def holds_message(value: ast.expr | None, known: Collection[str]) -> bool:
+    """Whether it is a message, or several to be looked for; `known` names constants that are."""
+    match value:
+        case ast.Call():
+            parts = value.args if called(value) in GATHERED else []
+            return called(value) in MAKERS or any(holds_message(one, known) for one in parts)
+        case ast.Tuple() | ast.List() | ast.Set():
+            return any(holds_message(one, known) for one in value.elts)
+        case ast.Dict():
+            return any(holds_message(one, known) for one in value.keys)
+        case ast.Starred():
+            return holds_message(value.value, known)
+        case ast.BinOp():
+            return holds_message(value.left, known) or holds_message(value.right, known)
+        case ast.Name():
+            return value.id in known
+    return False
+
+
+def messages_of(trees: Mapping[str, ast.Module]) -> dict[str, set[str]]:
+    """By module, the names of its constants, and of those it imports, that are messages."""
+    found: dict[str, set[str]] = {name: set() for name in trees}
+    imports = {name: [one for one in ast.walk(tree) if isinstance(one, ast.ImportFrom)] for name, tree in trees.items()}
+    before = -1
+    while before != (before := sum(map(len, found.values()))):
+        for name, tree in trees.items():
+            for node in imports[name]:
+                theirs = found.get(node.module or "", ())
+                found[name] |= {one.asname or one.name for one in node.names if one.name in theirs}
+            for statement in tree.body:
+                if isinstance(statement, ast.Assign | ast.AnnAssign) and holds_message(statement.value, found[name]):
+                    found[name] |= set(names_of(statement))
+    return found
+
+
+def compares_message(node: ast.AST, known: Collection[str]) -> bool:
+    """Whether something is compared with a message, or looked for among some."""
+    return isinstance(node, ast.Compare) and any(holds_message(side, known) for side in (node.left, *node.comparators))
+
+
+def test_no_logic_compares_with_a_message():
+    paths = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in modules("core", "workbench")}
+    known = messages_of({name: syntax_tree(path) for name, path in paths.items()})
+    found = [
+        f"{name}:{getattr(node, 'lineno', 0)} {ast.unparse(node)[:80]}"
+        for name, path in paths.items()
+        for node in nodes(path)
+        if compares_message(node, known[name])
+    ]
+    assert found == [], "a message is there to be told: decide by a field, as core.image.exclusion.Exclusion"
+
+
+@pytest.mark.parametrize(
+    ("line", "seen"),
+    [
+        ("row.source == BAD", True),
+        ("row.source is not BAD", True),
+        ("any(one in (GOOD, BAD) for one in notes)", True),
+        ("one not in ALL", True),
+        ("one in {*ALL}", True),
+        ("one in BY_NOTE", True),
+        ("one in frozenset((BAD,))", True),
+        ("note == Message('a.b', 'bad')", True),
+        ("row.source is Cause.BAD", False),
+        ("note is None", False),
+        ("kind in WORDS", False),
+    ],
+)
+def test_a_comparison_with_a_message_is_seen(line, seen):
+    its = "BAD = Message('a.b', 'bad')\nALL: Final = (BAD,)\nBY_NOTE = {BAD: 1}\nWORDS = {1: BAD}\n"
+    trees = {"its": ast.parse(its), "mine": ast.parse(f"from its import ALL, BAD, BY_NOTE, WORDS\n{line}\n")}
+    known = messages_of(trees)["mine"]
+    assert any(compares_message(node, known) for node in ast.walk(trees["mine"])) == seen
 
 
 def unguarded(tree: ast.AST) -> Iterator[tuple[int, str]]:

@@ -172,7 +172,7 @@ READ_BY_PEOPLE = (
 """Modules whose complaints about wrong values reach people: a `WrongValue` has a message, a `ValueError` none."""
 ALLOWED = {
     "core/cli/simulating.py": "what the results of the sample say of their part",
-    "core/inspect/uncertainty/causes.py": "what files and plans of earlier versions say",
+    "core/inspect/causes.py": "what files and plans of earlier versions say",
     "core/files/exchange/dcc.py": "what the file says to other programs",
     "core/files/exchange/e57.py": "what the file says to other programs",
     "core/files/exchange/opencv_calibration.py": "what the file says to other programs",

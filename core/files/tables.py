@@ -12,8 +12,8 @@ from pydantic_core import PydanticCustomError
 
 from core.calibrate.results import PlanePose, ViewQuality
 from core.files.limits import LARGEST
+from core.inspect.causes import Source, known_cause
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import known_cause
 from core.messages import Message, as_json, from_json, label
 from core.model import Pose
 
@@ -70,8 +70,8 @@ OptionalMessage = Annotated[Message | None, PlainValidator(lambda kept: _message
 """The same, or nothing: null, or '' in older files."""
 
 
-KeptCause = Annotated[Message, PlainValidator(lambda kept: known_cause(_message(kept)))]
-"""What a row of a budget comes from; older files have the English words."""
+KeptCause = Annotated[Source, PlainValidator(lambda kept: known_cause(_message(kept)))]
+"""What a row of a budget comes from; the file has its code and words, older ones the English words alone."""
 
 
 def kept(message: Message | None) -> dict[str, Any] | str | None:
@@ -131,7 +131,7 @@ class BudgetRow(ResultFile):
 def row_tables(row: Contribution, key: str) -> dict[str, Any]:
     """A row as it is written, its contribution under `key`; infinitely many degrees of freedom become null."""
     return {
-        "source": kept(row.source),
+        "source": kept(row.words),
         key: row.u_mm,
         "point_mm": row.point_mm,
         "distribution": row.distribution,

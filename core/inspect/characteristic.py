@@ -6,9 +6,9 @@ import math
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from core.inspect.causes import Cause
 from core.inspect.conformity import Limits, Verdict, decide
 from core.inspect.results import Contribution, GaugeResult
-from core.inspect.uncertainty.causes import CERTIFICATE
 from core.messages import Message
 
 Quantity: TypeAlias = Literal["length", "angle"]
@@ -63,7 +63,7 @@ class Characteristic:
     @property
     def by_master(self) -> bool:
         """Whether it was compared with a master: the certificate of that is in its budget then."""
-        return any(row.source == CERTIFICATE for row in self.budget)
+        return any(row.source is Cause.CERTIFICATE for row in self.budget)
 
     @property
     def U(self) -> float:

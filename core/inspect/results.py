@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from core.inspect.causes import Source, message_of
 from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message
 from core.model import LightPlane as Plane
@@ -41,7 +42,7 @@ class Contribution:
     Parameters
     ----------
     source
-        What it comes from: one of `core.inspect.uncertainty.causes`, or words of somebody else's.
+        What it comes from.
     u_mm
         Its contribution |c| u(x) to the result, in the result's unit: mm, or rad for an angle.
     point_mm
@@ -57,13 +58,18 @@ class Contribution:
         Of the input.
     """
 
-    source: Message
+    source: Source
     u_mm: float
     point_mm: float | None = None
     distribution: str = "normal"
     dof: float = math.inf
     value: float | None = None
     unit: str = "mm"
+
+    @property
+    def words(self) -> Message:
+        """What it comes from, in words."""
+        return message_of(self.source)
 
     @property
     def sensitivity(self) -> float | None:

@@ -16,6 +16,7 @@ from itertools import pairwise
 import numpy as np
 
 from core.findings.table import note_of
+from core.inspect.causes import FROM_BELOW, Cause
 from core.inspect.faces import FacePair
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE
 from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
@@ -25,7 +26,6 @@ from core.inspect.free_faces import angle_of, free_faces
 from core.inspect.profile_faces import faces_of, level_limit, stretches
 from core.inspect.results import Contribution, GaugeResult
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
-from core.inspect.uncertainty.causes import FACE_TILT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, OBSERVED
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
@@ -193,7 +193,7 @@ def _as_one(effect: Effect) -> Effect:
 
     Light from below the two faces is shared: all pictures show the same ones.
     """
-    if effect.source in (LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED):
+    if effect.source in FROM_BELOW:
         return replace(effect, shared=True)
     if effect.shared:
         return effect
@@ -244,7 +244,7 @@ def measure_steps(
     rows = list(budget_of(parts))
     by_tilt = float(weights @ [one.by_tilt_mm for one in steps])
     if by_tilt > 0:
-        rows.append(Contribution(FACE_TILT, by_tilt))
+        rows.append(Contribution(Cause.FACE_TILT, by_tilt))
     rows += _observed(values, own, weights, alike)
     budget = tuple(rows)
     u, factor = combined(budget), student_factor(k, budget)
@@ -320,7 +320,9 @@ def _observed(values: Array, own: Array, weights: Array, alike: float) -> list[C
     beyond = max(scatter - expected, 0.0)
     if beyond <= 0:
         return []
-    return [Contribution(OBSERVED, math.sqrt(beyond * float(weights @ weights)), math.sqrt(beyond), dof=count - 1.0)]
+    return [
+        Contribution(Cause.OBSERVED, math.sqrt(beyond * float(weights @ weights)), math.sqrt(beyond), dof=count - 1.0)
+    ]
 
 
 def _notes_on_form(steps: Sequence[Step]) -> tuple[Message, ...]:

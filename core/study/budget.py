@@ -21,15 +21,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from core.errors import WrongValue
+from core.inspect.causes import Cause, Source
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import (
-    GIVEN,
-    OBSERVED,
-    POINT_NOISE,
-    REPEATABILITY,
-    STATED,
-    SWEEP_PLANES,
-)
 from core.inspect.uncertainty.coverage import COVERAGE, coverage_factor, effective_dof
 from core.messages import Message
 
@@ -95,7 +88,7 @@ def add_up(
     )
 
 
-OF_EACH_SCAN = (POINT_NOISE, SWEEP_PLANES)
+OF_EACH_SCAN = frozenset((Cause.POINT_NOISE, Cause.SWEEP_PLANES))
 """Causes drawn anew with each scan. Calibrations are not, nor are speckle and form while the part lies still."""
 
 
@@ -113,12 +106,12 @@ def from_budgets(
     common = [row for row in rows if row.source not in OF_EACH_SCAN]
     own = [row for row in rows if row.source in OF_EACH_SCAN]
     if scatter is not None and scatter > math.hypot(*(row.u_mm for row in own)):
-        own = [Contribution(OBSERVED, scatter, scatter, "t", float(n - 1), unit=unit)]
+        own = [Contribution(Cause.OBSERVED, scatter, scatter, "t", float(n - 1), unit=unit)]
     means = [replace(row, u_mm=row.u_mm / math.sqrt(n)) for row in own]
     return add_up([*common, *means], value=float(np.mean(values)), unit=unit)
 
 
-def _quadratic_mean(source: Message, budgets: Sequence[Sequence[Contribution]]) -> Contribution:
+def _quadratic_mean(source: Source, budgets: Sequence[Sequence[Contribution]]) -> Contribution:
     """One cause over all scans; a scan that does not name it has none of it."""
     found = [row for budget in budgets for row in budget if row.source == source]
     u = math.sqrt(sum(row.u_mm**2 for row in found) / len(budgets))
@@ -146,12 +139,12 @@ def from_stated(values: Sequence[float], u: Sequence[float] | float | None, *, u
     n, scatter = len(values), _scatter(values)
     rows = []
     if isinstance(u, int | float):
-        rows.append(Contribution(GIVEN, float(u), float(u), unit=unit))
+        rows.append(Contribution(Cause.GIVEN, float(u), float(u), unit=unit))
     elif u is not None:
         common = float(np.sqrt(np.mean(np.square(u))))
-        rows.append(Contribution(STATED, common, common, unit=unit))
+        rows.append(Contribution(Cause.STATED, common, common, unit=unit))
     if scatter is not None:
-        rows.append(Contribution(REPEATABILITY, scatter / math.sqrt(n), scatter, "t", float(n - 1), unit=unit))
+        rows.append(Contribution(Cause.REPEATABILITY, scatter / math.sqrt(n), scatter, "t", float(n - 1), unit=unit))
     if not rows:
         raise WrongValue(Message("study.one_value_alone", "one value alone, with no stated uncertainty, has no budget"))
     return add_up(rows, value=float(np.mean(values)), unit=unit)

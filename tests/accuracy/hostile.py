@@ -113,7 +113,7 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         "verdict": str(gauge.verdict),
         "complete": gauge.complete,
         "told": _told(out),
-        "budget": {row.source.code: row.u_mm for row in gauge.budget},
+        "budget": {row.words.code: row.u_mm for row in gauge.budget},
     }
 
 

@@ -12,4 +12,4 @@ def test_a_thickness_by_bowed_lines_is_within_its_uncertainty(tmp_path):
     measured = measure(Scenario(scale=0.3, frames=40, fan_bow=0.01), tmp_path)
     error = abs(measured.gauge.thickness_mm - 50.0)
     assert 0.1 < error < measured.gauge.U_mm < 4 * error
-    assert any(row.source.code == "inspection.cause_bent_light" for row in measured.gauge.budget)
+    assert any(row.words.code == "inspection.cause_bent_light" for row in measured.gauge.budget)

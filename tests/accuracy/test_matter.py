@@ -97,6 +97,6 @@ def test_of_a_matt_part_only_a_material_that_is_not_stated_widens_the_uncertaint
     reckoned_without = measure(Scenario(**SMALL, seed=seed), tmp_path, small).gauge
     metal, unstated = gauge_by(METAL, tmp_path), gauge_by(UNSTATED, tmp_path)
     assert (metal.thickness_mm, metal.U_mm) == (reckoned_without.thickness_mm, reckoned_without.U_mm)
-    assert "inspection.cause_light_from_below" not in {row.source.code for row in metal.budget}
+    assert "inspection.cause_light_from_below" not in {row.words.code for row in metal.budget}
     assert metal.U_mm < unstated.U_mm < metal.U_mm + 0.2
     assert abs(unstated.thickness_mm - 50.0) <= unstated.U_mm

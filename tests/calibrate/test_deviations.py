@@ -12,7 +12,7 @@ from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.deviations import calibration_deviations, fan_behind
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.causes import CALIBRATIONS
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera
 from core.scan.common_errors import CommonErrors

@@ -5,8 +5,8 @@ import pytest
 
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
 from core.image.targets.target_view import TargetView
+from core.inspect.causes import cause_named
 from core.inspect.results import Contribution, Face, GaugeResult
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane, Pose
 from core.scan.surface.cloud import FAN, Cloud

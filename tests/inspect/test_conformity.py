@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
+from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits, Zones, decide
 from core.inspect.results import Contribution, Face, GaugeResult
-from core.inspect.uncertainty.causes import CAMERA
 from core.inspect.uncertainty.coverage import coverage_factor, effective_dof
 from core.model import LightPlane
 
@@ -98,13 +98,15 @@ def test_the_coverage_factor_is_that_of_table_G_2(dof, k95, k9545, k99):
 
 def test_a_rounding_error_does_not_cost_a_degree_of_freedom():
     assert (
-        coverage_factor(effective_dof([Contribution(CAMERA, 0.002, dof=8)])) == coverage_factor(8) < coverage_factor(7)
+        coverage_factor(effective_dof([Contribution(Cause.CAMERA, 0.002, dof=8)]))
+        == coverage_factor(8)
+        < coverage_factor(7)
     )
 
 
 def test_freedom_of_known_contributions_is_infinite_and_of_one_its_own():
-    assert effective_dof([Contribution(CAMERA, 0.1), Contribution(CAMERA, 0.2)]) == math.inf
-    assert effective_dof([Contribution(CAMERA, 0.1, dof=7)]) == pytest.approx(7)
+    assert effective_dof([Contribution(Cause.CAMERA, 0.1), Contribution(Cause.CAMERA, 0.2)]) == math.inf
+    assert effective_dof([Contribution(Cause.CAMERA, 0.1, dof=7)]) == pytest.approx(7)
     assert effective_dof([]) == math.inf
     with pytest.raises(ValueError, match="no coverage factor"):
         coverage_factor(0.5)

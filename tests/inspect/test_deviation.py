@@ -6,12 +6,12 @@ import trimesh
 from scipy.spatial.transform import Rotation
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.evaluate import evaluate
 from core.inspect.plan.alignment import best_fit
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.shown.deviation_map import classes_of, mark
-from core.inspect.uncertainty.causes import FACETS
 from core.model import Pose
 from core.scan.surface.triangles import ProximityQuery, Triangles
 from core.simulate.scene.objects import gauge_block, step_block
@@ -135,9 +135,9 @@ def test_how_far_triangles_are_off_the_nominal_surface_is_a_row_of_the_budget():
     )
     for before, after, times in zip(exact.characteristics, coarse.characteristics, (2, 1), strict=True):
         row = {row.source: row.u_mm for row in after.budget}
-        assert row[FACETS] == pytest.approx(times * 0.2 / np.sqrt(3))
-        assert after.u == pytest.approx(np.hypot(before.u, row[FACETS]))
-        assert FACETS not in {row.source for row in before.budget}
+        assert row[Cause.FACETS] == pytest.approx(times * 0.2 / np.sqrt(3))
+        assert after.u == pytest.approx(np.hypot(before.u, row[Cause.FACETS]))
+        assert Cause.FACETS not in {row.source for row in before.budget}
 
 
 def test_a_nominal_surface_in_part_coordinates_is_laid_on_by_the_parts_frame():

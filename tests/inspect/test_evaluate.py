@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.conformity import Limits, Verdict
 from core.inspect.evaluate import evaluate
 from core.inspect.plan.conditions import Master, Temperature
@@ -20,7 +21,6 @@ from core.inspect.plan.feature_spec import (
     Section,
 )
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.uncertainty.causes import POINT_NOISE
 from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
 
@@ -178,7 +178,7 @@ def test_flatness_scatters_as_much_as_its_uncertainty_says():
 
 def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_the_target_is_assumed(cloud):
     doubted = replace(ERRORS, size_unconfirmed=True)
-    master = Master("M", 40.0, 1e-3, 40.001, ((POINT_NOISE, 1e-3),), ("height",))
+    master = Master("M", 40.0, 1e-3, 40.001, ((Cause.POINT_NOISE, 1e-3),), ("height",))
     plan = InspectionPlan(
         (
             *PLANES,

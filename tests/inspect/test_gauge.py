@@ -6,16 +6,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.faces import FacePair
 from core.inspect.gauge import RULE, fit_gauge, measure_gauge
-from core.inspect.uncertainty.causes import (
-    CAMERA,
-    FAN_CALIBRATION,
-    FAN_SPECKLE,
-    FORM,
-    POINT_NOISE,
-    SWEEP_PLANES,
-)
 from core.inspect.uncertainty.coverage import coverage_factor, effective_dof
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.common_errors import CommonErrors
@@ -82,9 +75,9 @@ def test_stated_uncertainty_is_the_scatter_over_scans(scan, plane_errors):
     assert stated == pytest.approx(thickness.std(), rel=0.2)
     assert thickness.mean() == pytest.approx(50.0, abs=4 * thickness.std() / np.sqrt(40))
     if plane_errors:
-        assert rows(results[0])[SWEEP_PLANES] > 0.3 * rows(results[0])[POINT_NOISE]
+        assert rows(results[0])[Cause.SWEEP_PLANES] > 0.3 * rows(results[0])[Cause.POINT_NOISE]
     else:
-        assert rows(results[0])[SWEEP_PLANES] == 0
+        assert rows(results[0])[Cause.SWEEP_PLANES] == 0
 
 
 def test_points_that_share_errors_weigh_less_than_points_that_do_not(scan):
@@ -141,7 +134,7 @@ def test_sweeps_that_hang_on_the_fans_speckle_do_not_make_the_thickness_surer_th
 
     def errors_over_u(speckle):
         each = [measure_gauge(cloud, regions=faces(scan), errors=shared.errors(speckle)) for cloud in clouds]
-        assert all(SWEEP_PLANES in rows(one) and FAN_SPECKLE in rows(one) for one in each)
+        assert all(Cause.SWEEP_PLANES in rows(one) and Cause.FAN_SPECKLE in rows(one) for one in each)
         return np.sqrt(np.mean([((one.thickness_mm - scan.height) / one.u_mm) ** 2 for one in each]))
 
     assert errors_over_u(shared.known) == pytest.approx(1.0, abs=0.22)
@@ -154,10 +147,10 @@ def test_form_error_appears_in_the_budget(scan):
     plain = scan.measure(np.random.default_rng(4), plane_errors=False)
     wavy = scan.measure(np.random.default_rng(4), plane_errors=False, shift=np.where(scan.upper, wave, 0.0))
     settings = {"regions": faces(scan), "errors": scan.errors(plane_errors=False)}
-    assert rows(measure_gauge(plain, **settings))[FORM] < 0.0015
+    assert rows(measure_gauge(plain, **settings))[Cause.FORM] < 0.0015
     waved = measure_gauge(wavy, **settings)
-    assert rows(waved)[FORM] > 0.002
-    form = next(row for row in waved.budget if row.source == FORM)
+    assert rows(waved)[Cause.FORM] > 0.002
+    form = next(row for row in waved.budget if row.source == Cause.FORM)
     assert 3 < form.dof < 500  # patches, not points, say how rough the faces are
     assert waved.k == pytest.approx(coverage_factor(effective_dof(waved.budget)), abs=0.005)
     assert waved.k > 2
@@ -180,8 +173,8 @@ def test_calibration_terms_and_verdicts(scan):
         cloud, regions=faces(scan), errors=scan.errors(common=common), nominal_mm=50.0, tolerance_mm=0.2
     )
     # No flatness of a face can tell a scale: it arrives in full.
-    assert rows(full)[CAMERA] == pytest.approx(0.0004 * 50, rel=0.02)
-    assert rows(full)[FAN_CALIBRATION] == pytest.approx(0.0002 * 50, rel=0.02)
+    assert rows(full)[Cause.CAMERA] == pytest.approx(0.0004 * 50, rel=0.02)
+    assert rows(full)[Cause.FAN_CALIBRATION] == pytest.approx(0.0002 * 50, rel=0.02)
     assert full.u_mm == pytest.approx(np.sqrt(sum(u**2 for u in rows(full).values())))
     assert full.U_mm == pytest.approx(2 * full.u_mm)
     assert full.u_mm > base.u_mm
@@ -223,7 +216,7 @@ def test_an_error_that_would_bend_the_faces_is_told_by_their_flatness(scan):
     row = next(
         row
         for row in measure_gauge(cloud, regions=faces(scan), errors=scan.errors(common=common)).budget
-        if row.source == FAN_CALIBRATION
+        if row.source == Cause.FAN_CALIBRATION
     )
     assert row.u_mm < 0.1 * common.sigma(cloud)[cloud.sweep < 0].max()
 
@@ -233,6 +226,6 @@ def test_every_row_says_how_much_of_a_typical_points_error_arrives(scan):
     for row in result.budget:
         assert row.point_mm is not None
         assert row.sensitivity is None or row.sensitivity == pytest.approx(row.u_mm / row.point_mm)
-    noise = next(row for row in result.budget if row.source == POINT_NOISE)
+    noise = next(row for row in result.budget if row.source == Cause.POINT_NOISE)
     assert noise.point_mm == pytest.approx(0.015, rel=0.15)
     assert noise.sensitivity < 0.2  # hundreds of stretches are averaged

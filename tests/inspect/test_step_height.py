@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from core.calibrate.deviations import Deviation
+from core.inspect.causes import CALIBRATIONS, Cause
 from core.inspect.profile_faces import faces_of, stretches
 from core.inspect.step_height import NO_FACES, NO_TILT, NOT_PLANE, KnownTilt, Step, measure_steps, step_of
-from core.inspect.uncertainty.causes import CALIBRATIONS, LIGHT_FROM_BELOW_ASSUMED
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
@@ -118,7 +118,7 @@ def test_pictures_that_disagree_widen_the_uncertainty():
         picture(((-150.0, -40.0, 0.0), (-20.0, 30.0, 20.3), (60.0, 150.0, 0.0)), noise_px=0.1, seed=9, frame=9)
     )
     result = measure_steps([*steps, other])
-    assert "study.cause_observed" in [row.source.code for row in result.budget]
+    assert "study.cause_observed" in [row.words.code for row in result.budget]
     assert result.U_mm > 3 * measure_steps(steps).U_mm
 
 
@@ -189,7 +189,7 @@ def test_light_from_below_the_faces_is_in_all_pictures_alike():
     steps = [step_of(picture(part, noise_px=0.1, seed=i, frame=i), unstated) for i, part in enumerate(parts)]
 
     def by_light(of):
-        (row,) = (one for one in measure_steps(of).budget if one.source == LIGHT_FROM_BELOW_ASSUMED)
+        (row,) = (one for one in measure_steps(of).budget if one.source == Cause.LIGHT_FROM_BELOW_ASSUMED)
         return row.u_mm
 
     assert by_light(steps) == pytest.approx(by_light(steps[:1]), rel=0.1) and by_light(steps) > 0.1

@@ -64,7 +64,7 @@ def test_what_is_known_of_the_part_beforehand_is_in_the_budget(rig, told, tmp_pa
         "spray_mm = 0.01\nspray_sd_mm = 0.003\n"
     )
     after = plan(stated, scans=1, changes=False, sigma_cut_mm=CUT_MM)
-    rows = {row.source.code: row.u_mm for row in after.largest.budget}
+    rows = {row.words.code: row.u_mm for row in after.largest.budget}
     assert rows["inspection.cause_part_temperature"] == pytest.approx(50 * 23e-6 * 0.5)
     assert rows["inspection.cause_part_expansion"] == pytest.approx(50 * 0.9e-6 * 2.0)
     assert rows["inspection.cause_spray"] == pytest.approx(0.003)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.inspect.uncertainty.causes import CHANGE_ASSUMED, FAN_CALIBRATION
+from core.inspect.causes import Cause
 from core.messages import plain
 from core.plan.bounds import bounds_of
 from core.plan.changes import CHANGES, Change, Effect, advice, compare
@@ -66,7 +66,7 @@ def test_more_poses_leave_less_of_the_fans_share(planner, base):
     many = planner.predict(replace(SMALL, poses=3 * SMALL.poses), HEIGHT, scans=1)
 
     def fan(prediction):
-        return next(row.u_mm for row in prediction.budget if row.source == FAN_CALIBRATION)
+        return next(row.u_mm for row in prediction.budget if row.source == Cause.FAN_CALIBRATION)
 
     assert fan(many) < 0.75 * fan(base)
     assert many.u_mm < base.u_mm
@@ -129,7 +129,7 @@ def test_what_may_change_after_the_calibration_is_a_row_of_the_plan_and_a_check_
     checked = unstated.predict(replace(SMALL, check_poses=3), HEIGHT)
 
     def change(prediction):
-        return sum(row.u_mm for row in prediction.budget if row.source == CHANGE_ASSUMED)
+        return sum(row.u_mm for row in prediction.budget if row.source == Cause.CHANGE_ASSUMED)
 
     assert not change(base), "of a rig that nothing changes"
     assert 0.02 < change(unchecked) < 0.1

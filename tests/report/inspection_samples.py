@@ -7,11 +7,11 @@ from datetime import UTC, datetime, timedelta
 import numpy as np
 from PIL import Image
 
+from core.inspect.causes import cause_named
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.gauge import RULE
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import Message
 from core.report.content import CalibrationMark, Deviations
 from core.report.template import ReportTemplate

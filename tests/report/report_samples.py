@@ -10,8 +10,8 @@ import numpy as np
 from core.calibrate.results import CameraCalibration, FanCalibration, PlanePose, ViewQuality
 from core.image.stripes.centreline import Centreline
 from core.image.targets.target_view import TargetView
+from core.inspect.causes import cause_named
 from core.inspect.results import Contribution, Face, GaugeResult
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import Message, plain
 from core.model import Camera, Fan, LightPlane, Pose
 from core.report.content import Overlay, RepeatLine, ReportContent

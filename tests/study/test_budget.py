@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from core.inspect.causes import cause_named
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain
 from core.study.budget import add_up
 

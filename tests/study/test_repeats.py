@@ -5,8 +5,8 @@ import math
 import numpy as np
 import pytest
 
+from core.inspect.causes import Cause
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import CAMERA, OBSERVED, POINT_NOISE, SWEEP_PLANES
 from core.study.budget import from_budgets, from_stated
 from core.study.repeats import RepeatStatistics, Requirement, histogram, repeat_statistics, repeat_study, run_chart
 
@@ -108,28 +108,32 @@ def test_scatter_alone_proves_nothing_because_what_is_common_is_not_in_it():
 
 
 def test_what_is_common_to_all_repeats_does_not_average_out_and_their_own_noise_does():
-    budget = (Contribution(CAMERA, 0.003), Contribution(POINT_NOISE, 0.02), Contribution(SWEEP_PLANES, 0.01))
+    budget = (
+        Contribution(Cause.CAMERA, 0.003),
+        Contribution(Cause.POINT_NOISE, 0.02),
+        Contribution(Cause.SWEEP_PLANES, 0.01),
+    )
     rng = np.random.default_rng(0)
     values = rng.normal(50, math.hypot(0.02, 0.01) / 2, 100)  # no more scatter than stated
     rows = {row.source: row for row in from_budgets(values, [budget] * 100).rows}
-    assert rows.keys() == {CAMERA, POINT_NOISE, SWEEP_PLANES}
-    assert rows[CAMERA].u_mm == pytest.approx(0.003)
-    assert rows[POINT_NOISE].u_mm == pytest.approx(0.002)
-    assert rows[SWEEP_PLANES].u_mm == pytest.approx(0.001)
+    assert rows.keys() == {Cause.CAMERA, Cause.POINT_NOISE, Cause.SWEEP_PLANES}
+    assert rows[Cause.CAMERA].u_mm == pytest.approx(0.003)
+    assert rows[Cause.POINT_NOISE].u_mm == pytest.approx(0.002)
+    assert rows[Cause.SWEEP_PLANES].u_mm == pytest.approx(0.001)
 
 
 def test_scatter_above_the_stated_noise_takes_its_place():
-    budget = (Contribution(CAMERA, 0.003), Contribution(POINT_NOISE, 0.006))
+    budget = (Contribution(Cause.CAMERA, 0.003), Contribution(Cause.POINT_NOISE, 0.006))
     values = 50 + 0.01 * np.array([-1, 1, -1, 1, -1, 1, -1, 1]) * math.sqrt(7 / 8)  # s is 0.01
     found = from_budgets(values, [budget] * 8)
-    assert [row.source for row in found.rows] == [CAMERA, OBSERVED]
+    assert [row.source for row in found.rows] == [Cause.CAMERA, Cause.OBSERVED]
     assert (found.rows[1].point_mm, found.rows[1].dof) == (pytest.approx(0.01), 7)
     assert found.u == pytest.approx(math.sqrt(0.003**2 + 0.01**2 / 8))
     assert found.value == pytest.approx(50)
 
 
 def test_budgets_that_differ_from_scan_to_scan_enter_by_their_quadratic_mean():
-    found = from_budgets([1.0, 1.0], [(Contribution(CAMERA, 0.3),), (Contribution(CAMERA, 0.4, dof=5),)])
+    found = from_budgets([1.0, 1.0], [(Contribution(Cause.CAMERA, 0.3),), (Contribution(Cause.CAMERA, 0.4, dof=5),)])
     assert found.rows[0].u_mm == pytest.approx(math.sqrt((0.09 + 0.16) / 2))
     assert found.rows[0].dof == 5
 
@@ -143,7 +147,7 @@ def test_one_value_of_unknown_uncertainty_has_no_budget():
 @pytest.mark.parametrize("actual", [0.008, 0.015])
 def test_U_of_the_mean_holds_the_truth_in_95_of_100_series_whether_or_not_the_noise_is_as_stated(actual):
     rng = np.random.default_rng(4)
-    budget = (Contribution(CAMERA, 0.004), Contribution(POINT_NOISE, 0.008))
+    budget = (Contribution(Cause.CAMERA, 0.004), Contribution(Cause.POINT_NOISE, 0.008))
     held = []
     for _ in range(2000):
         values = 50 + 0.004 * rng.normal() + actual * rng.normal(size=5)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from core.errors import WrongValue
+from core.inspect.causes import Cause
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import CAMERA, POINT_NOISE
 from core.study.series import StatedUncertainty, series_study, stated_uncertainty
 from core.study.series_chart import FEWEST_POINTS
 from tests.study.spc_tables import FLOW_RATES, PISTON_RINGS
@@ -62,7 +62,7 @@ def test_a_drift_shows_in_ppk_and_not_in_cpk():
 
 
 def test_the_uncertainty_has_its_share_in_the_scatter_and_in_the_interval():
-    rows = (Contribution(POINT_NOISE, 0.003), Contribution(CAMERA, 0.004))
+    rows = (Contribution(Cause.POINT_NOISE, 0.003), Contribution(Cause.CAMERA, 0.004))
     stated = stated_uncertainty([0.005] * 100, [rows] * 100)
     assert (stated.own, stated.whole, stated.common) == pytest.approx((0.003, 0.005, 0.004))
     bare, study = series_study(steady(), (49.96, 50.04)), series_study(steady(), (49.96, 50.04), stated=stated)

@@ -8,8 +8,8 @@ import pytest
 
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
+from core.inspect.causes import Cause
 from core.inspect.results import Contribution, Face, GaugeResult
-from core.inspect.uncertainty.causes import CAMERA, SWEEP_PLANES
 from core.model import LightPlane
 from tests.inspect.fit.test_round import RADIUS, scan
 from tests.simulated import trisect
@@ -33,7 +33,7 @@ def results(folder, thickness, u=0.01, budget=None, complete=True):
     """A folder as `trisect run` leaves it, as far as a study reads it."""
     folder.mkdir()
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), NO_POINTS, np.empty(0), 0.01, 0.01)
-    rows = (Contribution(CAMERA, u),) if budget is None else budget
+    rows = (Contribution(Cause.CAMERA, u),) if budget is None else budget
     gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, complete=complete)
     write_gauge(folder / "gauge.json", gauge, "abc")
     return folder
@@ -86,8 +86,8 @@ def test_a_repeat_of_a_rig_that_surely_changed_takes_its_proof_from_the_mean(tmp
 
 def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tmp_path):
     budget = (
-        Contribution(CAMERA, 0.006),
-        Contribution(SWEEP_PLANES, 0.008),
+        Contribution(Cause.CAMERA, 0.006),
+        Contribution(Cause.SWEEP_PLANES, 0.008),
     )
     folders = [results(tmp_path / f"scan{n}", value, 0.01, budget) for n, value in enumerate((50.01, 50.02, 50.03))]
     said = trisect("study", "repeats", *folders, "--json")
@@ -273,7 +273,7 @@ def test_a_series_has_charts_indices_and_the_point_that_breaks_a_rule(tmp_path):
 
 
 def test_a_series_of_results_and_projects_takes_their_limits_and_budgets(tmp_path):
-    rows = (Contribution(CAMERA, 0.008), Contribution(SWEEP_PLANES, 0.006))
+    rows = (Contribution(Cause.CAMERA, 0.008), Contribution(Cause.SWEEP_PLANES, 0.006))
     values = 50 + 0.02 * np.random.default_rng(4).standard_normal(21)
     folders = []
     for n, value in enumerate(values):

@@ -8,10 +8,10 @@ from core.errors import InputError
 from core.files.atomic import write_text
 from core.files.json_text import to_json
 from core.files.study.results import measured_in
+from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.conditions import Temperature
 from core.inspect.plan.temperature import at_reference
-from core.inspect.uncertainty.causes import PART_EXPANSION
 from core.study.budget import add_up
 
 
@@ -55,6 +55,6 @@ def test_a_name_that_is_not_there_is_told_with_those_that_are(tmp_path):
 def test_temperature_enters_the_budget_with_its_value_and_its_sensitivity():
     hot = Temperature(part_celsius=30.0, u_part_celsius=0.5, alpha=11.5e-6, u_alpha=1e-6)
     rows = {one.source: one for one in at_reference(Characteristic("bar", "thickness", 100.0, 0.001), hot).budget}
-    expansion = rows[PART_EXPANSION]
+    expansion = rows[Cause.PART_EXPANSION]
     assert (expansion.value, expansion.point_mm, expansion.unit) == (11.5e-6, 1e-6, "1/K")
     assert expansion.sensitivity == pytest.approx(100.0 * 10)  # mm per 1/K: L θ

@@ -118,7 +118,7 @@ def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
     return [
         {
             "characteristic": one.name,
-            "source": str(row.source),
+            "source": str(row.words),
             "value": row.value,
             "input_unit": row.unit,
             "distribution": row.distribution,

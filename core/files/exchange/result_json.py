@@ -50,7 +50,7 @@ def result_tables(content: ReportContent) -> dict[str, Any]:
                 "notes": [as_json(note) for note in one.notes],
                 "budget": [
                     {key: value for key, value in row.items() if key != "characteristic"}
-                    | {"source": as_json(cause.source)}
+                    | {"source": as_json(cause.words)}
                     for row, cause in zip(budget_rows(one), one.budget, strict=True)
                 ],
             }

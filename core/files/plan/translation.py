@@ -19,6 +19,7 @@ from core.files.plan.tables import (
     SectionTable,
     TemperatureTable,
 )
+from core.inspect.causes import Cause, cause_named
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_kind import ResultKind
@@ -39,7 +40,6 @@ from core.inspect.plan.feature_spec import (
 )
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import results_of
-from core.inspect.uncertainty.causes import MASTER_MEASURED, cause_named
 from core.messages import Message
 
 
@@ -268,7 +268,7 @@ def master_of(table: MasterTable, path: Path) -> Master:
             )
         row = rows[table.characteristic]
         rows_of = tuple((one.source, one.u_mm) for one in row.budget)
-        measured, budget = row.value, rows_of or ((MASTER_MEASURED, row.u),)
+        measured, budget = row.value, rows_of or ((Cause.MASTER_MEASURED, row.u),)
     assert measured is not None  # one of the two, says the table
     return Master(
         name=table.name,

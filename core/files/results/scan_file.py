@@ -35,7 +35,7 @@ from core.files.arrays_file import (
 from core.findings.proof import ScanFacts
 from core.image.exclusion import known_exclusion
 from core.image.stripes.stripe import StripeSettings
-from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.causes import CALIBRATIONS
 from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors

@@ -106,7 +106,7 @@ def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
 def row_values(row: Contribution) -> dict[str, Any]:
     """A row of a budget; `u_input` in `unit`, `contribution` in the result's."""
     return {
-        "source": kept(row.source),
+        "source": kept(row.words),
         "value": row.value,
         "unit": row.unit,
         "distribution": row.distribution,

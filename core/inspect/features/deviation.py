@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
@@ -17,7 +18,6 @@ from core.inspect.plan.feature_spec import Deviation, FeatureSpec
 from core.inspect.results import Contribution
 from core.inspect.shown.deviation_map import DeviationMap
 from core.inspect.uncertainty.budget import budget
-from core.inspect.uncertainty.causes import FACETS, SAMPLING
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import patches
 from core.messages import Message
@@ -143,11 +143,12 @@ def _characteristics(
     sampled = {"profile": u_of_quantiles(size, (LARGEST,), (2.0,), stripe), "mean": _u_of_mean(deviation, stripe)}
     for name in ("profile", "mean") if fitted else ("profile",):  # what is common to the stripes the alignment takes
         own = [row for row in rows[name] if row.source in calibrations]
-        rows[name] = (Contribution(SAMPLING, sampled[name]), *own)
+        rows[name] = (Contribution(Cause.SAMPLING, sampled[name]), *own)
     if spec.deviation is not None and (chord_mm := scene.nominals[spec.deviation.nominal].chord_mm):
         u_mm = chord_mm / np.sqrt(3)  # anything within it, to either side
         rows = {
-            name: (*rows[name], Contribution(FACETS, times * u_mm)) for name, times in (("profile", 2), ("mean", 1))
+            name: (*rows[name], Contribution(Cause.FACETS, times * u_mm))
+            for name, times in (("profile", 2), ("mean", 1))
         }
     profile = Message(
         "feature.rule_profile", "twice the deviation from the nominal surface that 95 % of the points do not exceed"

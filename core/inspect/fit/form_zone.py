@@ -28,10 +28,10 @@ from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.spatial.distance import cdist
 
+from core.inspect.causes import Cause
 from core.inspect.fit.generalised import SILENT_SD, SMALLEST_FORM_MM, Generalised
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
-from core.inspect.uncertainty.causes import FORM_NOISE, FORM_SMOOTHED
 from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
 from core.model.directions import square_to
@@ -100,7 +100,7 @@ def form_zone(
     pattern = to_places @ (of_field @ misfit)
     seen = max(float(np.ptp(pattern)), 1e-12)
     value, farthest = _zone(seen, predict @ (field @ (of_field @ misfit)) / seen, predict @ _drawn(sources, fit))
-    rows = Contribution(FORM_NOISE, farthest / 2), Contribution(FORM_SMOOTHED, SMOOTHED * value)
+    rows = Contribution(Cause.FORM_NOISE, farthest / 2), Contribution(Cause.FORM_SMOOTHED, SMOOTHED * value)
     return FormZone(value, rows, length)
 
 

@@ -18,11 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.fit.plane_search import POINT_CLOUD, above_table, search_tolerance
 from core.inspect.fit.shapes import Cylinder, Sphere, nearest_to
 from core.inspect.fit.surface_fit import SurfaceFit
 from core.inspect.uncertainty.budget import Effect
-from core.inspect.uncertainty.causes import UNEVEN_LIGHT
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message
 from core.model.arrays import Array
@@ -253,7 +253,7 @@ def with_uneven_light(fit: SurfaceFit[Round], cloud: Cloud, errors: PointErrors)
     width = errors.stripe_px * pixel_angle(used.points, used.uv) * float(np.median(used.points[:, 2]))
     at_flank = SECTION * width**2 / fit.shape.radius
     grown = at_flank / max(1 - float(np.quantile(cosine, 0.05)), LEAST_SEEN)
-    effect = Effect(UNEVEN_LIGHT, grown * _follow(fit.shape)[:, None], shared=False, point_mm=at_flank)
+    effect = Effect(Cause.UNEVEN_LIGHT, grown * _follow(fit.shape)[:, None], shared=False, point_mm=at_flank)
     return replace(fit, effects=(*fit.effects, effect))
 
 

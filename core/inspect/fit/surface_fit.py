@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.fit.form_zone import FormZone, form_zone
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.fit.plane_fit import LARGEST_WEIGHT
@@ -32,7 +33,6 @@ from core.inspect.fit.simpler_shape import flat_points
 from core.inspect.fit.spanned import spanned
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import Effect, budget_of, effects
-from core.inspect.uncertainty.causes import SAMPLING
 from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.messages import Message
@@ -236,7 +236,7 @@ def range_of(cloud: Cloud, heights: Array, cell_mm: float = 0.0) -> Range:
         near = np.where((np.abs(ranks - end) <= NEAR / 2)[cell], share, 0.0)
         weight += sign * near / max(float(near.sum()), 1e-12)
     group = np.arange(len(values)) if cell_mm > 0 else np.unique(cloud.sweep, return_inverse=True)[1]
-    sampling = Contribution(SAMPLING, u_of_quantiles(values, (TAIL, 1 - TAIL), (-1.0, 1.0), group))
+    sampling = Contribution(Cause.SAMPLING, u_of_quantiles(values, (TAIL, 1 - TAIL), (-1.0, 1.0), group))
     return Range(float(high - low), weight, sampling, len(values))
 
 

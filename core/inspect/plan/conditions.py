@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from core.messages import Message
+from core.inspect.causes import Source
 
 REFERENCE_C = 20.0
 """The temperature that lengths on drawings are meant at (ISO 1)."""
@@ -57,6 +57,6 @@ class Master:
     certified_mm: float
     u_certified_mm: float
     measured_mm: float
-    budget: tuple[tuple[Message, float], ...]
+    budget: tuple[tuple[Source, float], ...]
     features: tuple[str, ...] = ()
     same_calibration: bool = True

@@ -23,25 +23,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 from core.findings.table import note_of
+from core.inspect.causes import CALIBRATIONS, OF_TARGET, Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
 from core.inspect.plan.kinds import expanding
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
-from core.inspect.uncertainty.causes import (
-    CALIBRATIONS,
-    CERTIFICATE,
-    MASTER_MEASURED,
-    OF_TARGET,
-    PART_EXPANSION,
-    PART_EXPANSION_ASSUMED,
-    PART_TEMPERATURE,
-    PART_TEMPERATURE_ASSUMED,
-    SCALE_EXPANSION,
-    SCALE_EXPANSION_ASSUMED,
-    SCALE_TEMPERATURE,
-    SCALE_TEMPERATURE_ASSUMED,
-)
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message
 
@@ -136,10 +123,10 @@ def with_scale(temperature: Temperature, target: TargetTemperature) -> Temperatu
 def temperature_contributions(length_mm: float, temperature: Temperature) -> tuple[Contribution, ...]:
     """What the temperatures and coefficients contribute to the uncertainty of a length at 20 °C; no zero rows."""
     part, scale = temperature.part_celsius - REFERENCE_C, temperature.scale_celsius - REFERENCE_C
-    of_celsius = PART_TEMPERATURE_ASSUMED if temperature.celsius_assumed else PART_TEMPERATURE
-    of_alpha = PART_EXPANSION_ASSUMED if temperature.alpha_assumed else PART_EXPANSION
-    of_scale = SCALE_TEMPERATURE_ASSUMED if temperature.scale_celsius_assumed else SCALE_TEMPERATURE
-    of_scale_alpha = SCALE_EXPANSION_ASSUMED if temperature.scale_alpha_assumed else SCALE_EXPANSION
+    of_celsius = Cause.PART_TEMPERATURE_ASSUMED if temperature.celsius_assumed else Cause.PART_TEMPERATURE
+    of_alpha = Cause.PART_EXPANSION_ASSUMED if temperature.alpha_assumed else Cause.PART_EXPANSION
+    of_scale = Cause.SCALE_TEMPERATURE_ASSUMED if temperature.scale_celsius_assumed else Cause.SCALE_TEMPERATURE
+    of_scale_alpha = Cause.SCALE_EXPANSION_ASSUMED if temperature.scale_alpha_assumed else Cause.SCALE_EXPANSION
     rows = (
         (of_celsius, temperature.part_celsius, temperature.u_part_celsius, temperature.alpha, "°C"),
         (of_alpha, temperature.alpha, temperature.u_alpha, part, "1/K"),
@@ -187,6 +174,8 @@ def _difference(budget: Sequence[Contribution], master: Master) -> tuple[Contrib
         cancels = row.source in cancelling
         rows.append(replace(row, u_mm=abs(row.u_mm - of_master.get(row.source, 0.0))) if cancels else row)
     measured = math.hypot(*own) if own else 0.0
-    rows.append(Contribution(MASTER_MEASURED, measured, measured, value=master.measured_mm))
-    rows.append(Contribution(CERTIFICATE, master.u_certified_mm, master.u_certified_mm, value=master.certified_mm))
+    rows.append(Contribution(Cause.MASTER_MEASURED, measured, measured, value=master.measured_mm))
+    rows.append(
+        Contribution(Cause.CERTIFICATE, master.u_certified_mm, master.u_certified_mm, value=master.certified_mm)
+    )
     return tuple(rows)

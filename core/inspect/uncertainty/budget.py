@@ -29,10 +29,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from core.inspect.causes import Cause, Source
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import FAN_SPECKLE, FORM, POINT_NOISE, SKEWED_LIGHT, SWEEP_PLANES
 from core.inspect.uncertainty.error_sources import Sources
-from core.messages import Message
 from core.model.arrays import Array
 
 UNKNOWNS = 4
@@ -63,7 +62,7 @@ class Effect:
         Degrees of freedom of all this.
     """
 
-    source: Message
+    source: Source
     factor: Array
     shared: bool
     point_mm: float
@@ -76,7 +75,7 @@ def budget(
     *,
     own: Array | None = None,
     form_mm: float = 0.0,
-    calibrations: Sequence[Message] = (),
+    calibrations: Sequence[Source] = (),
 ) -> tuple[Contribution, ...]:
     """What each cause contributes to q.
 
@@ -103,27 +102,27 @@ def effects(
     *,
     own: Array | None = None,
     form_mm: float = 0.0,
-    calibrations: Sequence[Message] = (),
+    calibrations: Sequence[Source] = (),
 ) -> tuple[Effect, ...]:
     """What each cause does to p quantities that follow the stretches' misfits with `gains` (p, J); else as `budget`."""
     own = sources.own if own is None else own
     swept, of_fan = ~sources.of_fan, sources.of_fan
     found = []
     if swept.any():
-        found.append(_noise(POINT_NOISE, gains[:, swept], own[swept]))
+        found.append(_noise(Cause.POINT_NOISE, gains[:, swept], own[swept]))
         if sources.sweeps.shape[1]:
-            found.append(_effect(SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
+            found.append(_effect(Cause.SWEEP_PLANES, gains[:, swept], sources.sweeps[swept], shared=True))
     if sources.speckle.shape[1]:
-        found.append(_effect(FAN_SPECKLE, gains, sources.speckle, shared=True))
+        found.append(_effect(Cause.FAN_SPECKLE, gains, sources.speckle, shared=True))
     if of_fan.any():
-        found.append(_noise(FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
+        found.append(_noise(Cause.FAN_SPECKLE, gains[:, of_fan], own[of_fan]))
     patches = max(sources.form.shape[1] - UNKNOWNS, 1)  # what the form's size was found from
-    found.append(replace(_effect(FORM, gains, form_mm * sources.form, shared=False), dof=float(patches)))
+    found.append(replace(_effect(Cause.FORM, gains, form_mm * sources.form, shared=False), dof=float(patches)))
     for source in dict.fromkeys(calibrations):
         mine = np.array([one == source for one in calibrations])
         found.append(_effect(source, gains, sources.common[:, mine], shared=True))
     if sources.behind.any():
-        found.append(_effect(SKEWED_LIGHT, gains, sources.behind[:, None] / 2, shared=True))
+        found.append(_effect(Cause.SKEWED_LIGHT, gains, sources.behind[:, None] / 2, shared=True))
     if sources.below.any():
         found.append(_effect(sources.cause_below, gains, sources.below, shared=False))
     return tuple(found)
@@ -155,14 +154,14 @@ def budget_of(parts: Sequence[tuple[Array, Sequence[Effect]]]) -> tuple[Contribu
     return tuple(rows)
 
 
-def _noise(source: Message, gains: Array, own: Array) -> Effect:
+def _noise(source: Source, gains: Array, own: Array) -> Effect:
     """Of noise independent between stretches: any root of its covariance does."""
     scaled = gains * own
     values, vectors = np.linalg.eigh(scaled @ scaled.T)
     return Effect(source, vectors * np.sqrt(np.maximum(values, 0.0)), shared=False, point_mm=float(np.median(own)))
 
 
-def _effect(source: Message, gains: Array, acting: Array, *, shared: bool) -> Effect:
+def _effect(source: Source, gains: Array, acting: Array, *, shared: bool) -> Effect:
     """Of n independent unit causes, `acting` (J, n) on the stretches."""
     typical = float(np.median(np.sqrt((acting**2).sum(axis=1))))
     return Effect(source, gains @ acting, shared, typical)

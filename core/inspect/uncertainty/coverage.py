@@ -67,8 +67,9 @@ def student_factor(k: float, contributions: Iterable[Contribution]) -> float:
 
     Examples
     --------
-    >>> from core.inspect.uncertainty.causes import CAMERA
-    >>> student_factor(2.0, [Contribution(CAMERA, 0.1)]), student_factor(2.0, [Contribution(CAMERA, 0.1, dof=10)])
+    >>> from core.inspect.causes import Cause
+    >>> known, rough = Contribution(Cause.CAMERA, 0.1), Contribution(Cause.CAMERA, 0.1, dof=10)
+    >>> student_factor(2.0, [known]), student_factor(2.0, [rough])
     (2.0, 2.28)
     """
     dof = effective_dof(contributions)

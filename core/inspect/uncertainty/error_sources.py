@@ -22,10 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import LAWLESS, UNMEASURED
-from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED
+from core.inspect.causes import Cause
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import light_below
-from core.messages import Message
 from core.model.arrays import Array
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import Cloud
@@ -58,7 +57,7 @@ class Sources:
     below: Array  # (J, faces) what light from below each face does that nothing excludes
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
     assumed: NDArray[np.bool_]  # (K,) common errors whose size nothing has measured
-    cause_below: Message  # what the row of `below` is called
+    cause_below: Cause  # what the row of `below` is called
 
     @property
     def explained(self) -> Array:
@@ -142,7 +141,9 @@ class Sources:
             (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
             np.array([source in LAWLESS for source in errors.sources], dtype=np.bool_),
             np.array([source in UNMEASURED for source in errors.sources], dtype=np.bool_),
-            LIGHT_FROM_BELOW_ASSUMED if errors.part is None or errors.part.material is None else LIGHT_FROM_BELOW,
+            Cause.LIGHT_FROM_BELOW_ASSUMED
+            if errors.part is None or errors.part.material is None
+            else Cause.LIGHT_FROM_BELOW,
         )
 
     def mean(self, values: Array) -> Array:

@@ -17,8 +17,8 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from core.findings.table import note_of
+from core.inspect.causes import Cause
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import PART_OFFSET, SPRAY, SPRAY_ASSUMED
 from core.messages import Field, Message
 
 SUSPECTED_CELSIUS, SUSPECTED_CELSIUS_SD = 20.0, 3.0
@@ -168,9 +168,9 @@ class Part:
     @property
     def surface_rows(self) -> tuple[Contribution, ...]:
         """What the offset and the layer of spray contribute to the uncertainty of a thickness; no zero rows."""
-        rows = [(PART_OFFSET, self.offset_sd_mm, self.offset_mm), (SPRAY, self.spray_sd_mm, self.spray_mm)]
+        rows = [(Cause.PART_OFFSET, self.offset_sd_mm, self.offset_mm), (Cause.SPRAY, self.spray_sd_mm, self.spray_mm)]
         if self.material == "sprayed" and self.spray_mm is None:
-            rows.append((SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
+            rows.append((Cause.SPRAY_ASSUMED, SUSPECTED_LAYER_MM, 0.0))
         return tuple(Contribution(source, u, u, value=value) for source, u, value in rows if u)
 
     @property

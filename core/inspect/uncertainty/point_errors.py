@@ -20,7 +20,7 @@ from core.calibrate.deviations import FANS, UNEXPLAINED, Source
 from core.findings.proof import SIZE_UNCONFIRMED, ScanFacts
 from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
-from core.inspect.uncertainty.causes import CALIBRATIONS
+from core.inspect.causes import CALIBRATIONS, Cause
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
 from core.model.arrays import Array
@@ -118,7 +118,7 @@ class PointErrors:
         return cls(common=common, speckle_px=_correlation_px(pieces), swept=False)
 
     @property
-    def calibrations(self) -> tuple[Message, ...]:
+    def calibrations(self) -> tuple[Cause, ...]:
         """(K,) which calibration each of the common errors comes from; none where they are not known."""
         return tuple(CALIBRATIONS[source] for source in self.sources)
 

@@ -31,8 +31,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.findings.table import note_of
+from core.inspect.causes import FROM_BELOW, Cause
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
 from core.inspect.uncertainty.coverage import COVERAGE
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
@@ -179,8 +179,8 @@ def light_below(cloud: Cloud, part: NDArray[np.int64], direction: Array, stated:
 
 def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:
     """Why a value with this budget proves nothing, if skewed light makes up much of it."""
-    skewed = [row.u_mm for row in budget if row.source == SKEWED_LIGHT]
-    rest = [row.u_mm for row in budget if row.source not in (SKEWED_LIGHT, LIGHT_FROM_BELOW, LIGHT_FROM_BELOW_ASSUMED)]
+    skewed = [row.u_mm for row in budget if row.source is Cause.SKEWED_LIGHT]
+    rest = [row.u_mm for row in budget if row.source not in {Cause.SKEWED_LIGHT, *FROM_BELOW}]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
         return None
     return note_of("inspection.light_is_skewed")

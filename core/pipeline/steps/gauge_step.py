@@ -13,10 +13,10 @@ from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import ScanFile, read_scan
 from core.findings.table import note_of
+from core.inspect.causes import CHANGES
 from core.inspect.gauge import adjusted, measure_gauge
 from core.inspect.plan.temperature import correction_to_reference, temperature_of
 from core.inspect.results import GaugeResult
-from core.inspect.uncertainty.causes import CHANGE, CHANGE_ASSUMED, CHANGE_CHARTED
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
@@ -90,9 +90,7 @@ def of_part(gauge: GaugeResult, part: Part) -> GaugeResult:
 
 def notes_on_unchecked(gauge: GaugeResult) -> tuple[Message, ...]:
     """A note on a rig that was not checked on the day, if U is much the larger by what may have changed."""
-    change = max(
-        (row.u_mm for row in gauge.budget if row.source in (CHANGE, CHANGE_ASSUMED, CHANGE_CHARTED)), default=0.0
-    )
+    change = max((row.u_mm for row in gauge.budget if row.source in CHANGES), default=0.0)
     if MATTERS**2 * (gauge.u_mm**2 - change**2) >= gauge.u_mm**2:
         return ()
     return (note_of("inspection.rig_not_checked", part_mm=gauge.k * change, U_mm=gauge.U_mm),)

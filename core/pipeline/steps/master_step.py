@@ -7,9 +7,9 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.project.folder import is_project, read_project, results_folder, results_in
 from core.files.results.folder_results import read_results
+from core.inspect.causes import Cause
 from core.inspect.plan.conditions import Master
 from core.inspect.plan.temperature import expands
-from core.inspect.uncertainty.causes import MASTER_MEASURED
 from core.messages import Message
 from core.pipeline.steps.workspace import read_calibration
 from core.progress import Progress, silent
@@ -55,4 +55,4 @@ def measured_master(
         name = " ".join(part for part in (info.part or info.name, info.serial) if part) or name
     same = project is None or read_calibration(results).id == read_calibration(results_folder(project)).id
     budget = tuple((one.source, one.u_mm) for one in row.budget)
-    return Master(name, certified, 0.0, row.value, budget or ((MASTER_MEASURED, row.u),), (), same)
+    return Master(name, certified, 0.0, row.value, budget or ((Cause.MASTER_MEASURED, row.u),), (), same)

@@ -141,7 +141,7 @@ def _prediction(prediction: Prediction) -> dict[str, Any]:
         "u_mm": prediction.u_mm,
         "U_mm": prediction.U_mm,
         "k": prediction.k,
-        "budget": [{"source": as_json(row.source), "u_mm": row.u_mm} for row in prediction.budget],
+        "budget": [{"source": as_json(row.words), "u_mm": row.u_mm} for row in prediction.budget],
         "sigma_own_mm": float(np.nanmedian(prediction.sigma.own)),
         "sigma_common_mm": float(np.nanmedian(prediction.sigma.common)),
         "sweeps_used": prediction.sweeps_used,

@@ -43,7 +43,7 @@ def _bound(bound: Bound, words: Words) -> str:
 def _budget(prediction: Prediction, words: Words) -> str:
     largest = sorted(prediction.budget, key=lambda row: -row.u_mm)
     return ", ".join(
-        words("{source} {u:.3f} mm", source=words(row.source), u=row.u_mm)
+        words("{source} {u:.3f} mm", source=words(row.words), u=row.u_mm)
         for row in largest
         if row.u_mm >= 0.1 * prediction.u_mm
     )

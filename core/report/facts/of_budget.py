@@ -31,7 +31,7 @@ def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
     digits = _digits(one)
     root = label("Root of the sum of squares of all rows (k = 1)")
     about_U = Message("told.expanded", "expanded uncertainty U = k·u, k = {k:g}", k=one.k)
-    contributions = (replace(_contribution(one, row), label=row.source) for row in one.budget)
+    contributions = (replace(_contribution(one, row), label=row.words) for row in one.budget)
     return (
         *contributions,
         Fact(label("combined standard uncertainty u"), factor * one.u, unit, digits, root),

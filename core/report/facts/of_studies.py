@@ -288,7 +288,7 @@ def _contributions(budget: UncertaintyBudget) -> FactTable:
         Column("u", budget.unit, max(decimals_of(budget.u), LEAST_DIGITS), label("Standard uncertainty (k = 1)")),
         Column(label("share of u²"), "%", 1, label("Share of the whole variance")),
     )
-    cells = tuple((row.source, row.u_mm, 100 * budget.share(row)) for row in rows)
+    cells = tuple((row.words, row.u_mm, 100 * budget.share(row)) for row in rows)
     return FactTable(columns, cells, level=Reader.AUDITOR)
 
 

@@ -3,10 +3,10 @@ from dataclasses import replace
 
 import pytest
 
+from core.inspect.causes import cause_named
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain
 from tests.report.report_samples import block_content
 

@@ -6,6 +6,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.plan.plan_file import read_plan, write_plan
+from core.inspect.causes import Cause
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import (
@@ -23,7 +24,6 @@ from core.inspect.plan.feature_spec import (
     Section,
 )
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.uncertainty.causes import CAMERA
 
 SQUARE = Polygon(((800.0, 500.0), (1100.5, 500.0), (950.0, 800.0)))
 EVERYTHING = InspectionPlan(
@@ -55,7 +55,7 @@ EVERYTHING = InspectionPlan(
     ),
     frame=PartFrame("top", "side", "ball"),
     temperature=Temperature(22.0, 0.5, 11.5e-6, 1e-6),
-    master=Master("M50", 50.0001, 0.0001, 50.02, ((CAMERA, 0.01),), ("block",)),
+    master=Master("M50", 50.0001, 0.0001, 50.02, ((Cause.CAMERA, 0.01),), ("block",)),
     k=2.5,
 )
 

@@ -23,8 +23,8 @@ from core.files.results.scan_file import ScanFile, read_scan, write_scan
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings
 from core.image.targets.target_view import TargetView
+from core.inspect.causes import cause_named
 from core.inspect.results import Contribution, PairCandidate
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import Message, plain
 from core.model import Camera
 from core.scan.common_errors import CommonErrors

@@ -8,8 +8,8 @@ import pytest
 
 from core.errors import InputError
 from core.files.study.study_file import read_study, study_values, write_study
+from core.inspect.causes import cause_named
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import cause_named
 from core.study.acceptance import Reading, acceptance_check
 from core.study.budget import from_budgets
 from core.study.grr import grr_study

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.inspect.causes import Cause
 from core.inspect.fit.round import find_sphere
-from core.inspect.uncertainty.causes import UNEVEN_LIGHT
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.surface.cloud import Cloud
 from tests.inspect.block_scan import CENTRE, FOCAL
@@ -89,6 +89,6 @@ def test_wide_light_on_a_ball_makes_its_radius_less_sure_by_its_square():
     cloud, on = scan(np.random.default_rng(3))
     indices = np.flatnonzero(on)
     narrow, wide = (fit_sphere(cloud, indices, errors=PointErrors(stripe_px=width)) for width in (1.5, 3.0))
-    share = [next(row.u_mm for row in fit.budget if row.source == UNEVEN_LIGHT) for fit in (narrow, wide)]
+    share = [next(row.u_mm for row in fit.budget if row.source == Cause.UNEVEN_LIGHT) for fit in (narrow, wide)]
     assert share[1] == pytest.approx(4 * share[0])
     assert wide.u_mm > narrow.u_mm > fit_sphere(cloud, indices, errors=PointErrors()).u_mm

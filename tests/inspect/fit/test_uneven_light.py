@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.inspect.causes import Cause
 from core.inspect.evaluate import evaluate
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.uncertainty.causes import UNEVEN_LIGHT
 from tests.inspect.test_shape_features import DERIVED, ELEMENTS, SCAN, THROUGH_BALL
 
 
@@ -20,7 +20,7 @@ def shares():
     inspection = evaluate(plan, SCAN.measure(np.random.default_rng(2)), errors=errors)
     assert inspection.problems == ()
     return {
-        row.name: sum(part.u_mm for part in row.budget if part.source == UNEVEN_LIGHT)
+        row.name: sum(part.u_mm for part in row.budget if part.source == Cause.UNEVEN_LIGHT)
         for row in inspection.characteristics
     }
 

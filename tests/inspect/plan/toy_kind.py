@@ -3,13 +3,13 @@
 import numpy as np
 import pytest
 
+from core.inspect.causes import cause_named
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import points_in
 from core.inspect.plan import kinds
 from core.inspect.plan.feature_kind import FeatureKind, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import cause_named
 from core.messages import plain
 
 TOY = FeatureKind(

@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.inspect.causes import Cause
 from core.inspect.fit.generalised import generalised_fit
 from core.inspect.uncertainty.budget import budget, combined
-from core.inspect.uncertainty.causes import CAMERA, FAN_SPECKLE, FORM, POINT_NOISE, SWEEP_PLANES
 from core.inspect.uncertainty.error_sources import Sources
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.common_errors import CommonErrors
@@ -38,25 +38,25 @@ def u_of(rows):
 
 def test_noise_correlated_over_a_stretch_averages_over_stretches():
     rows = u_of(mean_depth(stripe_cloud(0), PointErrors(correlation_px=10.0)))
-    assert FAN_SPECKLE not in rows
-    assert rows[POINT_NOISE] == pytest.approx(0.02 / np.sqrt(10), rel=0.06)
+    assert Cause.FAN_SPECKLE not in rows
+    assert rows[Cause.POINT_NOISE] == pytest.approx(0.02 / np.sqrt(10), rel=0.06)
     rows = u_of(mean_depth(stripe_cloud(0), PointErrors(correlation_px=0.5)))
-    assert rows[POINT_NOISE] == pytest.approx(0.02 / np.sqrt(100), rel=1e-3)
+    assert rows[Cause.POINT_NOISE] == pytest.approx(0.02 / np.sqrt(100), rel=1e-3)
 
 
 def test_fan_points_have_their_own_length():
     rows = u_of(mean_depth(stripe_cloud(FAN - 1), PointErrors(correlation_px=1.0, speckle_px=25.0)))
-    assert rows[FAN_SPECKLE] == pytest.approx(0.02 / np.sqrt(4), rel=0.12)
-    assert POINT_NOISE not in rows
+    assert rows[Cause.FAN_SPECKLE] == pytest.approx(0.02 / np.sqrt(4), rel=0.12)
+    assert Cause.POINT_NOISE not in rows
 
 
 def test_sweep_planes_are_carried_with_their_covariance():
     covariance = np.zeros((6, 6))
     covariance[5, 5] = 1e-14  # π_z of sweep 1: δz = −z² δπ_z, common to all of its points
     rows = u_of(mean_depth(stripe_cloud(1, sigma=0.03), PointErrors(covariance)))
-    assert rows[SWEEP_PLANES] == pytest.approx(500**2 * 1e-7, rel=1e-6)
+    assert rows[Cause.SWEEP_PLANES] == pytest.approx(500**2 * 1e-7, rel=1e-6)
     rows = u_of(mean_depth(stripe_cloud(0), PointErrors(covariance)))
-    assert rows[SWEEP_PLANES] == 0
+    assert rows[Cause.SWEEP_PLANES] == 0
 
 
 def test_correlated_sweeps_do_not_average_out():
@@ -66,7 +66,7 @@ def test_correlated_sweeps_do_not_average_out():
         covariance = np.zeros((6, 6))
         covariance[2, 2] = covariance[5, 5] = 1e-14
         covariance[2, 5] = covariance[5, 2] = correlation * 1e-14
-        return u_of(mean_depth(both, PointErrors(covariance)))[SWEEP_PLANES]
+        return u_of(mean_depth(both, PointErrors(covariance)))[Cause.SWEEP_PLANES]
 
     assert of_planes(0.0) == pytest.approx(0.025 / np.sqrt(2), rel=1e-6)
     assert of_planes(1.0) == pytest.approx(0.025, rel=1e-6)
@@ -76,7 +76,7 @@ def test_the_planes_share_of_sigma_is_not_counted_twice():
     covariance = np.zeros((3, 3))
     covariance[2, 2] = (0.015 / 500**2) ** 2
     rows = mean_depth(stripe_cloud(0, sigma=0.025), PointErrors(covariance, correlation_px=0.5))
-    assert u_of(rows)[POINT_NOISE] == pytest.approx(0.02 / 10, rel=1e-3)  # √(0.025² − 0.015²) = 0.020
+    assert u_of(rows)[Cause.POINT_NOISE] == pytest.approx(0.02 / 10, rel=1e-3)  # √(0.025² − 0.015²) = 0.020
     assert combined(rows) == pytest.approx(np.hypot(0.002, 0.015), rel=1e-3)
 
 
@@ -97,7 +97,7 @@ def common(*depths):
 
 def test_a_calibrations_displacements_add_in_squares_and_never_average_out():
     rows = u_of(mean_depth(stripe_cloud(0), PointErrors(common=common(0.03, -0.04))))
-    assert rows[CAMERA] == pytest.approx(0.05, rel=1e-6)
+    assert rows[Cause.CAMERA] == pytest.approx(0.05, rel=1e-6)
     assert common(0.03, -0.04).sigma(stripe_cloud(0)) == pytest.approx(np.full(100, 0.05), rel=1e-6)
 
 
@@ -121,7 +121,7 @@ def test_what_is_not_flat_is_found_from_the_residuals():
     design = np.ones((len(sources.own), 1))
     bumpy = generalised_fit(design, sources.mean(noise + bumps[patch]), sources)
     assert bumpy.form_mm == pytest.approx(bumps.std(), rel=0.15)
-    row = u_of(budget(bumpy.gains[0], sources, own=bumpy.own, form_mm=bumpy.form_mm))[FORM]
+    row = u_of(budget(bumpy.gains[0], sources, own=bumpy.own, form_mm=bumpy.form_mm))[Cause.FORM]
     assert row == pytest.approx(0.05 / np.sqrt(50), rel=0.25)
     flat = generalised_fit(design, sources.mean(noise), sources)
     assert flat.form_mm < 0.003

@@ -48,7 +48,7 @@ def gauge_of(scan):
 
 
 def rows(gauge):
-    return {row.source.code.removeprefix("inspection.cause_"): row.u_mm for row in gauge.budget}
+    return {row.words.code.removeprefix("inspection.cause_"): row.u_mm for row in gauge.budget}
 
 
 def test_metal_at_20_degrees_changes_nothing(gauge_of):
@@ -125,9 +125,9 @@ def test_an_inspection_reckons_with_the_part_unless_its_plan_states_a_temperatur
     errors = replace(scan.errors(), part=Part(material="steel"))
     plan = InspectionPlan((FeatureSpec("block", "thickness"),))
     (row,) = evaluate(plan, cloud, errors=errors).characteristics
-    assert "inspection.cause_part_temperature_assumed" in {one.source.code for one in row.budget}
+    assert "inspection.cause_part_temperature_assumed" in {one.words.code for one in row.budget}
     found = evaluate(replace(plan, temperature=Temperature(20.0, 0.1, 1e-5, 0.0)), cloud, errors=errors)
-    causes = {one.source.code for one in found.characteristics[0].budget}
+    causes = {one.words.code for one in found.characteristics[0].budget}
     assert "inspection.cause_part_temperature" in causes
     assert "inspection.cause_part_temperature_assumed" not in causes
     assert not any(note.code.startswith("part.") for note in found.notes)
@@ -139,7 +139,7 @@ def test_light_from_below_two_faces_does_not_cancel_in_their_distance(scan):
     faces = (FeatureSpec("top", "plane", (Auto(2),)), FeatureSpec("table", "plane", (Auto(1),)))
     plan = InspectionPlan((*faces, FeatureSpec("height", "distance", of=("top", "table"))))
     found = {row.name: row for row in evaluate(plan, cloud, errors=errors).characteristics}
-    by_light = [row for row in found["height distance"].budget if "light_from_below" in row.source.code]
+    by_light = [row for row in found["height distance"].budget if "light_from_below" in row.words.code]
     once = unseen_mean_mm(NOTHING_SEEN, 1.0, 0.5)
     assert by_light[0].u_mm == pytest.approx(np.sqrt(2) * once, rel=0.1), "sections that are not known tell nothing"
 

@@ -5,11 +5,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.inspect.causes import Cause
 from core.inspect.conformity import Verdict
 from core.inspect.faces import FacePair
 from core.inspect.gauge import measure_gauge
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import LIGHT_FROM_BELOW_ASSUMED, SKEWED_LIGHT
 from core.inspect.uncertainty.skewed_light import (
     MeanSkewness,
     doubt_of_light,
@@ -59,7 +59,7 @@ def test_nothing_changes_where_sections_are_symmetric_within_their_scatter(scan)
 
 def test_light_from_below_is_in_the_uncertainty_and_proves_nothing(scan):
     seen = gauge_of(scan, 0.08)
-    (row,) = (row for row in seen.budget if row.source == SKEWED_LIGHT)
+    (row,) = (row for row in seen.budget if row.source == Cause.SKEWED_LIGHT)
     assert 2 * row.u_mm == pytest.approx(0.8 * 0.08 ** (1 / 3) * 0.7, rel=0.2)
     assert seen.U_mm >= 2 * row.u_mm
     assert seen.verdict == Verdict.NOT_PROVEN
@@ -68,11 +68,11 @@ def test_light_from_below_is_in_the_uncertainty_and_proves_nothing(scan):
 
 def test_light_that_may_come_from_below_the_other_face_hides_no_doubt(scan):
     sure = gauge_of(scan, 0.08)
-    (row,) = (row for row in sure.budget if row.source == SKEWED_LIGHT)
+    (row,) = (row for row in sure.budget if row.source == Cause.SKEWED_LIGHT)
     small = replace(row, u_mm=0.3 * np.sqrt(sure.u_mm**2 - row.u_mm**2))
-    others = [one for one in sure.budget if one.source != SKEWED_LIGHT]
+    others = [one for one in sure.budget if one.source != Cause.SKEWED_LIGHT]
     assert doubt_of_light([*others, small]) is not None
-    assert doubt_of_light([*others, small, Contribution(LIGHT_FROM_BELOW_ASSUMED, 1.0)]) is not None
+    assert doubt_of_light([*others, small, Contribution(Cause.LIGHT_FROM_BELOW_ASSUMED, 1.0)]) is not None
 
 
 def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them(scan):

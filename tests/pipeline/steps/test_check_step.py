@@ -25,10 +25,10 @@ from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.planes_file import planes_id
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
+from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import Contribution
-from core.inspect.uncertainty.causes import CERTIFICATE
 from core.pipeline.run import run
 from core.pipeline.steps import artefact_step as artefact_module
 from core.pipeline.steps import planes_step as planes_step_module
@@ -173,9 +173,9 @@ def test_a_rig_that_changed_measures_truly_once_it_is_readjusted_and_can_be_put_
     gauge = gauge_step(work)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm < 0.08
     assert gauge.verdict is Verdict.CONFORMING
-    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_readjusted"]
+    (row,) = [row for row in gauge.budget if row.words.code == "inspection.cause_readjusted"]
     assert row.u_mm < 0.03
-    assert not [row for row in gauge.budget if row.source.code.startswith("inspection.cause_change")]
+    assert not [row for row in gauge.budget if row.words.code.startswith("inspection.cause_change")]
     assert "fan.readjusted" in {note.code for note in work.record().all_notes}, "never silently"
     as_opened = Workspace.open(open_set(turned / "set"), work.out)
     for one in (work, as_opened):
@@ -260,7 +260,7 @@ def test_what_may_have_changed_is_a_row_of_the_budget(unchanged, tmp_path, with_
     work = work_in(unchanged, tmp_path, with_check=with_check)
     scan_of(unchanged, work)
     gauge = gauge_step(work)
-    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_change_assumed"]
+    (row,) = [row for row in gauge.budget if row.words.code == "inspection.cause_change_assumed"]
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
     assert (row.u_mm < 0.025) if with_check else (0.02 < row.u_mm < 0.2)
 
@@ -275,7 +275,7 @@ def test_what_nobody_states_of_the_plane_target_is_assumed_told_and_in_the_budge
     assert {"target.size_assumed", "target.flatness_assumed"} <= {note.code for note in fan.notes}
     scan_of(unchanged, work)
     gauge = gauge_step(work)
-    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_scale_assumed"]
+    (row,) = [row for row in gauge.budget if row.words.code == "inspection.cause_scale_assumed"]
     assert row.u_mm == pytest.approx(SUSPECTED_SCALE * gauge.thickness_mm, rel=0.05)
     assert abs(gauge.thickness_mm - 50) <= gauge.U_mm
     assert gauge.verdict == Verdict.NOT_PROVEN and gauge.notes[0].code == "target.size_unconfirmed"
@@ -326,7 +326,7 @@ def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_
     assert [note.code for note in notes[:2]] == ["scan.section_changed", "inspection.section_has_changed"]
     assert "px when the fan was calibrated: set the focus of camera and laser back" in " ".join(map(str, notes))
     gauge = gauge_step(work)
-    (row,) = [row for row in gauge.budget if row.source.code == "inspection.cause_skewed_fan"]
+    (row,) = [row for row in gauge.budget if row.words.code == "inspection.cause_skewed_fan"]
     assert row.u_mm > 1e-3
     assert gauge.verdict != Verdict.CONFORMING
     work.path("poses").write_bytes(b"damaged")
@@ -454,8 +454,8 @@ def test_a_steady_history_makes_the_row_of_change_smaller(unchanged, tmp_path):
     assert f"on {QUIET_DAYS} days from" in notes["scan.stability_charted"]
     assert "only a check of the day shows it" in notes["scan.stability_charted"]
     assert "scan.stability_assumed" not in notes
-    (row,) = [row for row in gauge_step(work).budget if "change" in row.source.code]
-    assert row.source.code == "inspection.cause_change_charted" and row.u_mm > 0
+    (row,) = [row for row in gauge_step(work).budget if "change" in row.words.code]
+    assert row.words.code == "inspection.cause_change_charted" and row.u_mm > 0
 
 
 @pytest.mark.accuracy
@@ -590,7 +590,7 @@ def inspected(names, budget=()):
     [
         ((), (), "artefact.not_measured"),
         (("stairs height 1", "stairs height 2"), (), "artefact.which"),
-        (("stairs height 1",), (Contribution(CERTIFICATE, 0.0001),), "artefact.by_master"),
+        (("stairs height 1",), (Contribution(Cause.CERTIFICATE, 0.0001),), "artefact.by_master"),
     ],
 )
 def test_what_cannot_be_compared_with_an_artefact_is_told(

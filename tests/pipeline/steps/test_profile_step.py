@@ -70,7 +70,7 @@ def test_the_files_tell_the_same(measured):
     assert np.median(table["height_mm"][shown][table["height_mm"][shown] > 15]) == pytest.approx(
         30.0, abs=0.15
     )  # one picture, 768 px
-    causes = [row.source.code for row in read_thickness(measured / "gauge.json").budget]
+    causes = [row.words.code for row in read_thickness(measured / "gauge.json").budget]
     assert {"inspection.cause_camera", "inspection.cause_fan", "inspection.cause_fan_speckle"} <= set(causes)
 
 

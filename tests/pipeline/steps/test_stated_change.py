@@ -63,7 +63,7 @@ def test_the_row_is_small_at_the_temperature_of_the_calibration_and_large_10_k_a
             celsius - 20.0
         ]
         assert not {"scan.kelvins_assumed", "scan.stability_assumed"} & {note.code for note in scan.notes}
-        (row,) = [row for row in gauge_step(work).budget if row.source.code == "inspection.cause_change"]
+        (row,) = [row for row in gauge_step(work).budget if row.words.code == "inspection.cause_change"]
         rows[celsius] = row.u_mm
     assert rows[30.0] > 3 * rows[20.0]
 

@@ -11,9 +11,9 @@ import numpy as np
 from core.files.project.data import Done, Project, Repeat, new_project
 from core.files.project.keys import finished
 from core.files.recording.rig import GaugeSpec
+from core.inspect.causes import Cause
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, UPPER, InspectionView, Relief, ShownMesh
-from core.inspect.uncertainty.causes import CAMERA
 from core.messages import plain
 from core.model import LightPlane
 from workbench.pages.inspect.presenter import InspectPresenter
@@ -50,7 +50,7 @@ def gauge(thickness_mm: float = 50.012, **more: Any) -> GaugeResult:
         for indices, depth, flatness in ((upper, 500.0, 0.031), (lower, 550.0, 0.042))
     )
     return GaugeResult(
-        thickness_mm, 0.012, 2.0, over, below, 0.0005, (Contribution(CAMERA, 0.002),), 50.0, 0.2,
+        thickness_mm, 0.012, 2.0, over, below, 0.0005, (Contribution(Cause.CAMERA, 0.002),), 50.0, 0.2,
         np.array([0.0, 0.0, 1.0]), plain("distance of two parallel planes"), **more,
     )  # fmt: skip
 

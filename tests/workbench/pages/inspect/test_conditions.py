@@ -5,10 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from core.inspect.causes import Cause
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
-from core.inspect.uncertainty.causes import CAMERA, MASTER_MEASURED
 from core.messages import plain
 from tests.workbench.pages import inspect_cases as cases
 from workbench.pages.inspect.features import conditions as fields
@@ -24,7 +24,7 @@ PLAN = InspectionPlan(
         FeatureSpec("ball", "sphere"),
     )
 )
-MASTER = Master("Block 50 no. 7", 50.0, 0.0, 50.004, ((CAMERA, 0.003), (plain("own noise"), 0.004)), (), False)
+MASTER = Master("Block 50 no. 7", 50.0, 0.0, 50.004, ((Cause.CAMERA, 0.003), (plain("own noise"), 0.004)), (), False)
 
 
 @pytest.fixture
@@ -122,7 +122,7 @@ def test_a_master_waits_until_all_of_it_is_known(presenter, conditions):
     assert said[-1] == ""
     conditions.set_value(fields.U_MEASURED, 0.005)
     conditions.set_value(fields.COMPARED + "ball", False)
-    wanted = Master("Block", 50.001, 0.0002, 50.006, ((MASTER_MEASURED, 0.005),), ("height",), True)
+    wanted = Master("Block", 50.001, 0.0002, 50.006, ((Cause.MASTER_MEASURED, 0.005),), ("height",), True)
     assert presenter.features.plan.master == wanted
     conditions.set_value(fields.COMPARED + "height", False)
     assert presenter.features.plan.master == wanted and "Choose a feature" in conditions.complaint("master")

@@ -8,11 +8,11 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from core.inspect.causes import Cause
 from core.inspect.plan.conditions import Master, Temperature
 from core.inspect.plan.feature_kind import ElementKind
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import kind_of
-from core.inspect.uncertainty.causes import MASTER_MEASURED
 from workbench.language import joined, text_of, tr
 from workbench.pages.inspect.features.plan import InspectFeatures
 from workbench.work import jobs
@@ -101,7 +101,7 @@ class InspectConditions:
             self._take(group, {key: value, "secondary": "", "tertiary": ""})
             return
         if key == U_MEASURED:
-            key, value = "budget", () if value is None else ((MASTER_MEASURED, float(value)),)
+            key, value = "budget", () if value is None else ((Cause.MASTER_MEASURED, float(value)),)
         self._take(group, {key: value})
 
     def take_master(self, folder: Path) -> None:
