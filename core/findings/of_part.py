@@ -22,7 +22,8 @@ ROWS = (
     Finding("gauge.several_faces", Weight.GRAVE, Effect.NO_PROOF,
             "There are {n} pairs of parallel faces that could be meant. Measured is the one of {mm:.1f} mm, its upper "
             "face at pixel {u:.0f}, {v:.0f}; the next is one of {other_mm:.1f} mm at pixel {other_u:.0f}, "
-            "{other_v:.0f}. Nothing is proven until the faces are outlined, as [gauge] upper_polygon_px and {lower}."),
+            "{other_v:.0f}. Nothing is proven until the faces are outlined, as [gauge] upper_polygon_px and {lower}; "
+            "gauge.json has the outlines of each pair."),
     Finding("surface.faces_not_spanned", Weight.GRAVE, Effect.NO_PROOF,
             "The points of {name:and} lie on one stripe, or too near to each other for their noise: nothing says how "
             "it lies, or whether it is a face, and what is measured from it proves nothing. Scan it with more sweeps."),

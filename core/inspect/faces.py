@@ -7,7 +7,7 @@ all of them are kept: only a person knows which one was meant.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import combinations
 
 import numpy as np
@@ -24,7 +24,8 @@ from core.inspect.fit.plane_search import (
     points_on,
     search_tolerance,
 )
-from core.inspect.results import PairCandidate
+from core.inspect.results import Corners, PairCandidate
+from core.inspect.shown.outline import outline_px
 from core.messages import Field, Message, plural_message
 from core.progress import Progress, silent
 from core.scan.surface.cloud import FAN, Cloud
@@ -119,7 +120,7 @@ def find_faces(
     alike = [found[0], *(one for one in found[1:] if one.candidate.thickness_mm > 2 * tolerance)]
     if nominal_mm is not None:
         alike.sort(key=lambda one: abs(one.candidate.thickness_mm - nominal_mm))
-    candidates = tuple(one.candidate for one in alike) if len(alike) > 1 else ()
+    candidates = tuple(one.outlined(cloud) for one in alike) if len(alike) > 1 else ()
     return FacePair(alike[0].upper.region.indices, alike[0].lower.region.indices, candidates)
 
 
@@ -201,6 +202,20 @@ class _Pair:
             (float(places[1][0]), float(places[1][1])),
         )
         return cls(upper, lower, candidate)
+
+    def outlined(self, cloud: Cloud) -> PairCandidate:
+        """The candidate with the outlines of its faces."""
+        upper, lower = (_corners(cloud, plane) for plane in (self.upper, self.lower))
+        return replace(self.candidate, outlines_px=(upper, lower))
+
+
+def _corners(cloud: Cloud, plane: FoundPlane) -> Corners:
+    """The outline of a face in the picture, to a tenth of a pixel; none where its points lie on one line there."""
+    try:
+        outline = outline_px(cloud.uv[plane.region.indices])
+    except InputError:
+        return ()
+    return tuple((round(float(u), 1), round(float(v), 1)) for u, v in outline)
 
 
 def faces_in_polygons(

@@ -77,6 +77,10 @@ class Contribution:
         return self.u_mm / self.point_mm if self.point_mm else None
 
 
+Corners = tuple[tuple[float, float], ...]
+"""Corners [u, v] of a polygon in pixels."""
+
+
 @dataclass(frozen=True, slots=True)
 class PairCandidate:
     """A pair of parallel faces that could be the ones meant.
@@ -89,12 +93,16 @@ class PairCandidate:
         How many points the search found on the upper and on the lower face.
     upper_px, lower_px
         Where in the picture the middle of their points is.
+    outlines_px
+        Corners [u, v] round the points of the upper and of the lower face: as regions they confirm this pair. Without
+        any where they are not known, as of an older file.
     """
 
     thickness_mm: float
     points: tuple[int, int]
     upper_px: tuple[float, float]
     lower_px: tuple[float, float]
+    outlines_px: tuple[Corners, Corners] = ((), ())
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -62,7 +62,8 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
     if content.points_used and len(content.cloud):
         used = content.points_used.items()
         named = {look.words(name) if isinstance(name, Label) else name: indices for name, indices in used}
-        drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM)
+        pairs = () if gauge is None else gauge.candidates
+        drawings["points"] = lambda: points_figure(look, content.cloud, named, size, width, POINTS_MM, pairs)
     if gauge is not None:
         drawings["maps"] = lambda: plots.residual_figure(look, gauge, content.cloud, width, FACES_MM)
     elif len(content.cloud):

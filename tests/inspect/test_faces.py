@@ -220,6 +220,17 @@ def test_of_two_blocks_that_near_the_nominal_is_measured_and_proves_nothing() ->
         assert (u, v) == pytest.approx(tuple(amid), abs=20.0)
 
 
+def test_a_pair_whose_outlines_are_taken_as_regions_is_confirmed() -> None:
+    cloud, covariance = two_blocks()
+    asked = measure_gauge(cloud, errors=PointErrors(covariance), nominal_mm=40.0, tolerance_mm=1.0)
+    other = next(one for one in asked.candidates if round(one.thickness_mm) == 25)
+    upper, lower = other.outlines_px
+    errors = PointErrors(covariance)
+    gauge = measure_gauge(cloud, errors=errors, regions=(upper, lower), nominal_mm=25.0, tolerance_mm=1.0)
+    assert gauge.thickness_mm == pytest.approx(25.0, abs=0.1)
+    assert not gauge.candidates and not gauge.doubts
+
+
 def test_another_nominal_chooses_another_pair_of_a_plan_again() -> None:
     cloud, covariance = two_blocks()
     before = None

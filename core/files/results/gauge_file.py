@@ -21,7 +21,7 @@ from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row2, Row3, kept, row_tables
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
-from core.inspect.results import Contribution, Face, GaugeResult, PairCandidate
+from core.inspect.results import Contribution, Corners, Face, GaugeResult, PairCandidate
 from core.messages import Command, Message
 from core.model import LightPlane
 from core.scan.surface.cloud import Cloud
@@ -60,6 +60,9 @@ class _Candidate(ResultFile):
     points: list[int] = Field(min_length=2, max_length=2, description="two whole numbers")
     upper_px: Row2 = _PX
     lower_px: Row2 = _PX
+    outlines_px: list[list[Row2]] = Field(
+        default=[[], []], min_length=2, max_length=2, description="two lists of pixels"
+    )
 
     def candidate(self) -> PairCandidate:
         return PairCandidate(
@@ -67,7 +70,12 @@ class _Candidate(ResultFile):
             (self.points[0], self.points[1]),
             (self.upper_px[0], self.upper_px[1]),
             (self.lower_px[0], self.lower_px[1]),
+            (_corners(self.outlines_px[0]), _corners(self.outlines_px[1])),
         )
+
+
+def _corners(rows: list[Row2]) -> Corners:
+    return tuple((row[0], row[1]) for row in rows)
 
 
 class _Contribution(BudgetRow):

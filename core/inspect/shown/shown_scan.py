@@ -28,6 +28,25 @@ class Relief:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class NextPair:
+    """A pair of faces that could be meant as well as the one that was measured.
+
+    Parameters
+    ----------
+    thickness_mm
+        How far apart they are.
+    outlines_px
+        Outlines (n, 2) in pixels of those of its faces that are not of the measured pair as well.
+    outlines
+        The same (n, 3) in mm on the surface, camera frame.
+    """
+
+    thickness_mm: float
+    outlines_px: tuple[Array, ...]
+    outlines: tuple[Array, ...]
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class ShownMesh:
     """The mesh of a scan; triangles in the order of the largest σ of their corners.
 
@@ -93,6 +112,8 @@ class InspectionView:
         The thickness; its faces' indices are into the points above, ascending. None if none was measured.
     outlines
         Outlines (n, 2) in pixels of the upper and the lower face's points; None without a thickness.
+    next_pair
+        The next best of several pairs of faces that could be meant; None where there was no choice.
     used_uv
         Pixels (n, 2) of some of the points used on the upper and on the lower face.
     relief
@@ -126,6 +147,7 @@ class InspectionView:
     mesh: ShownMesh | None
     gauge: GaugeResult | None
     outlines: tuple[Array, Array] | None
+    next_pair: NextPair | None
     used_uv: tuple[Array, Array] | None
     relief: Relief
     image_size: tuple[int, int]

@@ -8,17 +8,18 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial import cKDTree
 
 from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.results import ProjectResults
 from core.files.results.ply import read_cloud
-from core.inspect.face_region import on_face
+from core.inspect.face_region import inside_polygon, on_face
 from core.inspect.results import Face, GaugeResult
 from core.inspect.shown.outline import face_outline, outline_px
 from core.inspect.shown.relief import relief
-from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, ShownMesh
+from core.inspect.shown.shown_scan import DEPTH, HEIGHT, LOWER, NO_FACE, UPPER, InspectionView, NextPair, ShownMesh
 from core.messages import Message, label
 from core.model.arrays import Array
 from core.pipeline.project.results import load_results
@@ -85,6 +86,7 @@ def inspection_view(folder: Path, project: Project, progress: Progress = silent)
         mesh=mesh,
         gauge=None if gauge is None else _reordered(gauge, order),
         outlines=None if gauge is None else _outlines(gauge, cloud),
+        next_pair=None if gauge is None else _next_pair(gauge, cloud),
         used_uv=None if gauge is None else _sample(gauge, cloud),
         relief=relief(camera.camera.image_size, shown.uv, shown.points[:, 2], shown.normals),
         image_size=camera.camera.image_size,
@@ -197,6 +199,22 @@ def _outlines(gauge: GaugeResult, cloud: Cloud) -> tuple[Array, Array] | None:
         return outline_px(cloud.uv[gauge.upper.indices]), outline_px(cloud.uv[gauge.lower.indices])
     except InputError:
         return None  # a thickness of one light profile: lines have no outline
+
+
+def _next_pair(gauge: GaugeResult, cloud: Cloud) -> NextPair | None:
+    """The second of the pairs that could be meant; None without one, or where its outlines are not known."""
+    if len(gauge.candidates) < 2:
+        return None
+    first, second = gauge.candidates[:2]
+    own = tuple(np.array(outline) for outline in second.outlines_px if outline and outline not in first.outlines_px)
+    return NextPair(second.thickness_mm, own, tuple(_on_surface(cloud, outline) for outline in own)) if own else None
+
+
+def _on_surface(cloud: Cloud, outline: Array) -> Array:
+    """For each corner (n, 2) in pixels of an outline the measured point (n, 3) inside it that is nearest."""
+    inside = np.flatnonzero(inside_polygon(cloud.uv, outline))
+    _, nearest = cKDTree(cloud.uv[inside]).query(outline)
+    return np.asarray(cloud.points[inside[nearest]])
 
 
 def _sample(gauge: GaugeResult, cloud: Cloud) -> tuple[Array, Array]:

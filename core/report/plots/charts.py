@@ -18,7 +18,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 from numpy.typing import NDArray
 
-from core.inspect.results import Face, GaugeResult
+from core.inspect.results import Face, GaugeResult, PairCandidate
 from core.inspect.shown.deviation_map import classes_of, mark
 from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
@@ -284,8 +284,12 @@ def points_figure(
     image_size: tuple[int, int],
     width_mm: float,
     height_mm: float,
+    pairs: Sequence[PairCandidate] = (),
 ) -> Figure:
-    """The pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour of its own."""
+    """The pixels of all points in grey, those of each of `points` (indices into the cloud) in a colour of its own.
+
+    Of several `pairs` of faces that could be meant, the measured one is outlined, and dashed the next best.
+    """
     with plot_style():
         figure = new_figure(width_mm, height_mm)
         columns, rows = image_size
@@ -303,6 +307,7 @@ def points_figure(
             axes.plot(*drawn.T, ".", ms=max(3.2 - 0.8 * number, 1.2), color=color, zorder=2)
             count = look.words(points_counted(len(indices)))
             axes.plot([], [], mark, ms=4, color=color, label=f"{_short(drawable(name))}\n{count}")
+        _outline_pairs(look, axes, pairs)
         axes.set(xlim=(-0.5, columns - 0.5), ylim=(rows - 0.5, -0.5))
         axes.set_xlabel("u, px", labelpad=1)
         axes.set_ylabel("v, px", labelpad=0)
@@ -310,6 +315,20 @@ def points_figure(
         axes.legend(loc="upper left", bbox_to_anchor=(1.02, 1.02), frameon=False, handletextpad=0.6,
                     prop={"family": families("".join(points)), "size": 6.5})  # fmt: skip
     return figure
+
+
+def _outline_pairs(look: ReportLook, axes: Axes, pairs: Sequence[PairCandidate]) -> None:
+    words = look.words
+    for place, pair in enumerate(pairs[:2]):
+        mm, style = words.fixed(pair.thickness_mm, 1), (0, (3, 1.5)) if place else "-"
+        for outline in filter(None, pair.outlines_px):
+            corners = np.array([*outline, outline[0]])
+            axes.plot(*corners.T, color="white", lw=2.2, zorder=3)
+            axes.plot(*corners.T, color=INK, lw=1.0, ls=style, zorder=4)
+        said = (
+            words("next best pair, {mm} mm: not measured", mm=mm) if place else words("measured pair, {mm} mm", mm=mm)
+        )
+        axes.plot([], [], color=INK, lw=1.0, ls=style, label=said)
 
 
 def _short(name: str) -> str:

@@ -529,7 +529,8 @@ def test_gauge_round_trip_and_the_keys_of_the_design(tmp_path, cloud, gauge):
 
 
 def test_other_pairs_of_faces_are_read_as_they_were_written(tmp_path, cloud, gauge):
-    candidates = (PairCandidate(30.0, (1200, 3400), (10.5, 20.0), (30.0, 40.0)),)
+    corners = ((1.0, 2.0), (8.5, 2.0), (8.0, 9.0)), ((0.0, 0.0), (30.0, 0.0), (30.0, 40.0), (0.0, 40.0))
+    candidates = (PairCandidate(30.0, (1200, 3400), (10.5, 20.0), (30.0, 40.0), corners),)
     write_gauge(tmp_path / "gauge.json", replace(gauge, candidates=candidates), "a-b")
     assert read_gauge(tmp_path / "gauge.json", cloud).candidates == candidates
 

@@ -1,5 +1,6 @@
 """What the window shows of a scan: the files' numbers, in the order of σ, ready to be drawn."""
 
+import json
 import pickle
 import shutil
 from dataclasses import replace
@@ -217,3 +218,20 @@ def test_points_that_stand_for_themselves_are_outlined_though_they_are_no_whole_
     assert 3 <= len(outline) <= 16
     assert np.all(outline >= low - 5) and np.all(outline <= high + 5)
     assert np.ptp(outline, axis=0) == pytest.approx(high - low, rel=0.2)
+
+
+def test_the_next_best_pair_is_outlined_where_the_measured_one_is_not(done, tmp_path, view):
+    upper, lower = (outline.tolist() for outline in view.outlines)
+    shared = {"points": [9, 9], "upper_px": [0.0, 0.0], "lower_px": [0.0, 0.0]}
+    pairs = [
+        {"thickness_mm": 50.0, "outlines_px": [[[0.0, 0.0], [9.0, 0.0], [9.0, 9.0]], lower], **shared},
+        {"thickness_mm": 20.0, "outlines_px": [upper, lower], **shared},
+    ]
+    folder = copy_of(done.folder, tmp_path / "project")
+    path = results_folder(folder) / "gauge.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | {"candidates": pairs}))
+    pair = inspection_view(folder, done.project).next_pair
+    assert pair.thickness_mm == 20.0 and np.array_equal(pair.outlines_px, [upper])
+    on_face = view.points[view.face == UPPER]
+    assert np.abs(pair.outlines[0][:, 2] - np.median(on_face[:, 2])).max() < 3.0
+    assert view.next_pair is None

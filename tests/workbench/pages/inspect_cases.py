@@ -79,6 +79,7 @@ def view(measured: GaugeResult | None = None, *, mesh: bool = True) -> Inspectio
         mesh=_mesh() if mesh else None,
         gauge=measured,
         outlines=None if measured is None else (UPPER_OUTLINE, LOWER_OUTLINE),
+        next_pair=None,
         used_uv=None if measured is None else (UPPER_OUTLINE + 1, LOWER_OUTLINE + 1),
         relief=Relief(np.full(SIZE[::-1], 90, np.uint8), 1.0),
         image_size=SIZE,

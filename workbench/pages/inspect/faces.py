@@ -10,8 +10,10 @@ from numpy.typing import ArrayLike
 from PySide6.QtCore import QObject, Signal
 
 from core.files.recording.rig import GaugeSpec
+from core.inspect.results import PairCandidate
+from core.inspect.shown.shown_scan import NextPair
 from core.model.arrays import Array
-from workbench.language import tr
+from workbench.language import number, tr
 from workbench.pages.inspect.scan import InspectScan
 from workbench.pages.inspect.stage import FacesButtons, FacesFacts, faces_buttons
 from workbench.project_model import ProjectModel
@@ -118,6 +120,28 @@ class InspectFaces(QObject):
         found = {face: self._found(face) for face in FACES}
         if all(outline is not None for outline in found.values()):
             self._put_regions(found, tr("take the faces found as regions"))
+
+    @property
+    def candidates(self) -> tuple[PairCandidate, ...]:
+        """The pairs that could be meant and can be confirmed, the measured one first; () where there is no choice."""
+        gauge = self._scan.gauge
+        if gauge is None or self.own:
+            return ()
+        return tuple(one for one in gauge.candidates if all(one.outlines_px))
+
+    @property
+    def next_pair(self) -> NextPair | None:
+        """The next best of several pairs that could be meant, as it is drawn; None where there is no choice."""
+        view = self._scan.view
+        return None if view is None or self.own else view.next_pair
+
+    def confirm(self, candidate: PairCandidate) -> None:
+        """Measure this pair: the outlines of its faces become the regions; undoable."""
+        self._regions = {}
+        outlines: dict[str, Array | None] = {
+            face: np.array(corners) for face, corners in zip(FACES, candidate.outlines_px, strict=True)
+        }
+        self._put_regions(outlines, tr("confirm the faces {mm} mm apart", mm=number(candidate.thickness_mm, ".1f")))
 
     def find_automatically(self) -> None:
         """Let the faces be found again; undoable."""

@@ -13,6 +13,7 @@ from PySide6.QtWidgets import (
     QListView,
     QPushButton,
     QToolButton,
+    QVBoxLayout,
     QWidget,
 )
 
@@ -21,7 +22,7 @@ from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from core.report.facts.of_budget import budget_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.wording import verdict_sentence
-from workbench.language import sentence, text_of, tr
+from workbench.language import number, sentence, text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
 from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
@@ -39,7 +40,7 @@ from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 from workbench.views.lists.value_rows import ValueRows, Verdict
 
 if TYPE_CHECKING:
-    from core.inspect.results import GaugeResult
+    from core.inspect.results import GaugeResult, PairCandidate
 
 
 class PartPanel(QWidget):
@@ -113,6 +114,8 @@ class FacesPanel(QWidget):
         self.states = {face: QLabel() for face in FACES}
         self.tools: dict[tuple[str, str], QToolButton] = {}
         self.words, self.own, self.automatic = muted(), QPushButton(), QPushButton()
+        self.several, self.pairs = muted(), QVBoxLayout()
+        self._offered: tuple[PairCandidate, ...] = ()
         self.own.setText(tr("Edit those found"))
         self.automatic.setText(tr("Automatic"))
         self.exchange = QToolButton()
@@ -124,7 +127,8 @@ class FacesPanel(QWidget):
         self.own.clicked.connect(lambda: presenter.faces.take_found())
         self.automatic.clicked.connect(lambda: presenter.faces.find_automatically())
         self.exchange.clicked.connect(lambda: presenter.faces.exchange())
-        column = in_column(self.form, heading(tr("Faces")), self._rows(), self.words, on=self, spacing=4)
+        above = (self.form, heading(tr("Faces")), self._rows(), self.words, self.several, self.pairs)
+        column = in_column(*above, on=self, spacing=4)
         row = in_row((self.own, 1), (self.automatic, 1), self.exchange)
         column.addLayout(row)
 
@@ -151,6 +155,7 @@ class FacesPanel(QWidget):
             enable(button, can.draw, self._tip(face, kind))
         self.words.setText(faces.missing())
         self.words.setVisible(bool(faces.missing()))
+        self._offer(faces.candidates)
         enable(self.own, can.take_found, tr("Make the outlines of the faces found regions you can change"))
         enable(
             self.automatic,
@@ -158,6 +163,27 @@ class FacesPanel(QWidget):
             tr("Remove the regions: the two largest parallel faces are looked for again"),
         )
         enable(self.exchange, can.exchange, tr("Exchange the upper and the lower region"))
+
+    def _offer(self, candidates: tuple[PairCandidate, ...]) -> None:
+        """A button for each pair of faces that could be meant."""
+        self.several.setText(tr("Nothing is proven before you say which faces are meant:"))
+        self.several.setVisible(bool(candidates))
+        if candidates == self._offered:
+            return
+        self._offered = candidates
+        while (item := self.pairs.takeAt(0)) is not None:
+            if (widget := item.widget()) is not None:
+                widget.hide()
+                widget.deleteLater()
+        for place, one in enumerate(candidates):
+            mm = number(one.thickness_mm, ".1f")
+            said = tr("These: {mm} mm apart", mm=mm) if place else tr("These, as measured: {mm} mm apart", mm=mm)
+            button = QPushButton(icon("mdi6.check"), said, self)
+            u, v = (f"{px:.0f}" for px in one.upper_px)
+            tip = tr("Take these faces as regions: the upper one is at pixel {u}, {v}. Then measure again.", u=u, v=v)
+            enable(button, self._presenter.faces.buttons.draw, tip)
+            button.clicked.connect(lambda _=False, one=one: self._presenter.faces.confirm(one))
+            self.pairs.addWidget(button)
 
     def _rows(self) -> QGridLayout:
         grid = QGridLayout()

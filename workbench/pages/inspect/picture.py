@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING, Any, Literal
 from PySide6.QtWidgets import QLabel, QWidget
 
 from core.inspect.plan.feature_spec import FaceAt, Polygon
-from workbench.language import tr
+from workbench.language import number, tr
 from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
 from workbench.pages.inspect.stage import Stage
-from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE
+from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE, PROPOSED
 from workbench.views.common import Choice
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column, in_row, muted
@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 
 USED = "feature points"
 """The layer of the points that the chosen feature used."""
+
+NEXT_PAIR = "next pair"
+"""Layers of the faces that could be meant as well."""
 
 COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
 
@@ -112,6 +115,7 @@ class PictureTab(QWidget):
         if laid == self._laid:
             return
         self._laid = laid
+        self._lay_next_pair()
         for place, face in enumerate(FACES):
             region = regions[face]
             found = view.outlines[place] if view.outlines is not None and not faces.own else None
@@ -130,6 +134,22 @@ class PictureTab(QWidget):
                 self.image.set_points(
                     f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=3, title=title
                 )
+
+    def _lay_next_pair(self) -> None:
+        """The next best of several pairs of faces, until one is confirmed."""
+        pair = self._presenter.faces.next_pair
+        for place in range(len(FACES)):
+            if pair is None or place >= len(pair.outlines_px):
+                self.image.remove_layer(f"{NEXT_PAIR} {place}")
+                continue
+            label = tr("not measured: {mm} mm", mm=number(pair.thickness_mm, ".1f"))
+            self.image.set_polygon(
+                f"{NEXT_PAIR} {place}",
+                pair.outlines_px[place],
+                colour=PROPOSED,
+                title=tr("next best pair"),
+                label=label,
+            )
 
     def _lay_feature(self) -> None:
         """The regions drawn for the chosen feature, and the points it used; laid anew only if they changed."""

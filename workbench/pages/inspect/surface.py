@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
-from workbench.language import tr
+from workbench.language import number, tr
 from workbench.pages.frame_tool import FrameTool
 from workbench.pages.inspect import words
 from workbench.pages.inspect.callouts import CalloutsTool
@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from core.inspect.shown.clicked_faces import ClickedFaces
     from core.inspect.shown.shown_comparison import ShownComparison
     from core.inspect.shown.shown_features import ShownFeature
-    from core.inspect.shown.shown_scan import InspectionView, ShownMesh
+    from core.inspect.shown.shown_scan import InspectionView, NextPair, ShownMesh
 
 PLAIN = "#8A96A3"
 """The surface where colour means nothing, and points that were not used."""
@@ -75,6 +75,9 @@ NOMINAL_OPACITY = 0.3
 
 CUT_OPACITY = 0.15
 """The surface behind it stays to be seen."""
+
+NEXT_PAIR = "next pair"
+"""Name of the outlines of the faces that could be meant as well."""
 
 PROPOSALS = ("proposed 1", "proposed 2")
 """Names of the highlights of faces that were clicked."""
@@ -106,6 +109,7 @@ class SurfaceTab(QWidget):
         self._proposal: ClickedFaces | None = None
         self._other: ShownComparison | None = None
         self._nominal: ShownFeature | None = None
+        self._next: NextPair | None = None
         self._picking = ""
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -186,6 +190,7 @@ class SurfaceTab(QWidget):
                 self._later.start()
         self._show_feature()
         self.callouts.refresh()
+        self._show_next_pair()
         self._show_other()
         self._show_nominal()
         self._show_proposal()
@@ -240,7 +245,7 @@ class SurfaceTab(QWidget):
         self.scene.set_handle(None)
         self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], [], []
-        self._proposal = self._other = self._nominal = None
+        self._proposal = self._other = self._nominal = self._next = None
         self.frame.show(None)
         self.scene.clear(p.scan.problem or tr("Reading the scan …"))
         self.line.setText("")
@@ -386,6 +391,19 @@ class SurfaceTab(QWidget):
                 labels.append((places[middle], letter))
         if labels:
             self.scene.set_labels(DATUMS, labels)
+
+    def _show_next_pair(self) -> None:
+        """The next best of several pairs of faces, until one is confirmed."""
+        pair = self._presenter.faces.next_pair
+        if pair is self._next:
+            return
+        self._next = pair
+        if pair is None:
+            self.scene.remove(NEXT_PAIR)
+            return
+        self.scene.set_polylines(NEXT_PAIR, [line[[*range(len(line)), 0]] for line in pair.outlines], PROPOSED)
+        label = tr("not measured: {mm} mm", mm=number(pair.thickness_mm, ".1f"))
+        self.scene.set_labels(NEXT_PAIR, [(pair.outlines[0][0], label)], PROPOSED)
 
     def _show_other(self) -> None:
         """The surface the scan is compared with, beside it."""

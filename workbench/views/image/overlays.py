@@ -340,13 +340,16 @@ class CellsLayer(Layer):
 
 
 class PolygonLayer(Layer):
-    """A closed region; with handles at its corners and in its middle when it can be edited."""
+    """A closed region; with handles at its corners and in its middle when it can be edited.
 
-    def __init__(self, uv: ArrayLike, colour: ColourLike, editable: bool, title: str) -> None:
+    One with a `label`, which stands in its middle, is dashed: it is offered.
+    """
+
+    def __init__(self, uv: ArrayLike, colour: ColourLike, editable: bool, title: str, label: str = "") -> None:
         super().__init__(title)
         self.uv = as_points(uv).copy()
         self.editable = editable
-        self._colour = colour
+        self._colour, self._label = colour, label
 
     @property
     def key(self) -> tuple[KeySign, ColourLike]:
@@ -386,8 +389,10 @@ class PolygonLayer(Layer):
         painter.setPen(QPen(RIM, 3.2))
         painter.drawPolygon(outline)
         painter.setBrush(Qt.BrushStyle.NoBrush)
-        painter.setPen(QPen(colour, 1.6))
+        painter.setPen(QPen(colour, 1.6, Qt.PenStyle.DashLine if self._label else Qt.PenStyle.SolidLine))
         painter.drawPolygon(outline)
+        if self._label:
+            draw_label(painter, transform.map(self.middle), self._label, colour, within=widget)
         if self.editable:
             painter.setPen(QPen(RIM, 1.0))
             painter.setBrush(colour)

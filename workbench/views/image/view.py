@@ -272,10 +272,20 @@ class ImageView(QWidget):
         self._layers.put(name, CellsLayer(grid, colour, lambda: self._box.extent, title))
 
     def set_polygon(
-        self, name: str, uv: ArrayLike, *, editable: bool = False, colour: ColourLike = REGION, title: str = ""
+        self,
+        name: str,
+        uv: ArrayLike,
+        *,
+        editable: bool = False,
+        colour: ColourLike = REGION,
+        title: str = "",
+        label: str = "",
     ) -> None:
-        """A closed region (N, 2); with `editable` its corners, and all of it by its middle, can be dragged."""
-        self._layers.put(name, PolygonLayer(uv, colour, editable, title))
+        """A closed region (N, 2); with `editable` its corners, and all of it by its middle, can be dragged.
+
+        One with a `label`, which stands in its middle, is dashed: it is offered, and not what counts.
+        """
+        self._layers.put(name, PolygonLayer(uv, colour, editable, title, label))
 
     def remove_layer(self, name: str) -> None:
         """Take a layer away; none of that name is no error."""

@@ -17,6 +17,8 @@ from PySide6.QtWidgets import (
 )
 
 from core.errors import InputError
+from core.inspect.results import PairCandidate
+from core.inspect.shown.shown_scan import NextPair
 from core.messages import plain
 from tests.workbench.cells import shown as text_in
 from tests.workbench.pages import inspect_cases as cases
@@ -640,3 +642,44 @@ def test_no_colour_that_is_chosen_is_cut_where_there_is_room(unmeasured):
             QStyle.ComplexControl.CC_ComboBox, option, QStyle.SubControl.SC_ComboBoxEditField, box
         )
         assert box.fontMetrics().horizontalAdvance(box.currentText()) <= field.width(), box.currentText()
+
+
+# ---- several pairs of faces
+
+
+@pytest.fixture
+def several(page, quick, qtbot):
+    """The page with a scan of two blocks, of which that of 50 mm was measured and the one of 20 mm was not."""
+    corners = tuple(map(tuple, cases.UPPER_OUTLINE)), tuple(map(tuple, cases.LOWER_OUTLINE))
+    beside = tuple((u - 12.0, v) for u, v in corners[0])
+    candidates = (
+        PairCandidate(50.0, (300, 300), (30.0, 22.0), (30.0, 22.0), corners),
+        PairCandidate(20.0, (100, 300), (18.0, 22.0), (30.0, 22.0), (beside, corners[1])),
+    )
+    outline = np.array(beside)
+    pair = NextPair(20.0, (outline,), (np.column_stack([outline, np.full(4, 520.0)]),))
+    shown = replace(cases.view(cases.gauge(candidates=candidates)), next_pair=pair)
+    quick.answers[jobs.INSPECTION_VIEW] = lambda folder, project: shown
+    scan(page, qtbot)
+    page.refreshing.at_once()
+    return page
+
+
+def drawn_pairs(page):
+    """Names of what is drawn of the next best pair in the picture and in 3D."""
+    layers = {name for name in page.picture.image.layer_names() if "pair" in name}
+    return layers | {"next pair"} & {name for _, name in page.surface.scene._scene.items}
+
+
+def test_the_next_best_pair_is_drawn_until_one_is_confirmed(several, qtbot):
+    several.surface.refresh()
+    several.picture.refresh()
+    assert drawn_pairs(several) == {"next pair 0", "next pair"}
+    first, second = (several.faces.pairs.itemAt(row).widget() for row in range(2))
+    assert "50.0 mm" in first.text() and "20.0 mm" in second.text()
+    press(qtbot, second)
+    several.refreshing.at_once()
+    several.surface.refresh()
+    several.picture.refresh()
+    assert np.array_equal(several.presenter.faces.region("upper"), cases.UPPER_OUTLINE - [12.0, 0.0])
+    assert drawn_pairs(several) == set() and several.faces.pairs.count() == 0

@@ -9,6 +9,7 @@ from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted
 from core.files.project.keys import finished
+from core.inspect.results import PairCandidate
 from core.inspect.uncertainty.part import MATERIALS, Part
 from core.report.facts.of_studies import repeat_facts, study_facts
 from core.study.type1 import type1_study
@@ -282,6 +283,22 @@ def test_faces_found_become_regions_and_go_again(shown):
     assert np.array_equal(shown.faces.region("lower"), TRIANGLE)
     undo(shown)
     assert np.array_equal(shown.faces.region("lower"), cases.LOWER_OUTLINE)
+
+
+def test_one_of_several_pairs_of_faces_is_confirmed_and_that_is_undone(shown):
+    corners = tuple(map(tuple, TRIANGLE)), tuple(map(tuple, cases.LOWER_OUTLINE))
+    other = PairCandidate(20.04, (100, 200), (30.0, 20.0), (10.0, 10.0), corners)
+    unknown = replace(other, outlines_px=((), ()))
+    gauge = cases.gauge(candidates=(other, unknown))
+    shown.scan.view = replace(shown.scan.view, gauge=gauge)
+    assert shown.faces.candidates == (other,)
+    shown.faces.confirm(other)
+    assert shown.model.undo_stack.undoText() == "confirm the faces 20.0 mm apart"
+    assert np.array_equal(shown.faces.region("upper"), TRIANGLE)
+    assert np.array_equal(shown.faces.region("lower"), cases.LOWER_OUTLINE)
+    assert shown.faces.candidates == ()
+    undo(shown)
+    assert not shown.faces.own and shown.faces.candidates == (other,)
 
 
 def test_regions_can_be_exchanged(shown):
