@@ -48,6 +48,9 @@ REGION = "#FFD54A"
 FACE_UPPER, FACE_LOWER = "#56B4E9", "#FF9E2C"
 """Points of the two faces of a gauge."""
 
+NEXT_PAIR = "#B070F0"
+"""Outlines of faces that could be meant as well as those that were measured."""
+
 FEATURE = "#E66AD2"
 """Points and regions of the feature that is chosen."""
 

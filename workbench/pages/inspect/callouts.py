@@ -9,7 +9,7 @@ import numpy as np
 from PySide6.QtCore import QObject
 
 from core.report.wording import shown_name, with_uncertainty
-from workbench.language import tr
+from workbench.language import number, tr
 from workbench.pages.inspect.features import words
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.words import wording
@@ -30,6 +30,9 @@ OUTDATED = ("mdi6.clock-outline", "muted")
 
 THICKNESS = "#thickness"
 """Name of the callout of a thickness that no feature of the plan has."""
+
+NEXT_PAIR = "#next pair"
+"""Name of that of the next best pair of faces, which was not measured."""
 
 
 class CalloutsTool(QObject):
@@ -77,6 +80,10 @@ class CalloutsTool(QObject):
             sign = VERDICT_ICONS[gauge.verdict] if gauge.verdict else None
             place = _middle(view.points[gauge.upper.indices])
             yield self._callout(THICKNESS, place, tr("Thickness"), f"{value} ± {uncertainty} mm", sign)
+        pair = self._presenter.faces.next_pair
+        if pair is not None:
+            value = f"{number(pair.thickness_mm, '.1f')} mm"
+            yield self._callout(NEXT_PAIR, _middle(pair.outlines[0]), tr("next best pair"), value, None)
 
     def _callout(self, name: str, place: Array, title: str, value: str, sign: tuple[str, str] | None) -> Callout:
         moved = self._presenter.features.callouts_moved.get(name)

@@ -12,7 +12,7 @@ from workbench.pages.inspect.faces import FACES
 from workbench.pages.inspect.features.edit import LINE
 from workbench.pages.inspect.presenter import RELIEF, InspectPresenter
 from workbench.pages.inspect.stage import Stage
-from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE, PROPOSED
+from workbench.views.colours import FACE_LOWER, FACE_UPPER, FEATURE, NEXT_PAIR
 from workbench.views.common import Choice
 from workbench.views.image.view import ImageView
 from workbench.views.layouts import in_column, in_row, muted
@@ -22,9 +22,6 @@ if TYPE_CHECKING:
 
 USED = "feature points"
 """The layer of the points that the chosen feature used."""
-
-NEXT_PAIR = "next pair"
-"""Layers of the faces that could be meant as well."""
 
 COLOURS = {"upper": FACE_UPPER, "lower": FACE_LOWER}
 
@@ -115,7 +112,6 @@ class PictureTab(QWidget):
         if laid == self._laid:
             return
         self._laid = laid
-        self._lay_next_pair()
         for place, face in enumerate(FACES):
             region = regions[face]
             found = view.outlines[place] if view.outlines is not None and not faces.own else None
@@ -134,21 +130,19 @@ class PictureTab(QWidget):
                 self.image.set_points(
                     f"used {face}", view.used_uv[place], colour=COLOURS[face], symbol=".", size=3, title=title
                 )
+        self._lay_next_pair()
 
     def _lay_next_pair(self) -> None:
         """The next best of several pairs of faces, until one is confirmed."""
         pair = self._presenter.faces.next_pair
         for place in range(len(FACES)):
-            if pair is None or place >= len(pair.outlines_px):
-                self.image.remove_layer(f"{NEXT_PAIR} {place}")
-                continue
-            label = tr("not measured: {mm} mm", mm=number(pair.thickness_mm, ".1f"))
+            self.image.remove_layer(f"next pair {place}")
+        if pair is None:
+            return
+        label = tr("not measured: {mm} mm", mm=number(pair.thickness_mm, ".1f"))
+        for place, outline in enumerate(pair.outlines_px):
             self.image.set_polygon(
-                f"{NEXT_PAIR} {place}",
-                pair.outlines_px[place],
-                colour=PROPOSED,
-                title=tr("next best pair"),
-                label=label,
+                f"next pair {place}", outline, colour=NEXT_PAIR, title=tr("next best pair"), label=label
             )
 
     def _lay_feature(self) -> None:

@@ -15,7 +15,7 @@ from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
 from core.report.wording import grouped
-from workbench.language import number, tr
+from workbench.language import tr
 from workbench.pages.frame_tool import FrameTool
 from workbench.pages.inspect import words
 from workbench.pages.inspect.callouts import CalloutsTool
@@ -33,6 +33,7 @@ from workbench.views.colours import (
     FACE_LOWER,
     FACE_UPPER,
     FEATURE,
+    NEXT_PAIR,
     NOMINAL_SURFACE,
     OTHER_SURFACE,
     PROPOSED,
@@ -76,7 +77,7 @@ NOMINAL_OPACITY = 0.3
 CUT_OPACITY = 0.15
 """The surface behind it stays to be seen."""
 
-NEXT_PAIR = "next pair"
+NEXT_FACES = "next pair"
 """Name of the outlines of the faces that could be meant as well."""
 
 PROPOSALS = ("proposed 1", "proposed 2")
@@ -399,11 +400,10 @@ class SurfaceTab(QWidget):
             return
         self._next = pair
         if pair is None:
-            self.scene.remove(NEXT_PAIR)
-            return
-        self.scene.set_polylines(NEXT_PAIR, [line[[*range(len(line)), 0]] for line in pair.outlines], PROPOSED)
-        label = tr("not measured: {mm} mm", mm=number(pair.thickness_mm, ".1f"))
-        self.scene.set_labels(NEXT_PAIR, [(pair.outlines[0][0], label)], PROPOSED)
+            self.scene.remove(NEXT_FACES)
+        else:
+            lines = [outline[[*range(len(outline)), 0]] for outline in pair.outlines]
+            self.scene.set_polylines(NEXT_FACES, lines, NEXT_PAIR)
 
     def _show_other(self) -> None:
         """The surface the scan is compared with, beside it."""

@@ -342,7 +342,7 @@ class CellsLayer(Layer):
 class PolygonLayer(Layer):
     """A closed region; with handles at its corners and in its middle when it can be edited.
 
-    One with a `label`, which stands in its middle, is dashed: it is offered.
+    One with a `label`, which stands below it, is dashed: it is offered.
     """
 
     def __init__(self, uv: ArrayLike, colour: ColourLike, editable: bool, title: str, label: str = "") -> None:
@@ -392,7 +392,9 @@ class PolygonLayer(Layer):
         painter.setPen(QPen(colour, 1.6, Qt.PenStyle.DashLine if self._label else Qt.PenStyle.SolidLine))
         painter.drawPolygon(outline)
         if self._label:
-            draw_label(painter, transform.map(self.middle), self._label, colour, within=widget)
+            box = outline.boundingRect()
+            below = QPointF(box.center().x(), box.bottom() + 12)
+            draw_label(painter, below, self._label, colour, within=widget)
         if self.editable:
             painter.setPen(QPen(RIM, 1.0))
             painter.setBrush(colour)

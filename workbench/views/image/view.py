@@ -283,7 +283,7 @@ class ImageView(QWidget):
     ) -> None:
         """A closed region (N, 2); with `editable` its corners, and all of it by its middle, can be dragged.
 
-        One with a `label`, which stands in its middle, is dashed: it is offered, and not what counts.
+        One with a `label`, which stands below it, is dashed: it is offered, and not what counts.
         """
         self._layers.put(name, PolygonLayer(uv, colour, editable, title, label))
 
