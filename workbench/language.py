@@ -33,6 +33,7 @@ _FIELDS = {
     "target.circles": label("columns and rows of the target"),
     "target.dictionary": label("markers of the target"),
     "target.columns, rows and dictionary": label("columns, rows and markers"),
+    "target.columns and rows": label("columns and rows"),
     "target.size": label("size"),
 }
 """What the window calls the fields of the files that people write for the command line."""

@@ -106,8 +106,9 @@ def test_beside_four_busy_processes_the_tour_ends_in_a_verdict(
     for part in ("camera", "planes"):
         t.press("Live source")
         t.press("Start live")
-        t.until(lambda: "Nothing is missing" in t.page().picture.hints.text, f"enough of {part}", PATIENCE_S)
-        t.press("Stop")
+        if part == "planes":  # that of the camera stops by itself
+            t.until(lambda: "Nothing is missing" in t.page().picture.hints.text, f"enough of {part}", PATIENCE_S)
+            t.press("Stop")
         t.press("Accept", PATIENCE_S)
         t.next(PATIENCE_S)
         done(part)

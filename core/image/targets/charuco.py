@@ -11,9 +11,12 @@ from core.image.targets.corners import corner_sigma, refined
 from core.image.targets.kinds import Charuco
 from core.image.targets.picture import Picture, as_8bit, enlarged, noise_of, reduced, without_stripes
 from core.image.targets.pose import homography_of, map_by
-from core.image.targets.target_view import TargetNotFound, TargetView
+from core.image.targets.target_view import OtherBoard, TargetNotFound, TargetView
 from core.messages import Field, Message
 from core.model.arrays import Array
+
+LEAST_IN_PLACE = 0.9
+"""Share of the markers that lie as on a board of the size that they are to tell."""
 
 LEAST_CORNERS = 6
 """Fewer corners fix neither a pose nor a camera with anything to spare."""
@@ -49,7 +52,8 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
                 return _view(board, picture, enlarged(corners, factor), ids, factor, name)
         if factor == 1:
             break
-    raise _failure(board, markers, name)
+    counted = _counted(dictionary, small) if markers else None
+    raise _failure(board, markers, name) if counted is None else _other_board(board, counted, name)
 
 
 def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
@@ -92,6 +96,58 @@ def _best_reading(
             points = np.empty((0, 2)) if count == 0 else np.asarray(corners, dtype=np.float64).reshape(-1, 2)
             best = (points, np.empty(0, np.intp) if count == 0 else np.asarray(ids, np.intp).ravel(), markers)
     return best
+
+
+def _counted(dictionary: cv2.aruco.Dictionary, picture: NDArray[np.uint8]) -> tuple[int, int] | None:
+    """Columns and rows of squares of the board that the markers in the picture make up; None if they make up none.
+
+    Markers are numbered row by row, so with another number of columns they lie otherwise. The board's last row is that
+    of the highest number, where the picture shows the ground around it.
+    """
+    corners, ids, _ = cv2.aruco.ArucoDetector(dictionary).detectMarkers(picture)
+    if ids is None or len(ids) < LEAST_CORNERS:
+        return None
+    numbers = np.asarray(ids, np.intp).ravel()
+    centres = np.array([np.asarray(one, dtype=np.float64).reshape(4, 2).mean(axis=0) for one in corners])
+    for columns in range(3, int(numbers.max()) + 2):
+        for first in (1, 0):  # column of the first row's first marker; 0 before OpenCV 4.6
+            row, column = np.divmod(2 * np.arange(numbers.max() + 1) + first, columns)
+            if columns % 2 == 0:  # rows of an even number of squares begin with the two colours in turn
+                column += np.where(row % 2 == 1, 1 - 2 * first, 0)
+            places = np.column_stack([column, row])[numbers] + 0.5
+            if _lie_there(picture, places, centres, (columns, int(row[-1]) + 1)):
+                return columns, int(row[-1]) + 1
+    return None
+
+
+def _lie_there(picture: NDArray[np.uint8], places: Array, centres: Array, size: tuple[int, int]) -> bool:
+    """Whether markers at `places` (N, 2), in squares, are seen at `centres`, all a square around the board is."""
+    if np.ptp(places[:, 0]) < 2 or np.ptp(places[:, 1]) < 2:
+        return False
+    homography = homography_of(places, centres, robust=True)
+    if homography is None:
+        return False
+    off = np.linalg.norm(map_by(homography, places) - centres, axis=1)
+    side = np.linalg.norm(map_by(homography, places + [0.5, 0.5]) - map_by(homography, places - 0.5), axis=1)
+    right, bottom = size[0] + 1.0, size[1] + 1.0
+    outline = map_by(homography, np.array([(-1.0, -1.0), (right, -1.0), (-1.0, bottom), (right, bottom)]))
+    height, width = picture.shape
+    within = (outline > 0) & (outline < [width - 1, height - 1])
+    return bool(np.mean(off < 0.2 * side) > LEAST_IN_PLACE and within.all())
+
+
+def _other_board(board: Charuco, counted: tuple[int, int], name: str) -> OtherBoard:
+    return OtherBoard(
+        Message(
+            "target.other_charuco",
+            "the board shows {n} squares, not {all}",
+            n=f"{counted[0]} × {counted[1]}",
+            all=f"{board.columns} × {board.rows}",
+        ),
+        where=name,
+        todo=Message("advice.check_squares", "check {fields}", fields=Field("target.columns and rows")),
+        counted=counted,
+    )
 
 
 def _spread_out(board: Charuco, ids: NDArray[np.intp]) -> bool:

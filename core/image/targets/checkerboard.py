@@ -198,7 +198,8 @@ def _failure(board: Checkerboard, full: NDArray[np.uint8], seen: list[Found], na
     wanted = f"{board.columns} × {board.rows}"
     rows, columns = largest.grid.shape[:2]
     longer, shorter = max(rows, columns), min(rows, columns)
-    shown = f"{longer} × {shorter}" if board.columns >= board.rows else f"{shorter} × {longer}"
+    counted = (longer, shorter) if board.columns >= board.rows else (shorter, longer)
+    shown = f"{counted[0]} × {counted[1]}"
     fits = longer <= max(board.columns, board.rows) and shorter <= min(board.columns, board.rows)
     if fits and len(places(full, right_handed_grid(largest.grid), board)) > 1:
         return TargetNotFound(
@@ -225,13 +226,14 @@ def _failure(board: Checkerboard, full: NDArray[np.uint8], seen: list[Found], na
             where=name,
             todo=Message("advice.show_whole_board", "move the board so that the whole of it is seen, with its margin"),
         )
-    kind = OtherBoard if ends_all_round(full, largest.grid) else TargetNotFound
-    return kind(
-        Message("target.other_board", "the board shows {n} inner corners, not {all}", n=shown, all=wanted),
-        where=name,
-        todo=Message(
+    what = Message("target.other_board", "the board shows {n} inner corners, not {all}", n=shown, all=wanted)
+    todo = (
+        Message(
             "advice.check_corners_or_cover", "check {field}, or whether a part of the board is covered", field=_CORNERS
         )
         if fits
-        else Message("advice.check_corners", "check {field}", field=_CORNERS),
+        else Message("advice.check_corners", "check {field}", field=_CORNERS)
     )
+    if ends_all_round(full, largest.grid):
+        return OtherBoard(what, where=name, todo=todo, counted=counted)
+    return TargetNotFound(what, where=name, todo=todo)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -13,7 +13,7 @@ from core.image.targets.ellipses import Ellipse, centre_shift, fit_dark_ellipses
 from core.image.targets.kinds import CircleGrid
 from core.image.targets.picture import Picture, as_8bit, enlarged, reduced, without_stripes
 from core.image.targets.pose import homography_of, map_by
-from core.image.targets.target_view import LEAVE_OUT_OR_RETAKE, TargetNotFound, TargetView
+from core.image.targets.target_view import LEAVE_OUT_OR_RETAKE, OtherBoard, TargetNotFound, TargetView
 from core.messages import Field, Message
 from core.model import Camera
 from core.model.arrays import Array
@@ -28,6 +28,9 @@ LEAST_SHARE = 0.8
 """Share of the circles whose outline must be seen."""
 
 _CIRCLES = Field("target.circles")
+
+MOST_COUNTED = 1000
+"""So many spots, and they are no target that was counted wrongly."""
 
 MOST_SPOTS = 2
 """More round spots than this many grids' worth, and the picture shows a texture, not a target."""
@@ -52,7 +55,7 @@ def detect_circle_grid(grid: CircleGrid, picture: Picture, name: str = "", camer
     doi:10.1109/34.879788.
     """
     full = as_8bit(picture)
-    most_seen = 0
+    most_seen, counted = 0, None
     for longest in (1000, 2000):
         small, factor = reduced(full, longest)
         for candidate in (small, without_stripes(small, 7)):
@@ -62,12 +65,13 @@ def detect_circle_grid(grid: CircleGrid, picture: Picture, name: str = "", camer
                 raise _failure(grid, most_seen, name)
             centres = _grid_centres(candidate, grid, spots)
             if centres is not None:
-                _check_complete(grid, spots, centres, name)
+                _check_complete(grid, spots, centres, _counted(candidate, grid, spots), name)
                 radii = spots.radius[cKDTree(spots.uv).query(centres)[1]]
                 return _view(grid, picture, enlarged(centres, factor), radii * factor, name, camera)
+            counted = counted or _counted(candidate, grid, spots)
         if factor == 1:
             break
-    raise _failure(grid, most_seen, name)
+    raise _failure(grid, most_seen, name) if counted is None else _other_grid(grid, counted, name)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -109,6 +113,52 @@ def _grid_centres(picture: NDArray[np.uint8], grid: CircleGrid, spots: _Spots) -
     return None
 
 
+def _counted(picture: NDArray[np.uint8], grid: CircleGrid, spots: _Spots) -> tuple[int, int] | None:
+    """Columns and rows of another grid than `grid` that all the spots make up, none of it beyond the picture's border.
+
+    None if they are as many as `grid` has, or make up none.
+    """
+    count = len(spots.uv)
+    if count == grid.columns * grid.rows or count > MOST_COUNTED:
+        return None
+    for columns in range(count // 3, 2, -1):
+        rows, rest = divmod(count, columns)
+        turned = not grid.asymmetric and (columns - rows) * (grid.columns - grid.rows) < 0
+        if rest or turned:
+            continue
+        other = replace(grid, columns=columns, rows=rows)
+        centres = _grid_centres(picture, other, spots)
+        if centres is not None and _ends_within(picture, other, centres):
+            return columns, rows
+    return None
+
+
+def _ends_within(picture: NDArray[np.uint8], grid: CircleGrid, centres: Array) -> bool:
+    """Whether a further row or column on any side would be seen in the picture, too, with all of its circles."""
+    homography = homography_of(grid.points[:, :2], centres)
+    if homography is None:
+        return False
+    step = 1.5 * (2 if grid.asymmetric else 1) * grid.pitch_mm
+    low, high = grid.points[:, :2].min(axis=0) - step, grid.points[:, :2].max(axis=0) + step
+    further = map_by(homography, np.array([low, (high[0], low[1]), high, (low[0], high[1])]))
+    height, width = picture.shape
+    return bool(((further > 0) & (further < [width - 1, height - 1])).all())
+
+
+def _other_grid(grid: CircleGrid, counted: tuple[int, int], name: str) -> OtherBoard:
+    return OtherBoard(
+        Message(
+            "target.other_circles",
+            "the target shows {n} circles, not {all}",
+            n=f"{counted[0]} × {counted[1]}",
+            all=f"{grid.columns} × {grid.rows}",
+        ),
+        where=name,
+        todo=Message("advice.check_circles", "check the number of {field}", field=_CIRCLES),
+        counted=counted,
+    )
+
+
 def _ordered(grid: CircleGrid, centres: Array) -> Array | None:
     """`centres` in the order that :class:`CircleGrid` promises; None if they are no grid after all."""
     ways = [centres]
@@ -131,8 +181,15 @@ def _fits(grid: CircleGrid, centres: Array) -> bool:
     return bool(error < 0.2 * pitch and np.linalg.det(homography) * weight.mean() > 0)
 
 
-def _check_complete(grid: CircleGrid, spots: _Spots, centres: Array, name: str) -> None:
-    """Refuse a part of a larger grid: spots of the same size where a further row or column would be."""
+def _check_complete(
+    grid: CircleGrid, spots: _Spots, centres: Array, counted: tuple[int, int] | None, name: str
+) -> None:
+    """Refuse a part of a larger grid: spots of the same size where a further row or column would be.
+
+    `counted` are the columns and rows that all spots make up, if they do.
+    """
+    if counted is not None:
+        raise _other_grid(grid, counted, name)
     if grid.asymmetric:
         return
     block = centres.reshape(grid.rows, grid.columns, 2)

@@ -66,7 +66,24 @@ class TargetNotFound(InputError):
 
 
 class OtherBoard(TargetNotFound):
-    """The picture shows the whole of a board of another size: all its ends are seen."""
+    """The picture shows the whole of a board of another size, `counted` columns and rows: all its ends are seen.
+
+    Both are counted as the target that was looked for counts them: corners, squares or circles.
+    """
+
+    def __init__(
+        self, what: Message | str, *, where: object = "", todo: Message | str = "", counted: tuple[int, int]
+    ) -> None:
+        super().__init__(what, where=where, todo=todo)
+        self.counted = counted
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _other_board, (self.what, self.where, self.todo, self.counted)
+
+
+def _other_board(what: Message, where: Message | str, todo: Message, counted: tuple[int, int]) -> OtherBoard:
+    """An OtherBoard that came from another process."""
+    return OtherBoard(what, where=where, todo=todo, counted=counted)
 
 
 LEAVE_OUT_OR_RETAKE = Message("advice.leave_out_or_retake", "leave the picture out or take it again")

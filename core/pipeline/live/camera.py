@@ -9,23 +9,27 @@ from core.calibrate.camera.capture import TAKEN, CaptureJudge
 from core.errors import InputError
 from core.image.sharpness import edge_blur_px
 from core.image.targets import Target, detect
-from core.image.targets.target_view import TargetView
+from core.image.targets.target_view import OtherBoard, TargetView
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
-from core.pipeline.live.commands import Auto, Capture, Command, Discard
+from core.pipeline.live.commands import Auto, Capture, Command, Discard, LookFor
 from core.pipeline.live.context import LiveContext, as_sentence
 from core.pipeline.live.events import CameraDetail
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FoundView:
-    """What one frame shows of a target: the view and how blurred its edges are, or why there is none."""
+    """What one frame shows of a target: the view and how blurred its edges are, or why there is none.
+
+    `counted` are the columns and rows of a board of another size that is seen instead.
+    """
 
     frame: Frame
     view: TargetView | None
     blur_px: float = float("nan")
     why_not: Message | None = None
+    counted: tuple[int, int] | None = None
 
 
 def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
@@ -33,7 +37,8 @@ def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
     try:
         view = detect(target, frame.picture, "", camera, thorough=False)
     except InputError as error:
-        return FoundView(frame, None, why_not=as_sentence(error.what))
+        counted = error.counted if isinstance(error, OtherBoard) else None
+        return FoundView(frame, None, why_not=as_sentence(error.what), counted=counted)
     return FoundView(frame, view, edge_blur_px(frame.picture, view.uv))
 
 
@@ -43,7 +48,7 @@ class LiveCamera:
     paired = False
 
     def __init__(self, context: LiveContext) -> None:
-        self._context = context
+        self._context, self._target = context, context.request.rig.camera_target
         self._auto, self._capture = context.request.auto, False
         self._judge: CaptureJudge | None = None
         self._look: FoundView | None = None
@@ -63,9 +68,7 @@ class LiveCamera:
             self._judge = CaptureJudge((width, height), self._context.request.camera)
             self._judge.know(self._context.request.there)
             self._missing, self._wanted = self._judge.missing(), self._judge.wanted()
-        self._context.worker.start(
-            find_view, frame, self._context.request.rig.camera_target, self._context.request.camera
-        )
+        self._context.worker.start(find_view, frame, self._target, self._context.request.camera)
 
     def poll(self) -> Frame | None:
         """Judge what has been seen, and take it."""
@@ -100,18 +103,21 @@ class LiveCamera:
             views=len(self._judge.views),
             auto=self._auto,
             wanted=self._wanted,
+            counted=self._look.counted,
         )
 
     def rest(self) -> None:
         """Nothing waits."""
 
     def tell(self, command: Command) -> None:
-        """Capture, Auto and Discard."""
+        """Capture, Auto, Discard and LookFor."""
         match command:
             case Capture():
                 self._capture = True
             case Auto(on):
                 self._auto = on
+            case LookFor(target):
+                self._target = target
             case Discard(name) if self._judge is not None and self._context.put_aside(name):
                 self._judge.forget(name)
                 self._missing, self._wanted = self._judge.missing(), self._judge.wanted()

@@ -10,6 +10,7 @@ from core.files.recording.options import Options
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import Rig
 from core.files.results.check_file import InterimCheck
+from core.image.targets.kinds import Target
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan
 
@@ -126,4 +127,11 @@ class Discard:
     name: str
 
 
-Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Mark | Stop | Configure | Discard
+@dataclass(frozen=True, slots=True)
+class LookFor:
+    """Look for another target of the camera's from now on: it was stated wrongly."""
+
+    target: Target
+
+
+Command = Capture | Auto | Switch | TakeReference | Pause | Resume | Mark | Stop | Configure | Discard | LookFor

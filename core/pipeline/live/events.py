@@ -40,6 +40,8 @@ class CameraDetail:
         Whether views are taken without being told.
     wanted
         (5, 2) closed outline in pixels of the target where it would add most; None if nowhere in particular.
+    counted
+        Columns and rows of the board that is seen in place of the one looked for; None if there is none such.
     """
 
     index: int
@@ -50,6 +52,7 @@ class CameraDetail:
     views: int
     auto: bool
     wanted: Array | None = None
+    counted: tuple[int, int] | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -117,6 +117,11 @@ def _require_this_board(
 
     To look for the one that was stated in every way takes ten times as long as to find it. Where the first picture
     shows it, the others are not looked at here; what was found is returned by its name.
+
+    Raises
+    ------
+    OtherBoard
+        With what they show.
     """
     shown: list[OtherBoard] = []
     for name, picture in first:
@@ -128,13 +133,14 @@ def _require_this_board(
             shown.append(error)
         except InputError:
             return {}  # told of that picture when all are looked at
-        if shown[-1].what != shown[0].what:
+        if shown[-1].counted != shown[0].counted:
             return {}
-    if len(shown) == _LOOKED_AT_FIRST:
-        raise InputError(
+    if len(shown) > 1:
+        raise OtherBoard(
             Message("camera.other_board", "in the first {n} pictures {reason}", n=len(shown), reason=shown[0].what),
             where=found.where("camera"),
             todo=shown[0].todo,
+            counted=shown[0].counted,
         )
     return {}
 

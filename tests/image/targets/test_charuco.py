@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from core.image.targets import Charuco, TargetNotFound, detect
+from core.image.targets.target_view import OtherBoard
 from tests.image.rendered_targets import Noise, board_picture, pose, render, rig
 
 BOARD = Charuco(9, 7, 10.0, 7.0, "4X4_50")
@@ -60,6 +61,26 @@ def test_the_wrong_dictionary_and_a_foreign_picture_are_named(picture):
         detect(Charuco(9, 7, 10.0, 7.0, "DICT_7X7_50"), picture)
     with pytest.raises(TargetNotFound, match="fewer than 6 of its corners"):
         detect(BOARD, np.ascontiguousarray(picture[:, :385]))
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(8, 7), (10, 7), (7, 9), (8, 6)])
+def test_a_board_counted_wrongly_is_counted(picture, columns, rows):
+    with pytest.raises(OtherBoard, match=f"shows 9 × 7 squares, not {columns} × {rows}") as told:
+        detect(Charuco(columns, rows, 10.0, 7.0), picture)
+    assert told.value.counted == (9, 7)
+
+
+def test_the_old_pattern_is_counted_as_well():
+    old = render(CAMERA, WHERE, printed(legacy=True, rows=6), samples=4)
+    with pytest.raises(OtherBoard) as told:
+        detect(Charuco(10, 6, 10.0, 7.0), old)
+    assert told.value.counted == (9, 6)
+
+
+def test_a_board_that_goes_on_beyond_the_picture_is_not_counted(picture):
+    with pytest.raises(TargetNotFound, match="show more of the board") as told:
+        detect(Charuco(8, 7, 10.0, 7.0), np.ascontiguousarray(picture[:, :475]))
+    assert not isinstance(told.value, OtherBoard)
 
 
 def test_impossible_boards_are_refused():

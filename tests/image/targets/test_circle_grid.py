@@ -6,6 +6,7 @@ import pytest
 
 from core.image.targets import CircleGrid, TargetNotFound, camera_shift, detect
 from core.image.targets.ellipses import centre_shift, fit_dark_ellipses
+from core.image.targets.target_view import OtherBoard
 from tests.image.rendered_targets import Noise, circles, pose, render, rig
 from tests.shared import REAL_SETS
 
@@ -60,12 +61,31 @@ def test_a_circle_under_a_stripe_is_kept_true_or_left_out():
 
 def test_a_grid_of_another_size_or_a_part_of_it_is_named():
     picture = render(CAMERA, STEEP, circles(GRID.points, 3.5), samples=3)
-    with pytest.raises(TargetNotFound, match=r"shows more than 6 × 6 circles|no 6 × 6 grid"):
+    with pytest.raises(OtherBoard, match="shows 7 × 7 circles, not 6 × 6") as told:
         detect(CircleGrid(6, 6, 12.0), picture)
-    with pytest.raises(TargetNotFound, match="49 round dark spots are seen, but no 8 × 7 grid"):
+    assert told.value.counted == (7, 7)
+    with pytest.raises(OtherBoard, match="shows 7 × 7 circles, not 8 × 7"):
         detect(CircleGrid(8, 7, 12.0), picture)
     with pytest.raises(TargetNotFound, match="round dark spots are seen, but no 7 × 7 grid"):
         detect(GRID, np.ascontiguousarray(picture[:, :330]))
+
+
+@pytest.mark.parametrize(("columns", "rows"), [(4, 10), (5, 11), (4, 12)])
+def test_a_moved_grid_counted_wrongly_is_counted(columns, rows):
+    grid = CircleGrid(4, 11, 8.0, asymmetric=True)
+    picture = render(CAMERA, pose(10, -15, 92, (28, 40), 420), circles(grid.points, 3.0), noise=Noise(1))
+    with pytest.raises(OtherBoard) as told:
+        detect(CircleGrid(columns, rows, 8.0, asymmetric=True), picture)
+    assert told.value.counted == (4, 11)
+
+
+@pytest.mark.parametrize("cut", [-40, -30, -20, -15, -5])
+def test_a_grid_that_goes_on_beyond_the_picture_is_not_counted(cut):
+    facing = pose(0, 0, 0, (36, 36), 380)
+    picture = render(CAMERA, facing, circles(GRID.points, 3.5), samples=3)
+    last = round(float(CAMERA.project_pose(facing, GRID.points[6:7])[0, 0]))
+    with pytest.raises(TargetNotFound, match="round dark spots are seen, but no 7 × 7 grid"):
+        detect(GRID, np.ascontiguousarray(picture[:, : last + cut]))
 
 
 @pytest.mark.accuracy

@@ -1,4 +1,5 @@
 import time
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -10,7 +11,7 @@ from core.files.recording.rig import Rig
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, Checkerboard, detect
 from core.pipeline.live import planes as live_planes
-from core.pipeline.live.commands import Auto, Capture, Discard, Stop
+from core.pipeline.live.commands import Auto, Capture, Discard, LookFor, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.simulate.calibration import CalibrationPictures
 from core.simulate.rays import ray_map
@@ -114,6 +115,21 @@ def test_views_that_are_there_already_count_for_what_is_missing_and_are_not_take
     assert str(seen[0].missing[0]) == "Record at least 10 views; there are 3."
     assert seen[0].cells.any()
     assert "Turn the board: this tilt is already there." in {str(detail.sentence) for detail in seen}
+
+
+def test_a_board_counted_wrongly_is_counted_and_found_once_it_is_stated_right(monkeypatch, tmp_path, plates):
+    def right(event):
+        if isinstance(event, LiveView) and event.detail is not None and event.detail.counted is not None:
+            return LookFor(replace(wrong.camera_target, columns=event.detail.counted[0]))
+        return Stop() if isinstance(event, LiveTaken) else None
+
+    wrong = replace(RIG, camera_target=Checkerboard(18, 12, 10.0))
+    window, shown = Window(right), OneAfterAnother(plates.views[:1])
+    source = ScriptedSource(shown, UNTIL_STOPPED, pace_s=0.01)
+    ended = record(monkeypatch, source, window, "camera", wrong, tmp_path / "camera")
+    assert ended.recorded == 1
+    assert {detail.counted for detail in window.details} == {None, (17, 12)}
+    assert "The board shows 17 × 12 inner corners, not 18 × 12." in {str(one.sentence) for one in window.details}
 
 
 def test_the_same_view_is_taken_once(monkeypatch, tmp_path, plates):

@@ -1,11 +1,13 @@
 """A board whose corners were counted wrongly is told by the first pictures."""
 
+import pickle
+
 import pytest
 
-from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.image.targets import checkerboard
+from core.image.targets.target_view import OtherBoard
 from core.pipeline.steps.camera_step import see_views
 from tests.simulated import copy_of
 
@@ -24,13 +26,14 @@ def test_the_first_pictures_tell_and_no_long_search_is_made(tiny_set, tmp_path, 
     folder = copy_of(tiny_set, tmp_path / "set")
     rig = folder / "rig.toml"
     rig.write_text(rig.read_text().replace("[17, 12]", str(list(counted))))
-    with pytest.raises(InputError) as told:
+    with pytest.raises(OtherBoard) as told:
         see_views(PictureReader(open_set(folder)))
     columns, rows = counted
     assert str(told.value).startswith(
         f"{folder / 'camera'}: in the first 3 pictures the board shows 17 × 12 inner corners, not {columns} × {rows}; "
     )
     assert "inner_corners" in str(told.value)
+    assert pickle.loads(pickle.dumps(told.value)).counted == (17, 12)
     assert not searches
 
 

@@ -127,8 +127,11 @@ class PictureTab(QWidget):
         else:
             self.image.set_lines("wanted", [detail.wanted], colour=WANTED, width=3.0, title=tr("wanted next"))
         self._draw_more(detail)
-        enough = () if detail.missing else (tr("Nothing is missing: press Stop, and it is calibrated."),)
+        if not detail.missing:
+            self.image.announce("")
+            self.hints.set_hints([tr("Nothing is missing: press Stop, and it is calibrated.")])
+            return
         seen = () if detail.sentence is None else (detail.sentence,)
         self.image.announce("".join(map(text_of, seen)))
         where = () if detail.wanted is None else (tr("The outline in the picture shows where it would add most."),)
-        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *where, *enough])
+        self.hints.set_hints([*map(text_of, (*seen, *detail.missing[:2])), *where])

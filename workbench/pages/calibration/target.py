@@ -150,6 +150,13 @@ class TargetChoice(QObject):
         after = replace(project, rig=replace(project.rig, **changed))
         self._model.edit(self._label, after, f"{self._which} {field}")
 
+    def take_counted(self, columns: int, rows: int) -> None:
+        """Take over the columns and rows that the pictures show; undoable."""
+        target = changed_target(changed_target(self.target, "columns", columns), "rows", rows)
+        changed: dict[str, Any] = {self._which: target}
+        project = self._model.project
+        self._model.edit(self._label, replace(project, rig=replace(project.rig, **changed)))
+
     def _changed(self, field: str, value: Any) -> dict[str, Any]:
         """Fields of the rig that change; ValueError as `changed_target`."""
         if field == "margin_mm":

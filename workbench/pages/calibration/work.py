@@ -134,6 +134,8 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.problem = ""
         self.solving = False
         self.search_task: Task | None = None
+        self._refused: tuple[Key, Any] = (), None
+        """What the last search that failed rested on, and what it failed with."""
         self._found: dict[Key, Found] = {}
         self._solved: OrderedDict[Key, tuple[Solution | None, str]] = OrderedDict()
         self._found_key: Key = ()
@@ -229,8 +231,8 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
             project,
             label=self._labels()[0],
             on_done=lambda found: self._search_done(folder, key, found),
-            on_failed=lambda problem: self._search_failed(folder, key, self._in_words(problem)),
-            on_cancelled=lambda: self._search_failed(folder, key, ""),
+            on_failed=lambda problem: self._search_failed(folder, key, problem),
+            on_cancelled=lambda: self._search_failed(folder, key, None),
         )
         self.changed.emit()
 
@@ -258,12 +260,12 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
         self.searched.emit()
         self.changed.emit()
 
-    def _search_failed(self, folder: Path, key: Key, problem: str) -> None:
+    def _search_failed(self, folder: Path, key: Key, problem: Any) -> None:
         if folder != self._model.folder:
             return
-        self.search_task = None
+        self.search_task, self._refused = None, (key, problem)
         if key == self._found_key:
-            self.problem = problem
+            self.problem = "" if problem is None else self._in_words(problem)
         self.changed.emit()
 
     def _ask_what_was_found(self, folder: Path, project: Project) -> None:

@@ -34,7 +34,7 @@ class CameraCard(CalibrationCard):
         return {
             Stage.NONE: tr("Choose a folder of pictures of the target, or take them with a live source."),
             Stage.FOUND: tr("Check the target below, then press Calibrate."),
-            Stage.LIVE: tr("Show the target from many sides. Stop when nothing is missing; then it is calibrated."),
+            Stage.LIVE: tr("Show the target from many sides. It stops by itself when nothing is missing."),
             Stage.SEARCHING: tr("The target is looked for in each picture."),
             Stage.SOLVING: tr("The camera is being solved anew."),
             Stage.SOLVED: tr("Look at the views and the residuals; leave out what is bad, then accept."),
@@ -51,6 +51,8 @@ class CameraCard(CalibrationCard):
         }
 
     def _next(self, stage: Stage) -> str:
+        if self._presenter.counted is not None:  # what is offered over the picture
+            return ""
         if stage is Stage.FAILED:  # searching again would help nothing where it is known what the pictures show
             return "run" if self._presenter.work.seen is None else ""
         return {Stage.SOLVED: "accept", Stage.FOUND: "run", Stage.OUTDATED: "run"}.get(stage, "")

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from PySide6.QtWidgets import QWidget
 
+from core.messages import NO_BREAK_SPACE
 from core.pipeline.live.events import CameraDetail
 from workbench.language import tr
 from workbench.pages.calibration.picture import PictureTab
@@ -44,6 +45,24 @@ class ViewTab(PictureTab):
         p = self._presenter
         self.factor.setVisible(not p.live.running and p.work.calibration is not None)
         super().refresh()
+        self._offer_counted()
+
+    def _offer_counted(self) -> None:
+        """Offer the columns and rows that are seen where others were entered."""
+        p = self._presenter
+        if p.counted is None:
+            self.image.offer("")
+            return
+        values = p.target.target_values()
+        seen, entered = (
+            f"{columns}{NO_BREAK_SPACE}×{NO_BREAK_SPACE}{rows}"
+            for columns, rows in (p.counted, (values["columns"], values["rows"]))
+        )
+        self.image.offer(
+            tr("{seen} is seen, {entered} is entered.", seen=seen, entered=entered),
+            tr("Take over {seen}", seen=seen),
+            p.take_counted,
+        )
 
     def _sentence(self) -> str:
         return words.view_sentence(self._presenter.short(self._presenter.current), self._quality())

@@ -11,6 +11,7 @@ from core.files.results.camera_file import camera_id
 from core.image.exclusion import Exclusion
 from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
+from core.pipeline.live.events import CameraDetail, LiveView
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.calibration.current_picture import CurrentPicture
@@ -37,6 +38,11 @@ class CameraPresenter(CalibrationPresenter):
         self.history = CameraHistory(bench, self.acceptance, self.live, self)
         self.target = TargetChoice(bench, "camera_target", tr("change the camera's target"), self)
         self.threshold: float | None = None
+        self._counted: tuple[int, int] | None = None
+        """What the live picture shows in place of the board that was entered."""
+        self._lacking = False
+        """Whether something was missing in the recording that runs, when it was last seen."""
+        self.live.view.connect(self._live_view)
         self._connect()
 
     # ---- state
@@ -75,6 +81,20 @@ class CameraPresenter(CalibrationPresenter):
 
     def _made(self) -> tuple[Any, ...]:
         return (self.work.calibration,)
+
+    # ---- the board, counted wrongly
+
+    @property
+    def counted(self) -> tuple[int, int] | None:
+        """Columns and rows of the board that is seen in place of the one entered; None if there is none such."""
+        return self._counted if self.live.running else self.work.counted
+
+    def take_counted(self) -> None:
+        """Take over what is seen; undoable. Live it is looked for at once, else the pictures are searched again."""
+        counted = self.counted
+        if counted is not None:
+            self.target.take_counted(*counted)
+            self.do_run()
 
     # ---- what is solved for
 
@@ -121,12 +141,36 @@ class CameraPresenter(CalibrationPresenter):
     def project_changed(self, before: Project, after: Project) -> None:
         if before.sources.camera != after.sources.camera:
             self.threshold = None
+        if before.rig.camera_target != after.rig.camera_target:
+            self._counted = None
+            self.live.look_for(after.rig.camera_target)
         super().project_changed(before, after)
 
     def views_that_count(self) -> tuple[TargetView, ...]:
         """What the target shows in the pictures there are, without those left out by hand."""
         found = self.work.seen.found if self.work.seen is not None else ()
         return tuple(view for view in found if view.name not in self.project.options.excluded)
+
+    def _live_started(self) -> None:
+        super()._live_started()
+        self._counted, self._lacking = None, False
+
+    def _live_view(self, view: LiveView) -> None:
+        """Note what is counted in place of the board entered, and stop once nothing is missing any more."""
+        detail = view.detail
+        if not isinstance(detail, CameraDetail) or not self.live.live:
+            return
+        counted = detail.counted or (self._counted if detail.uv is None else None)
+        if counted != self._counted:
+            self._counted = counted
+            self.changed.emit()
+        if self._lacking and not detail.missing and self.live.auto:
+            self.live.beep()
+            self.bench.notices.info(
+                tr("Nothing is missing: the live source was stopped, and the camera is calibrated.")
+            )
+            self.live.stop()
+        self._lacking = bool(detail.missing)
 
     def _work_changed(self) -> None:
         self.history.shown_is(self.work.calibration)

@@ -9,6 +9,7 @@ from core.calibrate.camera.views import RecalledCamera, SeenViews, ViewsJudgemen
 from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.project.data import Project
+from core.image.targets.target_view import OtherBoard
 from core.messages import Message
 from workbench.language import joined, sentence, text_of, tr
 from workbench.pages.calibration.work import CalibrationWork, Key
@@ -30,6 +31,13 @@ class CameraWork(CalibrationWork[SeenViews, CameraCalibration]):
     def seen(self) -> SeenViews | None:
         """What the pictures show; None until they have been searched."""
         return self.found
+
+    @property
+    def counted(self) -> tuple[int, int] | None:
+        """Columns and rows of the board that the pictures show in place of the one entered; None if not known."""
+        rested_on, problem = self._refused
+        refused = isinstance(problem, OtherBoard) and rested_on == self._found_key and self.found is None
+        return problem.counted if refused else None
 
     def left_out(self) -> dict[str, Message]:
         return {view.name: view.reason for view in self.seen.lost if view.reason} if self.seen is not None else {}

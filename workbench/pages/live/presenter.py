@@ -16,6 +16,7 @@ from PySide6.QtCore import QObject, QTimer, Signal
 from core.acquire.source import Step
 from core.errors import InputError
 from core.files.results.check_file import InterimCheck
+from core.image.targets import Target
 from core.image.targets.target_view import TargetView
 from core.messages import plain
 from core.model import Camera, Fan
@@ -26,6 +27,7 @@ from core.pipeline.live.commands import (
     Configure,
     Discard,
     LiveRequest,
+    LookFor,
     Mark,
     Pause,
     Resume,
@@ -355,6 +357,10 @@ class LivePresenter(QObject):
             self._auto = on
             self._send(Auto(on))
             self.changed.emit()
+
+    def look_for(self, target: Target) -> None:
+        """Look for another target of the camera's from now on."""
+        self._send(LookFor(target))
 
     def discard(self, name: str) -> None:
         """Put a picture aside that has been taken."""

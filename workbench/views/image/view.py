@@ -19,6 +19,7 @@ from workbench.views.empty_state import EmptyState
 from workbench.views.image.announcement import Announcement
 from workbench.views.image.drawing import ARROWS, DrawingTool
 from workbench.views.image.layers import LayersMenu, LayerStack, Legend
+from workbench.views.image.offer import Offer
 from workbench.views.image.overlays import (
     CellsLayer,
     Grip,
@@ -80,7 +81,7 @@ class ImageView(QWidget):
             "background: rgba(12, 16, 20, 200); color: #F4F6F8; border-radius: 4px; padding: 5px 9px;"
         )
         self._hint.hide()
-        self._announcement = Announcement(self._canvas)
+        self._announcement, self.offered = Announcement(self._canvas), Offer(self._canvas)
         self._empty = EmptyState(self._canvas)
         self._strip, self._tone = ToolStrip(), ToneMenu(self)
         self._layers_menu = LayersMenu(self._layers, self)
@@ -140,8 +141,12 @@ class ImageView(QWidget):
         self._arrange()
 
     def announce(self, sentence: str) -> None:
-        """Say a sentence large in the picture, for two seconds at least; "": nothing any more."""
-        self._announcement.say(sentence)
+        """Say a sentence large in the picture, for two seconds at least; "": nothing any more, nor beside an offer."""
+        self._announcement.say(sentence if self.offered.isHidden() else "")
+
+    def offer(self, sentence: str, button: str = "", do: Callable[[], None] | None = None) -> None:
+        """Offer something over the picture, by a sentence and a button; "": nothing any more."""
+        self.offered.say(sentence, button, do)
 
     @property
     def announced(self) -> str:
@@ -476,6 +481,7 @@ class ImageView(QWidget):
             self._empty.setGeometry(0, 0, size.width(), size.height())
         self._place_legend()
         self._announcement.place()
+        self.offered.place()
         self._hint.adjustSize()
         self._hint.move((size.width() - self._hint.width()) // 2, size.height() - self._hint.height() - 10)
 

@@ -1,5 +1,6 @@
 """The camera page, clicked."""
 
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -8,11 +9,14 @@ from PySide6.QtCore import QMimeData, QPoint, QPointF, Qt, QUrl
 from PySide6.QtGui import QDragEnterEvent, QDropEvent
 from PySide6.QtWidgets import QApplication
 
+from core.image.targets.target_view import OtherBoard
 from core.messages import plain
+from core.pipeline.live.commands import LookFor, Stop
 from core.pipeline.live.events import CameraDetail, LiveEnded, LiveStarted, LiveTaken, LiveView
 from core.report.facts.of_camera import parameter_fact
 from core.translations import language
 from tests.workbench.hand_lane import HandLane
+from tests.workbench.pages.conftest import find
 from tests.workbench.pages.places import moved, places
 from workbench.language import choose
 from workbench.pages.calibration.stage import Stage
@@ -50,9 +54,11 @@ def lane(camera_bench):
     return cast(HandLane, camera_bench.live)
 
 
-def live_view(uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",), wanted=None):
+def live_view(
+    uv=None, sentence="Hold still.", missing=("Record at least 10 views; there are 2.",), wanted=None, counted=None
+):
     cells = np.eye(12, 16, dtype=bool)
-    detail = CameraDetail(7, uv, plain(sentence), cells, tuple(map(plain, missing)), 2, True, wanted)
+    detail = CameraDetail(7, uv, plain(sentence), cells, tuple(map(plain, missing)), 2, True, wanted, counted)
     return LiveView(np.zeros((48, 64), np.uint8), 10, 7, 12.0, 2, 0, detail)
 
 
@@ -249,7 +255,7 @@ def test_it_is_said_when_nothing_is_missing_any_more(page, lane, qtbot):
     lane.current.view.emit(live_view())
     assert wanted not in page.picture.hints._steady._wanted
     lane.current.view.emit(live_view(missing=()))
-    assert page.picture.hints._steady._wanted == ("Hold still.", wanted)
+    assert page.picture.hints._steady._wanted == (wanted,)
 
 
 def test_the_user_may_look_at_another_tab_while_views_are_taken(page, lane, qtbot):
@@ -312,3 +318,64 @@ def test_a_parameter_is_written_with_the_decimal_sign_of_the_language(qapp: QApp
         assert fact_row(parameter_fact("alpha", -2495.187, 0.132))[1] == "−2495,19 ± 0,13 px"
     finally:
         choose(language("en"), qapp)
+
+
+def shown_other_board(folder, project):
+    if project.rig.camera_target.columns != 17:
+        raise OtherBoard("in the first 3 pictures the board shows 17 × 12", where="camera", counted=(17, 12))
+    return find(folder, project)
+
+
+def test_a_wrong_count_is_taken_over_from_the_pictures_of_a_folder(page, camera_bench, views_folder, qtbot):
+    cast(HandLane, camera_bench.measuring).answers[jobs.FIND_VIEWS] = shown_other_board
+    p, offered = page.presenter, page.picture.image.offered
+    p.target.set_target("columns", 18)
+    page.source.folder_chosen.emit(views_folder)
+    qtbot.waitUntil(lambda: not offered.isHidden())
+    assert offered.label.text().replace("\xa0", " ") == "17 × 12 is seen, 18 × 12 is entered."
+    assert p.stage is Stage.FAILED
+    assert not any(button.property("primary") for button in page.card.buttons.values())
+    qtbot.mouseClick(offered.button, LEFT)
+    qtbot.waitUntil(lambda: p.stage is Stage.SOLVED, timeout=30_000)
+    assert offered.isHidden()
+    p.model.undo_stack.undo()
+    assert p.project.rig.camera_target.columns == 18
+    qtbot.waitUntil(lambda: not offered.isHidden())
+
+
+def test_a_wrong_count_is_taken_over_while_live_and_looked_for_at_once(page, lane, qtbot):
+    p, offered = page.presenter, page.picture.image.offered
+    p.target.set_target("columns", 18)
+    start_live(page, lane, qtbot)
+    before = places(page, qtbot)
+    lane.current.view.emit(live_view(counted=(17, 12), sentence="The board shows 17 × 12 inner corners, not 18 × 12."))
+    qtbot.waitUntil(lambda: not offered.isHidden())
+    assert not moved(before, places(page, qtbot))
+    lane.current.view.emit(live_view())
+    page.refreshing.at_once()
+    assert not offered.isHidden(), "a blurred picture between does not take it away"
+    qtbot.mouseClick(offered.button, LEFT)
+    assert lane.sent[-1] == LookFor(replace(p.project.rig.camera_target, columns=17, rows=12))
+    assert p.live.running
+    qtbot.waitUntil(lambda: offered.isHidden())
+    p.model.undo_stack.undo()
+    assert lane.sent[-1].target.columns == 18
+
+
+def test_live_stops_by_itself_once_nothing_is_missing_and_says_so(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    lane.current.view.emit(live_view())
+    assert not page.presenter.live.stopping
+    lane.current.view.emit(live_view(missing=(), sentence="Turn the board: this tilt is already there."))
+    assert page.presenter.live.stopping and Stop() in lane.sent
+    assert page.presenter.bench.notices.all[-1].text.startswith("Nothing is missing: the live source was stopped")
+
+
+def test_views_can_be_added_by_hand_where_nothing_is_missing_and_nobody_nags(page, lane, qtbot):
+    start_live(page, lane, qtbot)
+    page.presenter.live.set_auto(False)
+    lane.current.view.emit(live_view())
+    lane.current.view.emit(live_view(missing=(), sentence="Turn the board: this tilt is already there."))
+    qtbot.waitUntil(lambda: "Nothing is missing" in page.picture.hints.text)
+    assert "Turn the board" not in page.picture.hints.text
+    assert not page.presenter.live.stopping

@@ -391,10 +391,7 @@ def test_poses_are_taken_live_with_everything_drawn_and_each_picture_answered_on
     whole = replace(live_view(), detail=replace(detail(), missing=()))
     task.view.emit(whole)
     page.refreshing.at_once()
-    assert page.picture.hints._steady._wanted == (
-        "Hold still.",
-        "Nothing is missing: press Stop, and it is calibrated.",
-    )
+    assert page.picture.hints._steady._wanted == ("Nothing is missing: press Stop, and it is calibrated.",)
     task.reported.emit(LiveTaken("pose00", np.zeros((12, 16), np.uint8)))
     page.refreshing.at_once()
     assert [row.name for row in page.views.rows()] == ["pose00"]
