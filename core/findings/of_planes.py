@@ -18,6 +18,10 @@ ROWS = (
             "its stripes or target points fit {times:.0f} times worse than in the other poses"),
     Finding("fan.poses_left_out", Weight.CAUTION, Effect.NONE,
             "{n} of {all} poses left out: {names:;}"),
+    Finding("fan.few_poses", Weight.CAUTION, Effect.NONE,
+            "a single pose of {all} fixes the planes: nothing checks it. Record {least} or more",
+            "only {n} of {all} poses fix the planes, too few to foretell one by the others: nothing checks them. Record "
+            "{least} or more at different distances and tilts"),
     Finding("fan.poorly_predicted", Weight.CAUTION, Effect.NONE,
             "the other poses foretell the stripes of {pose} to {error:.3f} mm only, those of a usual pose to "
             "{usual:.3f} mm: look at its pictures, or take more poses like it"),

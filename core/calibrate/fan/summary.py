@@ -10,7 +10,7 @@ import numpy as np
 
 from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
-from core.calibrate.fan.cross_validation import Predictions
+from core.calibrate.fan.cross_validation import FEWEST, Predictions
 from core.calibrate.fan.left_out import note_on_left_out
 from core.calibrate.fan.picture_residuals import judge_points, notes_on_points
 from core.calibrate.fan.poses.located_pose import LocatedPose
@@ -161,9 +161,12 @@ def _rms(distances: Sequence[Array]) -> float:
 
 
 def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose]) -> tuple[Message, ...]:
-    """On the poses that are left out, and on saturated stripes."""
+    """On the poses that are left out, on too few that are used, and on saturated stripes."""
     left_out = note_on_left_out(poses)
     notes = [] if left_out is None else [left_out]
+    used = sum(pose.used for pose in poses)
+    if used < FEWEST:
+        notes.append(note_of("fan.few_poses", n=used, all=len(poses), least=FEWEST))
     stripes = [stripe for pose in located for stripe in pose.stripes.values()]
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:

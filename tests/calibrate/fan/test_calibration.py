@@ -173,6 +173,13 @@ def test_a_pose_with_a_misfound_corner_is_left_out_and_named():
     assert worst_mm(result.fan.pis, PAPER) < 0.02
 
 
+@pytest.mark.parametrize(("count", "told"), [(3, True), (4, False), (9, False)])
+def test_few_poses_are_told_with_their_number(count, told):
+    fan = fit_fan(features(poses(count, 2), Noise(), 2), CAMERA, FanOptions(3, ALPHA))
+    notes = [str(note) for note in fan.notes if note.code == "fan.few_poses"]
+    assert bool(notes) == told and all(f"only {count} of {count} poses" in note for note in notes)
+
+
 def test_a_pose_left_out_by_hand_is_located_but_has_no_part():
     seen = features(WHERE, Noise(), 2)
     without = fit_fan(seen, CAMERA, THREE, excluded={seen[1].name})
