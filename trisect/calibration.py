@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -193,4 +194,4 @@ def calibrate_fan(
         poses.append(measure_plane_pose(name, lit, dark, target, camera.camera, beside=beside))
     fan = fit_fan(poses, camera.camera, known, progress)
     check_agreement(fan, decided=False)
-    return fan
+    return replace(fan, stripes=tuple(pose.centrelines for pose in poses))

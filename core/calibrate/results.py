@@ -14,6 +14,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.sitting import Taken
 from core.findings.table import note_of
 from core.image.exclusion import Excludable, Exclusion, Reason
+from core.image.stripes.centreline import Centreline
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Fan, Pose
@@ -191,6 +192,8 @@ class FanCalibration:
     `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain;
     `flatness_assumed`, whether nobody has stated how flat the target is; `taken`, by which camera and when its pictures
     were taken, by their recording's log.
+
+    `stripes` are the fan's in each of its poses, as arrays were calibrated; of a recording set planes.npz keeps them.
     """
 
     fan: Fan
@@ -218,6 +221,7 @@ class FanCalibration:
     points_off_alike: bool | None = None
     flatness_assumed: bool | None = None
     taken: Taken | None = None
+    stripes: tuple[tuple[Centreline, ...], ...] = ()
 
     @property
     def minority(self) -> Message | None:

@@ -37,7 +37,7 @@ class ScanFacts:
         Whether camera or laser surely differ from their calibration; whether they seem to, and no check of the day is
         in order.
     section_changed
-        Whether the fan's light is skewed otherwise than in its calibration.
+        Whether the fan's light is skewed otherwise than in its calibration, whose stripes may not tell.
     planes_unsettled, points_off_alike
         Whether the planes' calibration was not solved to its end, and whether its target's points lie off alike in all
         poses and no artefact holds what that may do.

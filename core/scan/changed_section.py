@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from enum import Enum, auto
 from typing import NamedTuple
 
 import numpy as np
@@ -38,6 +39,13 @@ _BLOCK = 50.0
 """Stripe σ, the length of a stretch whose mean skewness is one observation: it is averaged over 20 along the line."""
 _FEWEST_POSES, _FEWEST_BLOCKS = 3, 6
 """Poses, and stretches of calibration and scan each, whose scatter tells how sure their mean is."""
+
+
+class Section(Enum):
+    """What is known of the skewness of the fan's stripes where it has not surely changed since the calibration."""
+
+    SAME = auto()
+    NOT_KNOWN = auto()
 
 
 @dataclass(frozen=True, slots=True)
@@ -72,13 +80,16 @@ class ChangedSection:
 
 def changed_section(
     poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline], camera: Camera, calibrated: Fan
-) -> ChangedSection | None:
-    """How the stripes are skewed otherwise, if they surely are: those of the `fan` in a scan than in its `poses`."""
+) -> ChangedSection | Section:
+    """How the stripes of the `fan` in a scan are skewed otherwise than in its `poses`, if they surely are.
+
+    Not known where there are too few poses, or the stripes are too short, to tell how sure their mean is.
+    """
     pi = calibrated.pis[calibrated.lines // 2]
     now = _mean(_blocks(fan, camera, pi))
     then = [one for pose in poses if (one := _mean(_blocks(pose, camera, pi))).blocks >= 1]
     if now.blocks < _FEWEST_BLOCKS or len(then) < _FEWEST_POSES or sum(one.blocks for one in then) < _FEWEST_BLOCKS:
-        return None
+        return Section.NOT_KNOWN
     means, variances, counts = (np.array(column) for column in zip(*then, strict=True))
     own = float(np.average(variances * counts, weights=counts))  # of a single block
     mean = float(np.average(means, weights=counts))
@@ -86,7 +97,7 @@ def changed_section(
     error = float(np.sqrt(own / now.blocks + own / counts.sum() + between * (1 + 1 / len(then))))
     change = now.mean - mean
     if abs(change) <= max(SURELY * error, LEAST):
-        return None
+        return Section.SAME
     width = float(np.median(np.concatenate([line.width for line in fan])))
     return ChangedSection(now.mean, mean, error, FARTHEST * float(np.cbrt(abs(change))) * width)
 

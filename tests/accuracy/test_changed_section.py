@@ -12,7 +12,7 @@ from core.files.recording.recording_set import open_set
 from core.files.results.planes_file import planes_id
 from core.inspect.conformity import Verdict
 from core.pipeline.steps.workspace import Workspace
-from core.scan.changed_section import changed_section
+from core.scan.changed_section import Section, changed_section
 from core.scan.features.reference import read_reference
 from core.simulate.effects.laser import LaserEffects
 from core.simulate.effects.lens import LensEffects
@@ -53,4 +53,4 @@ def test_no_part_and_no_focus_is_taken_for_such_a_change(otherwise, calibrated):
     for seed in range(1, 7 if otherwise else 21):
         stage, _, _ = scan_of(replace(SET, seed=seed, frames=3, **otherwise))
         fan = read_reference(stage.reference()).fan
-        assert changed_section(poses, fan, known.camera.camera, known.fan.fan) is None
+        assert changed_section(poses, fan, known.camera.camera, known.fan.fan) is Section.SAME

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from core.calibrate.fan.calibration import FanOptions, fit_fan
-from core.scan.changed_section import LEAST, changed_section
+from core.scan.changed_section import LEAST, ChangedSection, Section, changed_section
 from tests.calibrate.fan_scenes import ALPHA, CAMERA, Noise, features, poses
 
 SCATTER, GRAIN = 0.3, 20
@@ -43,7 +43,7 @@ def judged(seen, then, now, seed, turned=False):
 @pytest.mark.parametrize("seeds", [range(8), pytest.param(range(8, 40), marks=pytest.mark.accuracy)])
 def test_what_calibration_and_scan_have_in_common_is_no_change(seen, seeds):
     for seed in seeds:
-        assert judged(seen, [0.4] * 9, 0.4, seed) is None
+        assert judged(seen, [0.4] * 9, 0.4, seed) is Section.SAME
 
 
 @pytest.mark.parametrize("turned", [False, True])
@@ -59,19 +59,19 @@ def test_stripes_that_reach_further_to_one_side_than_then_are_told_whichever_way
 def test_what_the_poses_differ_by_among_themselves_is_chance(seen):
     rng = np.random.default_rng(3)
     then = rng.normal(0, 0.2, 9)
-    assert judged(seen, then, 0.3, 4) is None
-    assert judged(seen, [0.0] * 9, 0.3, 4) is not None
+    assert judged(seen, then, 0.3, 4) is Section.SAME
+    assert isinstance(judged(seen, [0.0] * 9, 0.3, 4), ChangedSection)
 
 
-def test_a_change_too_small_to_matter_is_none(seen):
-    assert judged(seen, [0.0] * 9, 0.5 * LEAST, 5) is None
+def test_a_change_too_small_to_matter_is_no_change(seen):
+    assert judged(seen, [0.0] * 9, 0.5 * LEAST, 5) is Section.SAME
 
 
-def test_of_a_few_poses_nothing_is_said(seen):
+def test_of_a_few_poses_it_is_not_known(seen):
     poses, fan = seen
-    assert changed_section(poses[:2], poses[0], CAMERA, fan) is None
-    assert changed_section([], poses[0], CAMERA, fan) is None
-    assert changed_section(poses, (), CAMERA, fan) is None
+    assert changed_section(poses[:2], poses[0], CAMERA, fan) is Section.NOT_KNOWN
+    assert changed_section([], poses[0], CAMERA, fan) is Section.NOT_KNOWN
+    assert changed_section(poses, (), CAMERA, fan) is Section.NOT_KNOWN
 
 
 def test_the_displaced_fan_is_that_of_stripes_half_as_far_aside_as_they_may_be(seen):

@@ -17,7 +17,7 @@ from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
-from core.scan.changed_section import changed_section
+from core.scan.changed_section import ChangedSection, Section, changed_section
 from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight, stripe_width
 
 CHECK_EVERY_S = 1.0
@@ -33,7 +33,7 @@ class ScanChecks:
         self._poses = calibrated_poses(context.request)
         self._planes_taken = planes_taken(context.request)
         self._stripe_px = stripe_width(piece for pose in self._poses for piece in pose)
-        self._section: Message | None = None
+        self._section: ChangedSection | Section = Section.SAME
         self._adviser = ExposureAdviser()
         self._told: tuple[Check, ...] = ()
         self._looked_s = 0.0
@@ -54,8 +54,7 @@ class ScanChecks:
         camera, fan = request.camera, request.fan
         if camera is not None and fan is not None and not _is_readjusted(request):
             stripes = [piece for pieces in self._previewer.fan_lines for piece in pieces]
-            changed = changed_section(self._poses, stripes, camera, fan)
-            self._section = None if changed is None else changed.note
+            self._section = changed_section(self._poses, stripes, camera, fan)
         self.reference()
 
     def reference(self, departed: Message | None = None) -> None:

@@ -99,8 +99,7 @@ def profile_step(
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
         check = check_of_the_day(log.pictures, calibration, settings.check_stripe, progress)
         change = since_calibration(found, calibration, check)
-        common = CommonErrors.of_fan(camera, fan, change.deviations)
-        section: SectionChange | None = None
+        section = SectionChange(surely=None)
         seen: list[Profiles] = []
         steps, pictures = [], []
         stream = log.pictures.stream(paths)
@@ -117,8 +116,7 @@ def profile_step(
                 continue
             if not seen:  # pictures of one place have one speckle: together they tell no more than the first
                 section = section_change(work, calibration, profiles.pieces)
-            if not seen and section is not None:
-                common = CommonErrors.of_fan(camera, fan, (*change.deviations, section.deviation))
+                common = CommonErrors.of_fan(camera, fan, (*change.deviations, *section.deviations))
             seen.append(profiles)
             step = step_of(
                 _within(profiles.cloud, spec), replace(PointErrors.of_fan(profiles.pieces, common), part=part), known
@@ -136,7 +134,6 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        of_section = () if section is None else (section.note,)
         facts = facts_of(facts_of_the_day(work, calibration), change, section)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
@@ -145,7 +142,7 @@ def profile_step(
         notes = (
             *channel.notes("scan"),
             *change.notes,
-            *of_section,
+            *section.notes,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
             *assumed_stability(found, change, calibration.fan),

@@ -12,6 +12,7 @@ from core.image.exposure import stripe_exposure
 from core.image.stripes.centreline import Centreline
 from core.messages import Message, plural_message
 from core.model import Camera, Fan
+from core.scan.changed_section import ChangedSection, Section
 
 Name = Literal["reference", "lines", "exposure", "focus", "calibration", "check"]
 State = Literal["ok", "failed", "unknown"]
@@ -67,7 +68,7 @@ class Preflight:
     fresh_days
         For how many days a calibration holds.
     section
-        How the fan's stripes are skewed otherwise than in its calibration; None where they are not, or cannot tell.
+        Whether the fan's stripes are skewed otherwise than in its calibration.
     """
 
     lines: int
@@ -80,7 +81,7 @@ class Preflight:
     age_s: float | None = None
     stripe_px: float | None = None
     fresh_days: float = FRESH_DAYS
-    section: Message | None = None
+    section: ChangedSection | Section = Section.SAME
 
     def checks(self) -> tuple[Check, ...]:
         """Make all checks, the reference first: the next three rest on it."""
@@ -152,8 +153,15 @@ class Preflight:
             said, todo = _width_changed(width, self.stripe_px), _REFOCUS
         if width >= blurred:
             return Check("focus", "failed", _out_of_focus(said, todo))
-        if self.section is not None:
-            return Check("focus", "failed", self.section)
+        if isinstance(self.section, ChangedSection):
+            return Check("focus", "failed", self.section.note)
+        if self.section is Section.NOT_KNOWN:
+            unknown = Message(
+                "scan.check_section_unknown",
+                "{width}. Whether they reach as far to one side as when the fan was calibrated cannot be told.",
+                width=said,
+            )
+            return Check("focus", "unknown", unknown)
         return Check(
             "focus", "ok" if width <= sharp else "unknown", Message("scan.check_focus", "{width}.", width=said)
         )

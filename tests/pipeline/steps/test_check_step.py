@@ -311,7 +311,7 @@ def test_stripes_much_wider_than_at_the_calibration_are_told(unchanged, tmp_path
 def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_the_scan_and_in_u(unchanged, tmp_path):
     work = work_in(unchanged, tmp_path)
     seen, known = scan_seen_in(unchanged).lines.fan, work.calibration()
-    assert section_change(work, known, seen) is None
+    assert section_change(work, known, seen).surely is False
     id_, pi = planes_id(known.fan.fan), known.fan.fan.pis[1]
     camera = known.camera.camera
 
@@ -330,7 +330,19 @@ def test_stripes_wider_and_skewed_otherwise_than_at_the_calibration_are_told_by_
     assert row.u_mm > 1e-3
     assert gauge.verdict != Verdict.CONFORMING
     work.path("poses").write_bytes(b"damaged")
-    assert section_change(work, known, seen) is None
+    assert section_change(work, known, seen).surely is None
+
+
+def test_a_scan_whose_fan_cannot_be_held_to_its_calibration_proves_no_more_than_one_that_has_changed(
+    unchanged, tmp_path
+):
+    work = work_in(unchanged, tmp_path)
+    work.path("poses").unlink()
+    scan = scan_of(unchanged, work).scan
+    assert "validity.scan_unknown" in {note.code for note in scan.notes}
+    assert read_scan(work.path("scan")).facts.section_changed is None
+    gauge = gauge_step(work)
+    assert gauge.verdict == Verdict.NOT_PROVEN
 
 
 @pytest.mark.accuracy

@@ -8,6 +8,7 @@ import pytest
 from core.image.stripes.centreline import Centreline
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
+from core.scan.changed_section import ChangedSection, Section
 from core.scan.preview.preflight import Preflight
 
 SIZE = (1920, 1374)
@@ -71,7 +72,8 @@ def test_before_the_reference_only_the_calibration_is_known():
             "failed",
             "0.9 px when the fan was calibrated: set the focus of camera and laser",
         ),
-        ({"section": plain("skewed otherwise")}, "focus", "failed", "skewed otherwise"),
+        ({"section": ChangedSection(0.5, 0.1, 0.02, 0.6)}, "focus", "failed", "to one side"),
+        ({"section": Section.NOT_KNOWN}, "focus", "unknown", "cannot be told"),
         ({"stripe_px": 9.0, "fan_lines": ((stripe(width=9.0),),) * 3}, "focus", "ok", "9.0 px wide"),
         (
             {"image_size": (960, 687)},

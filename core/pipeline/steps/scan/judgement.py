@@ -16,7 +16,7 @@ from core.messages import Message
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
-from core.scan.changed_section import changed_section
+from core.scan.changed_section import Section, changed_section
 from core.scan.common_errors import CommonErrors, solve_common
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.picture_faults import faults_first
@@ -43,10 +43,14 @@ class Solved:
 
 @dataclass(frozen=True, slots=True)
 class SectionChange:
-    """What is told of stripes that are skewed otherwise than in the fan's calibration, and what that may do."""
+    """Whether the fan's stripes are skewed otherwise than in its calibration, what is told of it, and what it may do.
 
-    note: Message
-    deviation: Deviation
+    `surely` is None where it is not known. There are notes and deviations only where it is so.
+    """
+
+    surely: bool | None
+    notes: tuple[Message, ...] = ()
+    deviations: tuple[Deviation, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -64,15 +68,14 @@ class Judgement:
     """
 
     change: Change
-    section: SectionChange | None
+    section: SectionChange
     common: CommonErrors
     facts: ScanFacts
 
     @property
     def notes(self) -> tuple[Message, ...]:
         """What changed, and why nothing measured is proof."""
-        of_section = () if self.section is None else (self.section.note,)
-        return (*self.change.notes, *of_section, *self.facts.all_doubts)
+        return (*self.change.notes, *self.section.notes, *self.facts.all_doubts)
 
 
 def solved_scan(
@@ -94,7 +97,7 @@ def judged_scan(
     solved: Solved,
     change_by: Callable[[Callable[[Sequence[Deviation]], Evidence]], Change],
     of_the_day: ScanFacts,
-    section: SectionChange | None = None,
+    section: SectionChange,
     method: Method = Method.NETWORK,
     progress: Progress = silent,
 ) -> Judgement:
@@ -109,7 +112,7 @@ def judged_scan(
     of_the_day
         The facts of the planes' calibration, and of the day of the scan.
     section
-        How the fan's light has changed, if it surely has.
+        How the fan's light has changed.
     progress
         Called with how far it is.
 
@@ -120,7 +123,7 @@ def judged_scan(
     """
     camera, fan = solved.calibration.camera.camera, solved.calibration.fan.fan
     change = change_by(solved.evidence if method == Method.NETWORK else _nothing)
-    deviations = change.deviations if section is None else (*change.deviations, section.deviation)
+    deviations = (*change.deviations, *section.deviations)
     common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
     return Judgement(change, section, common, facts_of(of_the_day, change, section, solved.scan))
 
@@ -130,7 +133,7 @@ def _nothing(deviations: Sequence[Deviation]) -> Evidence:
 
 
 def facts_of(
-    of_the_day: ScanFacts, change: Change, section: SectionChange | None, scan: ScanResult | None = None
+    of_the_day: ScanFacts, change: Change, section: SectionChange, scan: ScanResult | None = None
 ) -> ScanFacts:
     """The facts of the planes and the day, with those that the pictures show; within one picture nothing moves."""
     return replace(
@@ -140,21 +143,30 @@ def facts_of(
         collapsed=scan is not None and scan.collapsed,
         rig_changed=change.surely or (scan is not None and scan.rig_changed),
         rig_seems_changed=change.seemingly,
-        section_changed=section is not None,
+        section_changed=section.surely,
     )
 
 
-def section_change(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> SectionChange | None:
-    """How the stripes of the `fan` are skewed otherwise than in its calibration, if they surely are.
-
-    None where its poses are not kept. A re-adjusted fan rests on stripes of the day.
-    """
-    camera, of = calibration.camera.camera, calibration.fan
-    if of.readjusted is not None:
-        return None
+def section_change(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> SectionChange:
+    """How the stripes of the `fan` are skewed otherwise than in the poses of its calibration that are kept."""
     try:
-        poses = read_poses(work.path("poses"), planes_id(of.fan))
+        poses = read_poses(work.path("poses"), planes_id(calibration.fan.fan))
     except InputError:  # the notes on focus tell
-        return None
-    found = changed_section([pose.centrelines for pose in poses], fan, camera, of.fan)
-    return None if found is None else SectionChange(found.note, found.deviation(fan, camera, of.fan))
+        poses = ()
+    return section_since(calibration, [pose.centrelines for pose in poses], fan)
+
+
+def section_since(
+    calibration: Calibration, poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline]
+) -> SectionChange:
+    """How the stripes of the `fan` are skewed otherwise than in the `poses` of its calibration.
+
+    A re-adjusted fan rests on stripes of the day.
+    """
+    if calibration.fan.readjusted is not None:
+        return SectionChange(surely=False)
+    camera, of = calibration.camera.camera, calibration.fan.fan
+    found = changed_section(poses, fan, camera, of)
+    if isinstance(found, Section):
+        return SectionChange(surely=None if found is Section.NOT_KNOWN else False)
+    return SectionChange(True, (found.note,), (found.deviation(fan, camera, of),))
