@@ -106,16 +106,14 @@ def reconstruct(
     lines = fan_lines or number_fan_lines(features.fan, features.crossings, camera, fan, reported.within_step)
     crossings, line = numbered(features.crossings, lines)
     too_bright = overexposed(features.fan, [piece for frame in features.frames for piece in frame.centrelines])
-    if not np.any(crossings.with_fan) and too_bright is not None:
-        raise InputError(too_bright, where="scan", todo=ADVICE)
     if not np.any(crossings.with_fan):
-        raise InputError(
+        raise _refused(
+            too_bright,
             Message(
                 "scan.no_crossing",
                 "no sweep crosses the fan in any frame, so nothing says where the hand-held laser was",
             ),
-            where="scan",
-            todo=Message(
+            Message(
                 "scan.advice_cross_the_fan",
                 "sweep the single line across the fan's lines, and check that the fan was on",
             ),
@@ -133,21 +131,17 @@ def reconstruct(
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
     sweeps = solved.sweeps
     if sweeps.collapsed and not _flat(features, lines, camera, fan):
-        if too_bright is not None:
-            raise InputError(too_bright, where="scan", todo=ADVICE)
-        raise InputError(note_of("scan.collapsed_in_spite_of_relief"), where="scan", todo=TILT_MORE)
+        raise _refused(too_bright, note_of("scan.collapsed_in_spite_of_relief"), TILT_MORE)
     reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
-    if not np.any(cloud.sweep >= 0) and too_bright is not None:
-        raise InputError(too_bright, where="scan", todo=ADVICE)
     if not np.any(cloud.sweep >= 0):
-        raise InputError(
+        raise _refused(
+            too_bright,
             _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
-            where="scan",
-            todo=LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
+            LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
         )
     records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
     sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
@@ -180,6 +174,13 @@ def reconstruct(
         rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
     )
+
+
+def _refused(too_bright: Message | None, what: Message, todo: Message) -> InputError:
+    """That no scan comes of it: because its stripes are overexposed, where they are, else for `what` came of that."""
+    if too_bright is not None:
+        return InputError(too_bright, where="scan", todo=ADVICE)
+    return InputError(what, where="scan", todo=todo)
 
 
 @contextmanager

@@ -43,12 +43,17 @@ class Situation(NamedTuple):
 
 def guidance(now: Situation) -> Guidance:
     """What is to be said: the first thing that the hand, or the technician, has to do."""
-    recording = now.detail is not None and now.detail.stage in ("scanning", "paused")
+    recording = now.detail is not None and is_recording(now.detail.stage)
     level, said = _said(now)
     failed = next((text_of(one.message) for one in now.checks if one.state == "failed"), "") if recording else ""
     covered = percent(now.detail.share) if now.detail is not None and recording else ""
     needed = tr("of {share} needed", share=percent(ENOUGH)) if covered else ""
     return Guidance(level, said, failed, covered, needed, _button(now))
+
+
+def is_recording(stage: str) -> bool:
+    """Whether frames are recorded at this stage of a live scan, or it has only been paused."""
+    return stage in ("scanning", "paused")
 
 
 def is_enough(detail: ScanDetail) -> bool:

@@ -23,7 +23,7 @@ from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan import stability
 from workbench.pages.scan.artefacts import KnownArtefacts
 from workbench.pages.scan.check import RigCheck
-from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough
+from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough, is_recording
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
@@ -115,7 +115,7 @@ class ScanPresenter(StepPresenter):
     @property
     def recording(self) -> bool:
         """Whether frames of a live scan are recorded, or it has only been paused."""
-        return self.stage is Stage.LIVE and self.live_stage in ("scanning", "paused")
+        return self.stage is Stage.LIVE and is_recording(self.live_stage)
 
     @property
     def guidance(self) -> Guidance:
