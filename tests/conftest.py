@@ -112,6 +112,20 @@ def _measure(simulated: Path, out: Path) -> None:
 
 
 @pytest.fixture(scope="session")
+def tiny_measured(tiny_set: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """All results of the tiny set but the report, made once for all test processes; copy them before changing them."""
+    return made_once(tmp_path_factory, "tiny-measured", lambda folder: _measure_tiny(tiny_set, folder / "out")) / "out"
+
+
+def _measure_tiny(tiny: Path, out: Path) -> None:
+    from tests.simulated import CUT, trisect
+
+    for step, words in {"camera": (), "planes": (), "scan": CUT, "gauge": ()}.items():
+        said = trisect(step, tiny, "--out", out, *words)
+        assert said.code in (0, 1), said.err
+
+
+@pytest.fixture(scope="session")
 def finished_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A project with every step done, its pictures within, made once for all test processes; do not change it."""
     return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, simulated))

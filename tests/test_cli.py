@@ -125,18 +125,18 @@ def test_without_a_nominal_value_no_verdict_and_exit_code_0(simulated, measured,
     assert values["files"]["gauge"] == str(out / "gauge.json")
 
 
-def test_the_papers_method_by_name(simulated, measured, tmp_path):
-    out = copy_of(measured, tmp_path / "out")
-    said = trisect("scan", simulated, "--out", out, "--method", "three-crossings", *CUT, "--json")
+def test_the_papers_method_by_name(tiny_set, tiny_measured, tmp_path):
+    out = copy_of(tiny_measured, tmp_path / "out")
+    said = trisect("scan", tiny_set, "--out", out, "--method", "three-crossings", *CUT, "--json")
     assert said.code == 0, said.err
     assert json.loads((out / "run.json").read_text())["settings"]["scan"]["method"] == "three-crossings"
-    assert (out / "cloud.ply").read_bytes() != (measured / "cloud.ply").read_bytes()
+    assert (out / "cloud.ply").read_bytes() != (tiny_measured / "cloud.ply").read_bytes()
 
 
-def test_a_scan_without_reference_makes_one_of_its_frames(simulated, measured, tmp_path):
-    folder = copy_of(simulated, tmp_path / "set")
+def test_a_scan_without_reference_makes_one_of_its_frames(tiny_set, tiny_measured, tmp_path):
+    folder = copy_of(tiny_set, tmp_path / "set")
     (folder / "scan" / "reference.png").unlink()
-    said = trisect("scan", folder, "--out", copy_of(measured, tmp_path / "out"), *CUT)
+    said = trisect("scan", folder, "--out", copy_of(tiny_measured, tmp_path / "out"), *CUT)
     assert said.code == 0, said.err
     assert "There is no scan/reference.png" in said.out
 

@@ -82,8 +82,8 @@ def test_even_a_quiet_command_tells_why_it_is_refused(tmp_path):
     assert (said.code, "there is no such folder" in said.sentence) == (2, True)
 
 
-def test_a_part_that_was_measured_without_a_thickness_has_an_exit_code_of_its_own(simulated, measured, tmp_path):
-    folder, out = copy_of(simulated, tmp_path / "set"), copy_of(measured, tmp_path / "out")
+def test_a_part_that_was_measured_without_a_thickness_has_an_exit_code_of_its_own(tiny_set, tiny_measured, tmp_path):
+    folder, out = copy_of(tiny_set, tmp_path / "set"), copy_of(tiny_measured, tmp_path / "out")
     rig = folder / "rig.toml"
     table = "[gauge]\nupper_polygon_px = [[0, 0], [3, 0], [3, 3]]\nlower_polygon_px = [[4, 4], [7, 4], [7, 7]]\n"
     rig.write_text(rig.read_text().partition("[gauge]")[0] + table)
