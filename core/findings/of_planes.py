@@ -20,8 +20,8 @@ ROWS = (
             "{n} of {all} poses left out: {names:;}"),
     Finding("fan.few_poses", Weight.CAUTION, Effect.NONE,
             "a single pose of {all} fixes the planes: nothing checks it. Record {least} or more",
-            "only {n} of {all} poses fix the planes, too few to foretell one by the others: nothing checks them. Record "
-            "{least} or more at different distances and tilts"),
+            "only {n} of {all} poses fix the planes, too few to foretell one by the others: nothing checks them. "
+            "Record {least} or more at different distances and tilts"),
     Finding("fan.poorly_predicted", Weight.CAUTION, Effect.NONE,
             "the other poses foretell the stripes of {pose} to {error:.3f} mm only, those of a usual pose to "
             "{usual:.3f} mm: look at its pictures, or take more poses like it"),
