@@ -29,7 +29,8 @@ from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
-from core.pipeline.steps.workspace import FILES, check_calibration, read_calibration
+from core.files.step_graph import FILES
+from core.pipeline.steps.workspace import check_calibration, read_calibration
 from core.simulate.recording import simulate_set
 from tests.simulated import TINY, trisect
 

@@ -10,8 +10,9 @@ import pytest
 from core import held_files
 from core.errors import InputError
 from core.files.atomic import beside_of, cannot_write, folder_beside, write_bytes
+from core.files.step_graph import FILES
 from core.held_files import HeldOpen, remove, remove_tree, rename
-from core.pipeline.steps.workspace import FILES, made_beside, put_results
+from core.pipeline.steps.workspace import made_beside, put_results
 
 DENIED, SHARED, PATH_NOT_FOUND = 5, 32, 3
 CLOSE_IT = "cannot be written, because another program holds it open; close it in the other program, then try again."

@@ -24,6 +24,7 @@ from core.errors import InputError
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import read_rig, require_tables
 from core.files.results.camera_file import read_camera
+from core.files.step_graph import FILES
 from core.messages import Message, plural_message, visible
 from core.pipeline.live.commands import Capture, Command, LiveRequest, Stop
 from core.pipeline.live.events import (
@@ -46,7 +47,7 @@ from core.pipeline.live.events import (
 )
 from core.pipeline.live.session import run_live
 from core.pipeline.live.sources import SOURCES, list_sources, missing_driver
-from core.pipeline.steps.workspace import FILES, read_calibration
+from core.pipeline.steps.workspace import read_calibration
 
 STATUS_S = 5.0
 """No more often in s a scan tells how many frames it has, or what would expose stripes better."""

@@ -10,6 +10,30 @@ from __future__ import annotations
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 
+FILES = {
+    "camera": "camera.json",
+    "planes": "planes.json",
+    "poses": "planes.npz",
+    "calibrated": "planes-calibrated.json",
+    "check": "check.json",
+    "cloud": "cloud.ply",
+    "mesh": "mesh.ply",
+    "scan": "scan.npz",
+    "profiles": "profiles.ply",
+    "profile": "profile.json",
+    "profile_table": "profiles.csv",
+    "gauge": "gauge.json",
+    "faces": "gauge.npz",
+    "inspection": "inspection.json",
+    "inspected": "inspection.npz",
+    "comparison": "comparison.json",
+    "compared": "comparison.ply",
+    "comparison_table": "comparison.csv",
+    "report": "report.pdf",
+    "run": "run.json",
+}
+"""Fixed names of the results."""
+
 READJUST = "readjust"
 """The step that moves the planes by a check, and leaves the record of how they were calibrated."""
 
@@ -25,7 +49,7 @@ class Step:
     page
         The page of the window it is on.
     makes
-        Its results, keys of `core.pipeline.steps.workspace.FILES`, in the order in which they are put in place.
+        Its results, keys of FILES, in the order in which they are put in place.
     decides
         That of its results which is another if what rests on the step no longer holds.
     rests_on

@@ -5,12 +5,22 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from datetime import date, datetime
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, PlainValidator, WrapValidator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainValidator,
+    WrapValidator,
+    model_validator,
+)
 from pydantic_core import PydanticCustomError
 
 from core.calibrate.results import PlanePose, ViewQuality
+from core.files.complaints import Clash
 from core.files.limits import LARGEST
 from core.inspect.causes import Source, known_cause
 from core.inspect.results import Contribution
@@ -89,6 +99,21 @@ class ResultFile(BaseModel):
     """A file of results, or a table in one."""
 
     model_config = RESULT
+
+
+_VECTOR = label("three finite numbers, not all zero")
+
+
+class PlaneRow(ResultFile):
+    """A plane π·X = 1, with all else that is kept of it."""
+
+    pi: Row3 = Field(description=_VECTOR)
+
+    @model_validator(mode="after")
+    def _is_a_plane(self) -> Self:
+        if not any(self.pi):
+            raise Clash("pi", Message("fan.zero_vector", "is [0, 0, 0], not {vector}", vector=_VECTOR))
+        return self
 
 
 class CountedPose(ResultFile):

@@ -47,7 +47,7 @@ class RunResult:
 
     `gauge` is None where no thickness was asked for and the part has no two parallel faces. `results` are all that are
     in the folder, with the verdict on the part. `files` holds what was
-    written, by the names in `core.pipeline.steps.workspace.FILES`.
+    written, by the names in `core.files.step_graph.FILES`.
     """
 
     camera: CameraCalibration

@@ -10,10 +10,10 @@ import numpy as np
 
 from core.files.recording.recording_set import RecordingSet, open_set
 from core.files.results.scan_file import read_scan
+from core.files.step_graph import FILES
 from core.image.stripes.tracing.ridge import ridge_response
 from core.image.targets import Checkerboard
 from core.pipeline.run import run
-from core.pipeline.steps.workspace import FILES
 from core.second_process import second_process
 from core.simulate.sample import sample_set
 from core.stage_times import StageTimes

@@ -2,8 +2,8 @@
 
 import pytest
 
-from core.files.step_graph import GRAPH, IN_PROJECT, PAGES, needed_by, resting_on
-from core.pipeline.steps.workspace import CLEARED, FILES
+from core.files.step_graph import FILES, GRAPH, IN_PROJECT, PAGES, needed_by, resting_on
+from core.pipeline.steps.workspace import CLEARED
 
 OF_SURFACE = {"scan", "cloud", "mesh", "profiles", "profile_table", "profile"}
 OF_CLOUD = {"gauge", "faces", "inspection", "inspected", "comparison", "compared", "comparison_table"}

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from core.pipeline.steps.workspace import FILES
+from core.files.step_graph import FILES
 from tests.workbench.technician import Technician
 
 SCENE = "scale = 0.2\nseed = 3\n"

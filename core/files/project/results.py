@@ -33,7 +33,7 @@ class ScanSummary:
     calibration_id
         Names the calibrations the scan was measured with.
     files
-        The results, by their names in `core.pipeline.steps.workspace.FILES`.
+        The results, by their names in `core.files.step_graph.FILES`.
     """
 
     frames: tuple[FrameRecord, ...]
@@ -63,7 +63,7 @@ class ProjectResults:
     calibration_id
         Names the two calibrations.
     files
-        Everything that is there, by its name in `core.pipeline.steps.workspace.FILES`.
+        Everything that is there, by its name in `core.files.step_graph.FILES`.
     problems
         Why a result that is there is not among them.
     """

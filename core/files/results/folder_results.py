@@ -5,15 +5,14 @@ from __future__ import annotations
 from pathlib import Path
 
 from core.files.results.gauge_file import read_thickness
-from core.files.results.inspection_file import NAME, read_inspection
+from core.files.results.inspection_file import read_inspection
+from core.files.step_graph import FILES
 from core.inspect.result_list import ResultList
-
-GAUGE = "gauge.json"
 
 
 def read_results(folder: Path) -> ResultList:
     """All results in a folder, as far as they are there; InputError if one of the files is damaged."""
-    gauge, inspection = folder / GAUGE, folder / NAME
+    gauge, inspection = folder / FILES["gauge"], folder / FILES["inspection"]
     thickness = read_thickness(gauge) if gauge.is_file() else None
     if not inspection.is_file():
         return ResultList(thickness)

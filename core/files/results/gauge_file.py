@@ -18,12 +18,23 @@ from core.files.atomic import write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
-from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, Row2, Row3, kept, row_tables
-from core.inspect.characteristic import Characteristic
-from core.inspect.conformity import Limits
+from core.files.tables import (
+    BudgetRow,
+    Finite,
+    KeptMessage,
+    OptionalMessage,
+    PlaneRow,
+    ResultFile,
+    Row2,
+    Row3,
+    kept,
+    row_tables,
+)
+from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.results import Contribution, Corners, Face, GaugeResult, PairCandidate
 from core.messages import Command, Message
 from core.model import LightPlane
+from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
 
 _TODO = Message(
@@ -41,8 +52,7 @@ class _Pair(ResultFile):
     lower: Finite | None = Field(description="a finite number, or null")
 
 
-class _Face(ResultFile):
-    pi: Row3 = Field(description="three finite numbers")
+class _Face(PlaneRow):
     rms_mm: Finite = Field(description="a finite number")
     spanned: bool = True
 
@@ -158,13 +168,23 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         If a file is missing, a value is not finite or absurd, or the faces' points are not in the cloud.
     """
     file = _read(path)
-    members = _members(path.with_suffix(".npz"), len(cloud))
+    return _gauge(file, _members(path.with_suffix(".npz"), len(cloud)), cloud.points)
+
+
+def read_thickness(path: Path) -> Characteristic:
+    """Read gauge.json alone, without the points its faces rest on; InputError as `read_gauge`."""
+    none = dict.fromkeys(_MEMBERS, np.zeros(0, dtype=np.int64))
+    return thickness_characteristic(_gauge(_read(path), none, np.zeros((0, 3))))
+
+
+def _gauge(file: _GaugeFile, members: dict[str, NDArray[np.int64]], points: Array) -> GaugeResult:
+    """What a file says, its faces with the `members` among `points` (N, 3)."""
     return GaugeResult(
         thickness_mm=file.thickness_mm,
         u_mm=file.u_mm,
         k=file.k,
-        upper=_face(file.faces.upper, members["upper"], (file.flatness_mm.upper, file.flatness_u_mm.upper), cloud),
-        lower=_face(file.faces.lower, members["lower"], (file.flatness_mm.lower, file.flatness_u_mm.lower), cloud),
+        upper=_face(file.faces.upper, members["upper"], (file.flatness_mm.upper, file.flatness_u_mm.upper), points),
+        lower=_face(file.faces.lower, members["lower"], (file.flatness_mm.lower, file.flatness_u_mm.lower), points),
         parallelism=None if file.parallelism_deg is None else math.radians(file.parallelism_deg),
         budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
@@ -176,17 +196,6 @@ def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
         notes=tuple(file.notes),
         candidates=tuple(one.candidate() for one in file.candidates),
     )
-
-
-def read_thickness(path: Path) -> Characteristic:
-    """Read gauge.json alone, without the points its faces rest on; InputError as `read_gauge`."""
-    file = _read(path)
-    limits = Limits.around(file.nominal_mm, file.tolerance_mm)
-    return Characteristic(
-        "thickness", "thickness", file.thickness_mm, file.u_mm, k=file.k, limits=limits,
-        budget=tuple(row.row() for row in file.budget), rule=file.rule, notes=tuple(file.notes),
-        complete=file.complete, at_20=file.at_20,
-    )  # fmt: skip
 
 
 def _read(path: Path) -> _GaugeFile:
@@ -205,11 +214,9 @@ def _plane(face: Face) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def _face(face: _Face, indices: NDArray[np.int64], flatness: tuple[float | None, float | None], cloud: Cloud) -> Face:
+def _face(face: _Face, indices: NDArray[np.int64], flatness: tuple[float | None, float | None], points: Array) -> Face:
     plane = LightPlane(np.array(face.pi))
-    return Face(
-        plane, indices, -plane.distances(cloud.points[indices]), flatness[0], face.rms_mm, face.spanned, flatness[1]
-    )
+    return Face(plane, indices, -plane.distances(points[indices]), flatness[0], face.rms_mm, face.spanned, flatness[1])
 
 
 def _members(path: Path, count: int) -> dict[str, NDArray[np.int64]]:

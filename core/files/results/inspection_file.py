@@ -30,8 +30,6 @@ from core.inspect.results import Contribution
 from core.messages import Command, Message
 from core.model.arrays import Array
 
-NAME = "inspection.json"
-"""Among the results of a scan."""
 SCHEMA = 1
 """Version of the file's layout."""
 MEMBERS = {

@@ -24,6 +24,7 @@ from core.files.tables import (
     KeptMessage,
     OptionalMessage,
     OrNan,
+    PlaneRow,
     ResultFile,
     Row3,
     Time,
@@ -31,7 +32,7 @@ from core.files.tables import (
     kept,
 )
 from core.image.exclusion import known_exclusion
-from core.messages import Command, Message, label
+from core.messages import Command, Message
 from core.model import Camera, Fan, LightPlane
 
 _PARAMETERS = len(CAMERA_PARAMETERS)
@@ -40,19 +41,15 @@ _CHANGES = 9
 _ReadjustedSource = Literal[
     "camera", "fan", "assumed fan", "scale", "assumed scale", "change", "assumed change", "readjusted"
 ]
-_VECTOR = label("three finite numbers, not all zero")
 
 
-class _Plane(ResultFile):
-    pi: Row3 = Field(description=_VECTOR)
+class _Plane(PlaneRow):
     normal: Row3 | None = None
     d_mm: Finite | None = None
     rms_mm: OrNan = math.nan
 
     @model_validator(mode="after")
-    def _is_a_plane(self) -> _Plane:
-        if not any(self.pi):
-            raise Clash("pi", Message("fan.zero_vector", "is [0, 0, 0], not {vector}", vector=_VECTOR))
+    def _agrees(self) -> _Plane:
         if self.normal is not None and self.d_mm is not None:
             said = [coordinate * self.d_mm for coordinate in self.pi]
             if not np.allclose(said, self.normal, rtol=0, atol=1e-6):

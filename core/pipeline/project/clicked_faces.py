@@ -11,6 +11,7 @@ import numpy as np
 from core.errors import InputError
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud
+from core.files.step_graph import FILES
 from core.inspect.faces import PARALLEL, SAME_FACE
 from core.inspect.fit.grown_face import KINDS, FaceKind, GrownFace, grow_face
 from core.inspect.fit.shapes import ParallelPlanes
@@ -20,7 +21,6 @@ from core.messages import Message
 from core.model import Pose
 from core.pipeline.project.inspect_view import scan_replaced
 from core.pipeline.project.inspection import MOST_DRAWN
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.normals import with_normals

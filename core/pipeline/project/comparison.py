@@ -9,11 +9,11 @@ import numpy as np
 from core.files.atomic import remove
 from core.files.project.folder import results_folder
 from core.files.results.ply import read_cloud, read_mesh
+from core.files.step_graph import FILES
 from core.inspect.comparison import ComparisonScales
 from core.inspect.shown.shown_comparison import ShownComparison
 from core.pipeline.project.verify import noting_results
 from core.pipeline.steps.compare_step import Compared, compare_step
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 
 MOST_DRAWN = 200_000

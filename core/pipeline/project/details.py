@@ -19,6 +19,7 @@ from core.files.project.results import ProjectResults
 from core.files.reading import file_hash
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
+from core.files.step_graph import FILES
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -27,7 +28,6 @@ from core.pipeline.project.frame_stages import frame_stages
 from core.pipeline.project.pose_stages import pose_stages
 from core.pipeline.project.results import load_results
 from core.pipeline.project.workspace import project_set
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import left_out_notes

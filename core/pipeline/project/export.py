@@ -17,11 +17,12 @@ from core.files.project.folder import can_be_saved, results_folder, stored_sourc
 from core.files.project.report_template import read_report_template
 from core.files.reading import file_hash, read_bytes, resolved
 from core.files.results.camera_file import write_camera
+from core.files.step_graph import FILES
 from core.messages import Message
 from core.pipeline.project.report import project_content, report_bytes
 from core.pipeline.steps.export_kinds import Results, export_kind, write_export
 from core.pipeline.steps.report_step import results_content
-from core.pipeline.steps.workspace import FILES, made_beside, renew
+from core.pipeline.steps.workspace import made_beside, renew
 from core.progress import Progress, silent
 from core.report.content import ReportContent
 from core.report.layout.page_pictures import Pages, page_pictures

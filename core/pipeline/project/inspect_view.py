@@ -15,6 +15,7 @@ from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.results import ProjectResults
 from core.files.results.ply import read_cloud
+from core.files.step_graph import FILES
 from core.inspect.face_region import inside_polygon, on_face
 from core.inspect.results import Face, GaugeResult
 from core.inspect.shown.outline import face_outline, outline_px
@@ -24,7 +25,6 @@ from core.messages import Message, label
 from core.model.arrays import Array
 from core.pipeline.project.results import load_results
 from core.pipeline.project.workspace import project_set
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.features.frames import FrameRecord
 from core.scan.surface.cloud import Cloud

@@ -12,8 +12,9 @@ import numpy as np
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
-from core.files.results.inspection_file import NAME, write_inspection
+from core.files.results.inspection_file import write_inspection
 from core.files.results.shown_file import read_shown, write_shown
+from core.files.step_graph import FILES
 from core.inspect.evaluate import Inspection
 from core.inspect.features.measured import FeatureResult
 from core.inspect.profile import Profile
@@ -54,7 +55,7 @@ def measure_features(
         If there is no scan among the results, the plan is wrong, or a nominal surface cannot be read.
     """
     inspection, scan = _inspected(folder, project, progress, memory)
-    path, shown = results_folder(folder) / NAME, _shown(inspection, scan)
+    path, shown = results_folder(folder) / FILES["inspection"], _shown(inspection, scan)
     with noting_results(folder):
         write_inspection(path, inspection, scan.calibration_id, plan_tables(project.inspection))
         write_shown(path, shown)
@@ -66,7 +67,7 @@ def look_at_features(
 ) -> ShownInspection:
     """The same without writing anything: as it was kept, or else measured again, to be drawn."""
     progress("features", 0, 1)
-    kept = read_shown(results_folder(folder) / NAME, plan_tables(project.inspection))
+    kept = read_shown(results_folder(folder) / FILES["inspection"], plan_tables(project.inspection))
     return kept or _shown(*_inspected(folder, project, progress, memory))
 
 

@@ -23,6 +23,7 @@ from core.files.recording.set_listing import scan_frames, taken_at
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.inspection_file import read_inspection
 from core.files.results.rig_history import CheckChart, RigHistory
+from core.files.step_graph import FILES
 from core.messages import Message
 from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
@@ -30,7 +31,7 @@ from core.pipeline.steps.artefact_step import artefact_step, lengths_of
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import FILES, Calibration, Workspace
+from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 

@@ -18,6 +18,7 @@ from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.run_file import write_run
+from core.files.step_graph import FILES
 from core.inspect.results import GaugeResult
 from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.verify import noting_results
@@ -25,7 +26,7 @@ from core.pipeline.project.workspace import part_name, project_set, project_work
 from core.pipeline.steps.camera_step import solved_for
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import FILES, Workspace, made_beside, put_results
+from core.pipeline.steps.workspace import Workspace, made_beside, put_results
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 

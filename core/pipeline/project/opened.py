@@ -13,6 +13,7 @@ from core.files.project.folder import PROJECT, is_project, read_project, results
 from core.files.project.results import ProjectResults
 from core.files.reading import resolved
 from core.files.results.inspection_file import InspectionFile, read_inspection
+from core.files.step_graph import FILES
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.result_list import ResultList
@@ -20,7 +21,6 @@ from core.inspect.results import GaugeResult
 from core.messages import Message
 from core.pipeline.project.results import load_results
 from core.pipeline.project.verdict import listed_results
-from core.pipeline.steps.workspace import FILES
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 

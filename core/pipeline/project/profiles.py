@@ -8,12 +8,13 @@ from core.files.project.calibration_store import put_in_place
 from core.files.project.data import Project
 from core.files.project.results import ProfilesSummary
 from core.files.recording.options import StatedTilt
+from core.files.step_graph import FILES
 from core.pipeline.project.measuring import record_calibrations, staged
 from core.pipeline.project.report import with_words
 from core.pipeline.project.workspace import part_name, project_set
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.report_step import report_step
-from core.pipeline.steps.workspace import FILES, Workspace
+from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 
 PROFILES = "profiles"

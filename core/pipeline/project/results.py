@@ -16,8 +16,9 @@ from core.files.results.planes_file import read_planes
 from core.files.results.ply import CloudFile, read_cloud, read_mesh
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
+from core.files.step_graph import FILES
 from core.messages import Message
-from core.pipeline.steps.workspace import FILES, Calibration, check_calibration
+from core.pipeline.steps.workspace import Calibration, check_calibration
 from core.progress import Progress, silent
 from core.scan.preview.shown import SettledScan
 

@@ -25,13 +25,14 @@ from core.files.recording.rig import rig_to_toml
 from core.files.results.artefact_register import REGISTER, register_text
 from core.files.results.nominal_surface import nominal_names
 from core.files.results.run_file import RunRecord, read_run
+from core.files.step_graph import FILES
 from core.files.study.study_file import study_path
 from core.files.toml_text import toml_text
 from core.messages import Message, label
 from core.pipeline.project.workspace import part_name, project_set, rig_in_its_air
 from core.pipeline.steps.artefact_step import frames_id
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import FILES, read_calibration
+from core.pipeline.steps.workspace import read_calibration
 from core.report.wording import Words
 from core.study.artefact_check import ArtefactCheck
 

@@ -16,9 +16,9 @@ from core.files.project.people import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
 from core.files.results.run_file import read_run
+from core.files.step_graph import FILES
 from core.messages import Message, plural_message
 from core.pipeline.project.workspace import project_set
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent, steps
 
 _MAKING = ("measured", "reported")

@@ -11,10 +11,10 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, WrongValue
 from core.files.results.ply import read_cloud
+from core.files.step_graph import FILES
 from core.inspect.fit.plane_search import find_planes
 from core.inspect.fit.round import find_sphere
 from core.messages import Command, Message
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.normals import with_normals

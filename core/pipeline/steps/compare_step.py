@@ -20,6 +20,7 @@ from core.files.results.comparison_file import (
     write_comparison_ply,
 )
 from core.files.results.geometry_file import read_part_frame
+from core.files.step_graph import FILES
 from core.inspect.comparison import Comparison, ComparisonScales, SurfacePoints, compare, sampled_surface
 from core.inspect.fit.plane_search import above_table, search_tolerance
 from core.inspect.plan.alignment import best_fit
@@ -27,7 +28,6 @@ from core.inspect.shown.shown_comparison import ALIGNED, AUTOMATIC, Alignment
 from core.messages import Message
 from core.model import Pose
 from core.pipeline.steps.inspect_step import InspectedScan, open_scan
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangles import ProximityQuery, Triangles

@@ -22,12 +22,11 @@ from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
 from core.files.results.export_list import EXPORTS, ExportKind
-from core.files.results.inspection_file import NAME as INSPECTION
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.run_file import read_run
+from core.files.step_graph import FILES
 from core.messages import Message
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.report.content import ReportContent
 
@@ -124,7 +123,7 @@ def _dxf(results: Results, path: Path, _: Progress) -> None:
     from core.files.results.geometry_file import read_geometry
 
     points = read_cloud(results.folder / FILES["cloud"]).cloud.points
-    write_dxf(path, read_geometry(results.folder / INSPECTION, points))
+    write_dxf(path, read_geometry(results.folder / FILES["inspection"], points))
 
 
 def _opencv(results: Results, path: Path, _: Progress) -> None:

@@ -12,18 +12,18 @@ from core.files.plan.translation import plan_tables
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG
 from core.files.recording.rig import part_of, read_rig
-from core.files.results.inspection_file import NAME, write_inspection
+from core.files.results.inspection_file import write_inspection
 from core.files.results.nominal_surface import read_nominals
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
+from core.files.step_graph import FILES
 from core.inspect.evaluate import Inspection, evaluate
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Command, Message
 from core.pipeline.steps.gauge_step import PART, point_errors
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -149,7 +149,7 @@ def inspect_step(
     folder = out or scan.folder
     if folder is None:
         return inspection, None
-    path = make_folder(folder) / NAME
+    path = make_folder(folder) / FILES["inspection"]
     write_inspection(path, inspection, scan.calibration_id, plan_tables(plan))
     return inspection, path
 

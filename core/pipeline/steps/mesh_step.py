@@ -12,8 +12,8 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
 from core.files.results.ply import read_mesh, write_mesh
+from core.files.step_graph import FILES
 from core.messages import Message
-from core.pipeline.steps.workspace import FILES
 from core.progress import Progress, silent
 from core.scan.surface.decimation import Decimated, decimate, decimate_to
 from core.scan.surface.fused_surface import Mesh

@@ -26,12 +26,13 @@ from core.files.results.camera_file import camera_id
 from core.files.results.check_file import InterimCheck, read_check
 from core.files.results.comparison_file import read_comparison
 from core.files.results.gauge_file import read_gauge
-from core.files.results.inspection_file import MEMBERS, NAME, InspectionFile, read_inspection
+from core.files.results.inspection_file import MEMBERS, InspectionFile, read_inspection
 from core.files.results.planes_file import planes_id
 from core.files.results.ply import read_cloud, read_mesh
 from core.files.results.profile_file import read_profiles_file
 from core.files.results.run_file import RunRecord, read_run
 from core.files.results.scan_file import ScanFile, read_scan
+from core.files.step_graph import FILES
 from core.files.study.study_file import NAME as STUDY
 from core.files.study.study_file import read_study
 from core.image.display import in_8_bit
@@ -43,7 +44,7 @@ from core.messages import Command, Message, label
 from core.model import Camera
 from core.model.arrays import Array
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import FILES, Calibration, Workspace, check_calibration, read_calibration
+from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
 from core.report.content import CalibrationMark, Deviations, LightProfiles, Overlay, ReportContent
 from core.report.facts.fact import Fact
@@ -340,7 +341,7 @@ def with_inspection(content: ReportContent, out: Path) -> ReportContent:
     InputError
         If it is damaged, or of another scan than the one reported.
     """
-    path = out / NAME
+    path = out / FILES["inspection"]
     if not path.exists():
         return content
     file = read_inspection(path)

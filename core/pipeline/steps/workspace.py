@@ -24,36 +24,12 @@ from core.files.recording.recording_set import RIG, RecordingSet, require_outsid
 from core.files.results.camera_file import camera_id, read_camera
 from core.files.results.planes_file import planes_id, read_planes
 from core.files.results.run_file import RunRecord, read_run, write_run
-from core.files.step_graph import GRAPH, READJUST, resting_on
+from core.files.step_graph import FILES, GRAPH, READJUST, resting_on
 from core.held_files import remove, remove_tree, rename
 from core.memory import give_back
 from core.messages import Command, Message
 from core.model import Camera
 from core.scan.results import FrameRecord
-
-FILES = {
-    "camera": "camera.json",
-    "planes": "planes.json",
-    "poses": "planes.npz",
-    "calibrated": "planes-calibrated.json",
-    "check": "check.json",
-    "cloud": "cloud.ply",
-    "mesh": "mesh.ply",
-    "scan": "scan.npz",
-    "profiles": "profiles.ply",
-    "profile": "profile.json",
-    "profile_table": "profiles.csv",
-    "gauge": "gauge.json",
-    "faces": "gauge.npz",
-    "inspection": "inspection.json",
-    "inspected": "inspection.npz",
-    "comparison": "comparison.json",
-    "compared": "comparison.ply",
-    "comparison_table": "comparison.csv",
-    "report": "report.pdf",
-    "run": "run.json",
-}
-"""Fixed names of the results."""
 
 _MADE_IN_ORDER = tuple(made for step in GRAPH for made in step.makes)
 CLEARED = (*reversed(_MADE_IN_ORDER), "run")

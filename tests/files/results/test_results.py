@@ -535,6 +535,17 @@ def test_other_pairs_of_faces_are_read_as_they_were_written(tmp_path, cloud, gau
     assert read_gauge(tmp_path / "gauge.json", cloud).candidates == candidates
 
 
+def test_a_face_on_no_plane_is_no_result(tmp_path, cloud, gauge):
+    path = tmp_path / "gauge.json"
+    write_gauge(path, gauge, "a-b")
+    tables = json.loads(path.read_text())
+    tables["faces"]["lower"]["pi"] = [0.0, 0.0, 0.0]
+    path.write_text(json.dumps(tables))
+    for read in (read_thickness, lambda path: read_gauge(path, cloud)):
+        with pytest.raises(InputError, match="0, 0, 0"):
+            read(path)
+
+
 def test_whether_a_thickness_is_at_20_degrees_is_not_known_of_an_older_file(tmp_path, cloud, gauge):
     path = tmp_path / "gauge.json"
     write_gauge(path, replace(gauge, at_20=True), "abc")

@@ -12,8 +12,8 @@ import pytest
 from core.files.project.data import ProjectFile
 from core.files.project.folder import read_project
 from core.files.project.next_part import next_part
+from core.files.step_graph import FILES
 from core.pipeline.project.whole import measure_all
-from core.pipeline.steps.workspace import FILES
 
 
 @pytest.mark.accuracy

@@ -3,7 +3,8 @@ from pathlib import Path
 import pytest
 
 from core.files.recording.recording_set import open_set
-from core.pipeline.steps.workspace import CLEARED, FILES, Workspace
+from core.files.step_graph import FILES
+from core.pipeline.steps.workspace import CLEARED, Workspace
 
 RESTS_ON = {
     "report": set(FILES) - {"report"},
