@@ -1,12 +1,16 @@
 """Statistics of repeats, against the paper's Table 2 and by hand."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from core.inspect.causes import Cause
 from core.inspect.results import Contribution
+from core.report.facts.of_budget import EFFECTIVE, freedom_fact
+from core.report.facts.of_studies import study_facts
+from core.report.wording import Words
 from core.study.budget import from_budgets, from_stated
 from core.study.repeats import RepeatStatistics, Requirement, histogram, repeat_statistics, repeat_study, run_chart
 
@@ -154,3 +158,11 @@ def test_U_of_the_mean_holds_the_truth_in_95_of_100_series_whether_or_not_the_no
         found = from_budgets(values, [budget] * 5)
         held.append(abs(found.value - 50) <= found.U)
     assert 0.93 < np.mean(held) < 0.98  # the larger of the stated and the observed noise counts, of five scans
+
+
+@pytest.mark.parametrize("dof", [5.25, 12.5, 5000.0, math.inf])
+def test_degrees_of_freedom_are_told_in_the_words_and_digits_of_a_budget(dof):
+    found = study([1.0, 1.1, 1.05], None)
+    of_mean = replace(found, budget=replace(found.budget, dof=dof))
+    told = [(one.label, one.text(Words())) for one in study_facts(of_mean)]
+    assert (EFFECTIVE, freedom_fact("ν", dof).text(Words())) in told

@@ -21,6 +21,8 @@ SMALL = 1e-3
 NONE = 1e-20
 """An input of a smaller share of the variance has no influence: what is left of its sensitivity is rounding."""
 
+EFFECTIVE = label("effective degrees of freedom ν_eff")
+
 MANY = 1000
 """More degrees of freedom are told as such: the factor k is the same."""
 
@@ -35,7 +37,7 @@ def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
     return (
         *contributions,
         Fact(label("combined standard uncertainty u"), factor * one.u, unit, digits, root),
-        _freedom(label("effective degrees of freedom ν_eff"), effective_dof(one.budget)),
+        freedom_fact(EFFECTIVE, effective_dof(one.budget)),
         Fact(about_U, factor * one.U, unit, decimals_of(factor * one.U), level=Reader.AUDITOR),
     )
 
@@ -57,7 +59,7 @@ def _cells(one: Characteristic, row: Contribution, factor: float, share: float) 
         _rounded("u(x)", row.point_mm, row.unit),
         _rounded(label("sensitivity"), slope),
         _contribution(one, row),
-        _freedom("ν", row.dof),
+        freedom_fact("ν", row.dof),
         Fact(label("share"), 100 * share if math.isfinite(share) else None, "%", 0),
     )
 
@@ -81,7 +83,8 @@ def _rounded(name: str, value: float | None, unit: str = "") -> Fact:
     return Fact(name, value, unit, significant=2)
 
 
-def _freedom(name: str, dof: float) -> Fact:
+def freedom_fact(name: str, dof: float, level: Reader = Reader.AUDITOR) -> Fact:
+    """Degrees of freedom, as many as say something."""
     many = MANY < dof < math.inf
     value = Message("told.more_than", "> {number}", number=MANY) if many else dof
-    return Fact(name, value, digits=0 if dof >= 10 else 1, level=Reader.AUDITOR)
+    return Fact(name, value, digits=0 if dof >= 10 else 1, level=level)

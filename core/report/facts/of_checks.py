@@ -66,7 +66,7 @@ def check_facts(check: Check, chart: ControlChart | None = None) -> tuple[Fact, 
         Fact(
             STRIPES_OFF_MM, _known(check.offset_mm), "mm", 3, label("The same in mm"), Reader.METROLOGIST,
         ),
-        Fact(CHANCE, float(f"{check.p:.2g}"), "", None, PROBABILITY, Reader.AUDITOR),
+        Fact(CHANCE, check.p, tip=PROBABILITY, level=Reader.AUDITOR, significant=2),
         Fact(
             label("pictures taken"), Message("told.time", "{at}", at=check.taken_at.astimezone()),
             tip=label("The newest of them"), level=Reader.AUDITOR,
@@ -178,7 +178,7 @@ def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:
             done.correction_mm, "mm", 3, label("± is what camera and fan leave uncertain of it (k = 2)"),
             sd=2 * done.u_mm, signed=True,
         ),
-        Fact(CHANCE, float(f"{record.p_after:.2g}"), tip=was_chance, level=Reader.AUDITOR),
+        Fact(CHANCE, record.p_after, tip=was_chance, level=Reader.AUDITOR, significant=2),
         *_changes(done),
     )  # fmt: skip
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from core.messages import Message, label, plain
 from core.report.facts.fact import Fact, Grade, Reader
+from core.report.facts.of_budget import EFFECTIVE, freedom_fact
 from core.report.facts.table import Column, FactTable
 from core.report.wording import ENGLISH, Words, decimals_of, study_name
 from core.states import DECISIONS, SPREAD, VERDICT
@@ -126,7 +127,7 @@ def _of_repeats(study: RepeatStudy) -> list[Fact]:
         *repeat_facts(study.statistics, unit, study.nominal, digits),
         Fact(label("U of the mean"), budget.U, unit, digits, about),
         Fact(label("k of the mean"), budget.k, digits=2, tip=label("Coverage factor of U"), level=Reader.AUDITOR),
-        Fact(label("effective degrees of freedom"), budget.dof, digits=1, level=Reader.METROLOGIST),
+        freedom_fact(EFFECTIVE, budget.dof, Reader.METROLOGIST),
     ]
     if study.run is not None:
         about_run = label("A steady measurement seldom leaves the control limits (individual values, ISO 7870-2)")
