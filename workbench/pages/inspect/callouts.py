@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject
 from core.report.wording import shown_name, with_uncertainty
 from workbench.language import number, tr
 from workbench.pages.inspect.features import words
+from workbench.pages.inspect.features.plan import THICKNESS
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.words import wording
 from workbench.views.lists.value_rows import VERDICT_ICONS
@@ -18,6 +19,7 @@ from workbench.views.scene.contents import Callout
 from workbench.views.scene.view import SceneView
 
 if TYPE_CHECKING:
+    from core.inspect.results import GaugeResult
     from core.inspect.shown.shown_features import ShownFeature
     from core.inspect.shown.shown_scan import InspectionView
     from core.model.arrays import Array
@@ -28,11 +30,8 @@ MOST = 10
 OUTDATED = ("mdi6.clock-outline", "muted")
 """Sign of a value that is no longer true, as in the list."""
 
-THICKNESS = "#thickness"
-"""Name of the callout of a thickness that no feature of the plan has."""
-
 NEXT_PAIR = "#next pair"
-"""Name of that of the next best pair of faces, which was not measured."""
+"""Name of the callout of the next best pair of faces, which was not measured."""
 
 
 class CalloutsTool(QObject):
@@ -78,8 +77,9 @@ class CalloutsTool(QObject):
         if gauge is not None and len(gauge.upper.indices) and not any(one[3].kind == "thickness" for one in worst):
             value, uncertainty = with_uncertainty(gauge.thickness_mm, gauge.U_mm, wording())
             sign = VERDICT_ICONS[gauge.verdict] if gauge.verdict else None
-            place = _middle(view.points[gauge.upper.indices])
-            yield self._callout(THICKNESS, place, tr("Thickness"), f"{value} ± {uncertainty} mm", sign)
+            yield self._callout(
+                THICKNESS, _of_thickness(view, gauge), tr("Thickness"), f"{value} ± {uncertainty} mm", sign
+            )
         pair = self._presenter.faces.next_pair
         if pair is not None:
             value = f"{number(pair.thickness_mm, '.1f')} mm"
@@ -103,8 +103,20 @@ class CalloutsTool(QObject):
         self.refresh()
 
     def _chosen(self, name: str) -> None:
-        if name in self._presenter.features.plan.names:
-            self._presenter.features.choose(name)
+        self._presenter.features.choose(name)
+
+    def place_of(self, name: str) -> Array | None:
+        """Where the callout of a feature, or of the gauge's thickness, is on the surface; None if that is not known."""
+        view, features = self._presenter.scan.view, self._presenter.features
+        if name == THICKNESS:
+            return None if view is None or view.gauge is None else _of_thickness(view, view.gauge)
+        result = features.outdated(name) or features.result(name)
+        return None if result is None else self._place(name, result)
+
+
+def _of_thickness(view: InspectionView, gauge: GaugeResult) -> Array:
+    """The middle of the upper face."""
+    return _middle(view.points[gauge.upper.indices])
 
 
 def _middle(places: Array) -> Array:

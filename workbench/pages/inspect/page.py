@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import QTimer
+from PySide6.QtCore import Qt, QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
@@ -71,7 +71,7 @@ class InspectPage(StepPage):
         self.add_to_side(self.features.form)  # above what would push it down as it comes
         self.add_to_side(self.features.state)
         self.faces = FacesPanel(presenter)
-        self.add_panel(tr("What is measured"), self.faces, kept="faces")
+        self.faces_fold = self.add_panel(tr("What is measured"), self.faces, kept="faces")
         self.part = PartPanel(presenter)
         self.part_fold = self.add_panel(tr("The part"), self.part, collapsed=True, kept="part")
         self.conditions = ConditionsPanel(presenter.conditions)
@@ -90,6 +90,9 @@ class InspectPage(StepPage):
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
         self.features.draw.connect(self._draw)
+        self.features.show_place.connect(self._show_place)
+        self.features.ask_thickness.connect(self._ask_thickness)
+        self.features.measure_thickness.connect(presenter.do_run)
         self.picks.pick.connect(self._pick)
         self.surface.notice.connect(presenter.bench.notices.warning)
         presenter.model.opened.connect(self._show_first_tab)
@@ -140,6 +143,14 @@ class InspectPage(StepPage):
             self.tabs.setCurrentWidget(self.picture)
         tab: Any = self.tabs.currentWidget()
         tab.start_region(face, kind)
+
+    def _show_place(self, name: str) -> None:
+        self.tabs.setCurrentWidget(self.surface)
+        self.surface.show_place(name)
+
+    def _ask_thickness(self) -> None:
+        self.faces_fold.expand(animate=False)
+        self.faces.form.editor("nominal_mm").setFocus(Qt.FocusReason.OtherFocusReason)
 
     def _pick(self, mode: Any) -> None:
         if mode:

@@ -163,6 +163,12 @@ class SurfaceTab(QWidget):
         presenter.measured.connect(self._show_faces)
         presenter.comparison.made.connect(self._show_compared)
 
+    def show_place(self, name: str) -> None:
+        """Bring what a feature, or the gauge's thickness, was measured on to the middle of the view."""
+        place = self.callouts.place_of(name)
+        if place is not None:
+            self.scene.look_at(place)
+
     def _show_compared(self) -> None:
         self.choices.show_compared("")
         self.choices.choose_colour("compared")

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from itertools import count
 from typing import Any
 
-from PySide6.QtCore import QAbstractItemModel, QModelIndex, QObject, QPersistentModelIndex, Qt, Signal
+from PySide6.QtCore import QAbstractItemModel, QModelIndex, QObject, QPersistentModelIndex, QPoint, Qt, Signal
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QTreeView, QWidget
 
@@ -19,13 +19,18 @@ _TOP = 0
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """What a row says in one column; `ticked` is None where there is nothing to tick, `more` is shown by delegates."""
+    """What a row says in one column.
+
+    `ticked` is None where there is nothing to tick, `edited` the text that can be edited in its place, None where none
+    can; `more` is shown by delegates.
+    """
 
     text: str
     tip: str = ""
     icon: QIcon | None = None
     right: bool = False
     ticked: bool | None = None
+    edited: str | None = None
     more: Mapping[int, Any] = field(default_factory=dict)
 
 
@@ -43,6 +48,8 @@ class TreeModel(QAbstractItemModel):
 
     ticked = Signal(str, bool)
     """Key of a row whose box was clicked, and whether it is to be ticked."""
+    edited = Signal(str, str)
+    """Key of a row whose text was edited in its place, and what it is to be."""
 
     def __init__(self, parent: QObject, titles: Sequence[str] = ("",)) -> None:
         super().__init__(parent)
@@ -117,14 +124,21 @@ class TreeModel(QAbstractItemModel):
         return len(self._titles)
 
     def flags(self, index: _Index) -> Qt.ItemFlag:
-        ticks = index.isValid() and self._cell(index).ticked is not None
-        return super().flags(index) | (Qt.ItemFlag.ItemIsUserCheckable if ticks else Qt.ItemFlag.NoItemFlags)
+        flags = super().flags(index)
+        if not index.isValid():
+            return flags
+        cell = self._cell(index)
+        if cell.ticked is not None:
+            flags |= Qt.ItemFlag.ItemIsUserCheckable
+        return flags | Qt.ItemFlag.ItemIsEditable if cell.edited is not None else flags
 
     def data(self, index: _Index, role: int = Qt.ItemDataRole.DisplayRole) -> Any:
         cell = self._cell(index)
         match role:
             case Qt.ItemDataRole.DisplayRole:
                 return cell.text
+            case Qt.ItemDataRole.EditRole:
+                return cell.edited
             case Qt.ItemDataRole.ToolTipRole:
                 return cell.tip
             case Qt.ItemDataRole.DecorationRole:
@@ -136,7 +150,10 @@ class TreeModel(QAbstractItemModel):
         return cell.more.get(role)
 
     def setData(self, index: _Index, value: Any, role: int = Qt.ItemDataRole.EditRole) -> bool:
-        """A tick is asked for; it is there once `set_rows` says so."""
+        """A tick or another text is asked for; it is there once `set_rows` says so."""
+        if role == Qt.ItemDataRole.EditRole:
+            self.edited.emit(self.key(index), str(value))
+            return True
         if role != Qt.ItemDataRole.CheckStateRole:
             return False
         self.ticked.emit(self.key(index), Qt.CheckState(value) == Qt.CheckState.Checked)
@@ -160,6 +177,8 @@ class TreeList(QTreeView):
     """Key of the row that someone went to, "" for none; not where the rows themselves changed."""
     ticked = Signal(str, bool)
     """As of the model."""
+    edited = Signal(str, str)
+    """As of the model; comes once the editor is gone, so that rows may come and go."""
 
     def __init__(self, titles: Sequence[str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
@@ -167,7 +186,12 @@ class TreeList(QTreeView):
         self.setModel(self._rows)
         self._rows.rowsInserted.connect(self.expandAll)
         self._rows.ticked.connect(self.ticked)
+        self._rows.edited.connect(self.edited, Qt.ConnectionType.QueuedConnection)
         self.selectionModel().currentChanged.connect(self._gone_to)
+
+    def key_at(self, at: QPoint) -> str:
+        """Key of the row under a point of the viewport; "" if there is none."""
+        return self._rows.key(self.indexAt(at))
 
     def set_rows(self, rows: Sequence[TreeRow]) -> None:
         """Show these."""

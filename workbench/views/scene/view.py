@@ -540,6 +540,10 @@ class SceneView(QWidget):
         if number is not None:
             self._navigator.centre_on(self._points_seen()[number])
 
+    def look_at(self, point: Array) -> None:
+        """Bring a point (3,) to the middle; the view turns about it from now on."""
+        self._navigator.centre_on(point)
+
     def choose_region(self, corners: list[QPointF]) -> None:
         """Choose the points of the cloud inside an outline."""
         inside = np.zeros(self._scene.cloud.given if self._scene.cloud is not None else 0, dtype=bool)

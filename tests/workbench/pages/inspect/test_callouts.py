@@ -12,7 +12,8 @@ from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.shown.shown_features import ShownFeature, ShownInspection
 from tests.workbench.pages import inspect_cases as cases
-from workbench.pages.inspect.callouts import MOST, OUTDATED, THICKNESS
+from workbench.pages.inspect.callouts import MOST, OUTDATED
+from workbench.pages.inspect.features.plan import THICKNESS
 from workbench.settings import AppSettings
 from workbench.work import jobs
 
@@ -128,4 +129,4 @@ def test_a_click_on_one_chooses_its_feature(page):
     page.surface.scene.callout_chosen.emit("table")
     assert page.presenter.features.chosen == "table"
     page.surface.scene.callout_chosen.emit(THICKNESS)
-    assert page.presenter.features.chosen == "table"
+    assert page.presenter.features.chosen == THICKNESS

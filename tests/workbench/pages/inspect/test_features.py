@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from PySide6.QtCore import QRect, Qt
 from PySide6.QtGui import QIcon
-from PySide6.QtWidgets import QAbstractButton, QLabel, QStyleOptionViewItem
+from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit, QStyleOptionViewItem
 
 from core.errors import InputError
 from core.inspect.characteristic import Characteristic
@@ -20,13 +20,17 @@ from core.inspect.plan.kinds import KINDS, results_of
 from core.inspect.shown.deviation_map import bounds, mark
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
 from core.messages import plain
+from core.translations import language
 from tests.inspect.plan.toy_kind import toy
 from tests.workbench.cells import icon_of, place, shown, tip
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.places import moved, places
+from workbench.language import choose
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features.edit import LINE
+from workbench.pages.inspect.features.plan import THICKNESS
+from workbench.pages.inspect.stage import Stage
 from workbench.views import ask
 from workbench.views.colours import DEVIATIONS, to_rgba
 from workbench.views.control_frames import FRAMES_ROLE, Frame, FramesIcon
@@ -232,12 +236,12 @@ def test_features_that_are_only_read_again_are_not_said_to_be_measured(presenter
     model.open(model.folder)
     qtbot.waitUntil(lambda: features.measuring)
     page.refreshing.at_once()
-    assert shown(page.features.list, 0, 1) == "reading …"
+    assert shown(page.features.list, 1, 1) == "reading …"
 
 
 def test_a_plan_measured_once_is_measured_anew_when_it_changes(presenter, features, measuring, qtbot):
-    presenter.feature.add("plane")
-    assert jobs.MEASURE_FEATURES not in measuring.ran
+    features.put(FeatureSpec("plane 1", "plane"))
+    assert not features.measuring
     measured(features, qtbot)
     presenter.feature.set_value("margin_mm", 0.5)
     assert features.result("plane 1") is None
@@ -393,7 +397,8 @@ def test_with_no_feature_chosen_none_looks_chosen(page, features, presenter):
 def test_without_features_the_panel_is_one_button(page):
     panel = page.features
     assert panel.add.isVisibleTo(page)
-    assert not any(one.isVisibleTo(page) for one in (panel.list, panel.measure, panel.remove, panel.form))
+    assert not any(one.isVisibleTo(page) for one in (panel.measure, panel.remove, panel.form))
+    assert panel.list.isVisibleTo(page) and panel.list.model().rowCount() == 1, "the thickness"
     assert not panel.kinds["distance"].isEnabled()
     assert "made of two other features" in panel.kinds["distance"].toolTip()
 
@@ -441,6 +446,7 @@ def test_the_buttons_of_the_features_follow_the_panel_from_state_to_state(presen
     assert follow().measure == follow().save == "Add a feature first."
     for kind in ("plane", "plane", "distance"):
         presenter.feature.add(kind)
+    qtbot.waitUntil(lambda: not features.measuring)
     assert follow() == ("", "", "", "It is the last.", "")
     features.choose("plane 1")
     assert follow().up == "It is the first." and follow().remove.endswith("distance 1 rests on it.")
@@ -456,6 +462,7 @@ def test_the_buttons_of_the_features_follow_the_panel_from_state_to_state(presen
 
 def test_a_scan_that_cannot_be_read_has_no_features_measured(presenter, page, features, hand_bench, qtbot):
     presenter.feature.add("plane")
+    qtbot.waitUntil(lambda: not features.measuring)
     quick = cast(HandLane, hand_bench.quick)
     quick.held = {jobs.INSPECTION_VIEW}
     presenter.scan.forget()
@@ -468,8 +475,9 @@ def test_a_scan_that_cannot_be_read_has_no_features_measured(presenter, page, fe
     assert page.features.measure.toolTip() == "The scan cannot be read."
 
 
-def test_nothing_is_measured_into_a_project_that_is_read_only(presenter, page, features, measuring, monkeypatch):
+def test_nothing_is_measured_into_a_project_that_is_read_only(presenter, page, features, measuring, monkeypatch, qtbot):
     presenter.feature.add("plane")
+    qtbot.waitUntil(lambda: not features.measuring)
     monkeypatch.setattr(type(features.model), "is_read_only", property(lambda _: True))
     page.refresh()
     for button in (page.features.measure, page.card.buttons["measure"]):
@@ -489,9 +497,9 @@ def test_the_list_shows_value_uncertainty_verdict_and_problem(page, features, qt
     )
     features.put_plan(plan, "three")
     page.refreshing.at_once()
-    assert shown(page.features.list, 0, 1) == "not measured"
+    assert shown(page.features.list, 1, 1) == "not measured"
     measured(features, qtbot)
-    listed, (ball, top, lost) = page.features.list, range(3)
+    listed, (ball, top, lost) = page.features.list, range(1, 4)
     page.refreshing.at_once()
     assert (shown(listed, ball, 0, 0), shown(listed, ball, 1, 0)) == ("diameter", "50.012 ± 0.024 mm")
     assert "Conformity is proven" in tip(listed, ball, 1, 0) and not icon_of(listed, ball, 1).isNull()
@@ -517,7 +525,7 @@ def test_old_values_stay_marked_while_only_what_an_edit_concerns_is_measured_aga
     presenter.feature.set_value("margin_mm", 0.5)
     page.refreshing.at_once()
     assert features.measuring
-    listed, (top, table, height) = page.features.list, range(3)
+    listed, (top, table, height) = page.features.list, range(1, 4)
     for one in (top, height):
         assert shown(listed, one, 1) == "50.012 ± 0.024 mm" and "Out of date" in tip(listed, one, 1)
         assert "Conformity is proven" not in tip(listed, one, 1)
@@ -584,7 +592,7 @@ def test_choosing_a_feature_shows_its_points_in_3d_and_in_the_picture(presenter,
     presenter.feature.add("plane")
     presenter.feature.add("sphere")
     measured(features, qtbot)
-    page.features.list.setCurrentIndex(place(page.features.list, 0))
+    page.features.list.setCurrentIndex(place(page.features.list, 1))
     page.refreshing.at_once()
     assert features.chosen == "plane 1" and (Marks, "feature") in page.surface.scene._scene.items
     page.tabs.setCurrentWidget(page.picture)
@@ -775,7 +783,7 @@ def test_a_kind_that_is_registered_is_in_the_menu_has_a_form_and_is_measured(toy
     presenter.feature.set_value("limits upper spread", 60.0)
     assert features.plan.features[0].limits_of("spread").upper == 60.0
     measured(features, qtbot)
-    qtbot.waitUntil(lambda: page.features.list.model().rowCount(place(page.features.list, 0)) == 2)
+    qtbot.waitUntil(lambda: page.features.list.model().rowCount(place(page.features.list, 1)) == 2)
 
 
 def test_an_edit_in_the_form_is_an_edit_of_the_plan(presenter, page, features, qtbot):
@@ -795,8 +803,8 @@ def test_an_edit_in_the_form_is_an_edit_of_the_plan(presenter, page, features, q
 def test_delete_and_alt_arrows_work_in_the_list(presenter, page, features, qtbot):
     presenter.feature.add("plane")
     presenter.feature.add("sphere")
-    page.features.list.setFocus()
     page.refreshing.at_once()
+    page.features.list.setFocus()
     qtbot.keyClick(page.features.list, Qt.Key.Key_Up, Qt.KeyboardModifier.AltModifier)
     page.refreshing.at_once()
     assert features.plan.names == ("sphere 1", "plane 1")
@@ -891,3 +899,92 @@ def test_a_name_is_whole_in_the_list_where_its_kind_has_no_room_beside_it(lie, p
         delegate.initStyleOption(option, index)
         assert option.text == words
     assert "other flatness" in index.data(Qt.ItemDataRole.ToolTipRole)
+
+
+# ---- one list of results
+
+
+def test_the_thickness_is_the_first_of_all_results_and_an_old_one_looks_old(presenter, page, features, qtbot):
+    presenter.feature.add("plane")
+    qtbot.waitUntil(lambda: not features.measuring)
+    page.refreshing.at_once()
+    listed = page.features.list
+    assert (shown(listed, 0), shown(listed, 0, 1)) == ("Thickness", "50.012 ± 0.024 mm")
+    assert "Conformity is proven" in tip(listed, 0, 1)
+    presenter.faces.set_number("nominal_mm", 51.0)
+    presenter.faces.set_number("tolerance_mm", 0.1)
+    page.refreshing.at_once()
+    assert "Out of date" in tip(listed, 0, 1) and "Conformity" not in tip(listed, 0, 1)
+
+
+def test_a_new_feature_is_measured_at_once(presenter, features, qtbot):
+    presenter.feature.add("plane")
+    qtbot.waitUntil(lambda: features.result("plane 1") is not None)
+
+
+def test_new_features_are_called_in_the_language_of_the_window(presenter, features, qapp):
+    choose(language("de"), qapp)
+    try:
+        presenter.feature.add("plane")
+        presenter.feature.add("section")
+    finally:
+        choose(language("en"), qapp)
+    assert features.plan.names == ("Ebene 1", "Schnitt 1")
+
+
+@pytest.mark.parametrize("way", ["key", "double click"])
+def test_a_feature_is_renamed_in_the_list(presenter, page, features, qtbot, way):
+    presenter.feature.add("plane")
+    page.refreshing.at_once()
+    listed = page.features.list
+    listed.setFocus()
+    if way == "key":
+        qtbot.keyClick(listed, Qt.Key.Key_F2)
+    else:
+        at = listed.visualRect(place(listed, 1)).center()
+        qtbot.mouseClick(listed.viewport(), Qt.MouseButton.LeftButton, pos=at)
+        qtbot.mouseDClick(listed.viewport(), Qt.MouseButton.LeftButton, pos=at)
+    editor = listed.viewport().findChild(QLineEdit)
+    assert editor is not None and editor.text() == "plane 1"
+    editor.setText("table")
+    qtbot.keyClick(editor, Qt.Key.Key_Return)
+    qtbot.waitUntil(lambda: features.plan.names == ("table",))
+    undo(features)
+    assert features.plan.names == ("plane 1",)
+
+
+def test_what_can_be_done_with_a_row_is_in_its_menu(presenter, page, features, qtbot):
+    presenter.feature.add("plane")
+    qtbot.waitUntil(lambda: not features.measuring)
+    page.refreshing.at_once()
+    panel, listed = page.features, page.features.list
+    listed.customContextMenuRequested.emit(listed.visualRect(place(listed, 1)).center())
+    can = panel.actions_of_row
+    can["duplicate"].trigger()
+    assert features.plan.names == ("plane 1", "plane 2") and features.chosen == "plane 2"
+    assert features.plan.feature("plane 2").regions == features.plan.feature("plane 1").regions
+    page.refreshing.at_once()
+    can["limits"].trigger()
+    qtbot.waitUntil(lambda: panel.form.what.editor("limits upper flatness").hasFocus())
+    page.tabs.setCurrentWidget(page.picture)
+    qtbot.waitUntil(lambda: features.result("plane 2") is not None)
+    page.refreshing.at_once()
+    before = page.surface.scene._navigator.camera
+    can["show"].trigger()
+    assert page.tabs.currentWidget() is page.surface and page.surface.scene._navigator.camera != before
+    can["remove"].trigger()
+    assert features.plan.names == ("plane 1",)
+
+
+def test_the_thickness_has_limits_and_is_measured_again_from_its_row_but_not_removed(presenter, page, features, qtbot):
+    page.refreshing.at_once()
+    listed, can = page.features.list, page.features.actions_of_row
+    listed.customContextMenuRequested.emit(listed.visualRect(place(listed, 0)).center())
+    assert features.chosen == THICKNESS
+    for name in ("rename", "duplicate", "remove"):
+        assert not can[name].isEnabled() and can[name].toolTip()
+    can["limits"].trigger()
+    assert page.faces.form.editor("nominal_mm").hasFocus()
+    can["show"].trigger()
+    can["measure"].trigger()
+    assert presenter.stage is Stage.MEASURING

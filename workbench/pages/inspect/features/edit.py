@@ -66,6 +66,7 @@ class InspectFeatureEdit:
         stored = "" if nominal is None else stored_source(folder, nominal)
         size = NO_PICTURE if view is None else view.image_size
         features.put(fields.new_feature(kind, features.free_name(kind), features.plan, size, stored, self._across()))
+        features.measure_first()
 
     def set_value(self, key: str, value: Any) -> None:
         """Change a field; what cannot be is kept in the form with a sentence, and the plan stays as it was."""

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSize, Signal
+from PySide6.QtCore import QSize, Qt, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, FormField, NumberField, ResultKind, TextField
@@ -89,6 +89,12 @@ class FeatureForm(QWidget):
                 form.set_complaint(key, self._edit.complaint(key))
         self.frames.show_frames(words.frames_of(spec, plan))
         self._show_tools()
+
+    def ask_limits(self) -> None:
+        """Have the first of its limits entered."""
+        key = next((key for key in self.what.values() if key.startswith("limits ")), None)
+        if key is not None:
+            self.what.editor(key).setFocus(Qt.FocusReason.OtherFocusReason)
 
     # ---- making it
 

@@ -1,4 +1,4 @@
-"""The panel of features: what is measured beside the thickness, with value ± U and verdict, and the one chosen."""
+"""The list of results, the thickness first, with value ± U and verdict, and what can be done with each."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from PySide6.QtCore import Qt, Signal
+from PySide6.QtCore import QPoint, Qt, QTimer, Signal
 from PySide6.QtGui import QAction, QIcon, QKeySequence, QResizeEvent, QShortcut
 from PySide6.QtWidgets import (
     QAbstractItemView,
@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
+from core.inspect.characteristic import thickness_characteristic
 from core.inspect.plan import kinds
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_named, kind_of
@@ -26,9 +27,10 @@ from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features import words
 from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.form import FeatureForm, choose_nominal
-from workbench.pages.inspect.features.plan import InspectFeatures
+from workbench.pages.inspect.features.plan import THICKNESS, InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
+from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
@@ -52,11 +54,17 @@ class FeaturesPanel(QWidget):
 
     The form of the chosen feature, how far the features are, and the notes on their results stand where whoever shows
     the panel has room for them.
-    Without any feature: two buttons.
+    Without a scan and any feature: two buttons.
     """
 
     draw = Signal(str, str)
     """Name of a region and kind of tool: it is to be drawn."""
+    show_place = Signal(str)
+    """A feature, or THICKNESS, is to be shown on the part."""
+    ask_thickness = Signal()
+    """The limits of the thickness are to be entered."""
+    measure_thickness = Signal()
+    """It is to be measured again."""
 
     def __init__(
         self,
@@ -67,7 +75,7 @@ class FeaturesPanel(QWidget):
         parent: QWidget | None = None,
     ) -> None:
         super().__init__(parent)
-        self._features, self._edit = features, edit
+        self._features, self._edit, self._scan = features, edit, scan
         self._shown: object = None
         self._page_height = LOW_PAGE
         self._frames: dict[str, Frame] = {}
@@ -78,8 +86,10 @@ class FeaturesPanel(QWidget):
         self.state, self.notes = TwoLines(steady=True), muted()
         self.form = FeatureForm(features, edit, scan)
         self.kinds: dict[str, QAction] = {}
+        self.actions_of_row: dict[str, QAction] = {}
         self._make_list()
         self._make_menu()
+        self._row_menu = self._make_row_menu()
         column = in_column(self.list, on=self, spacing=3)
         for button in (self.remove, self.up, self.down):
             button.setAutoRaise(True)
@@ -97,7 +107,8 @@ class FeaturesPanel(QWidget):
         """Show what the presenter says now."""
         features = self._features
         some = bool(features.plan.features)
-        for widget in (self.list, self.remove, self.up, self.down, self.measure):
+        self.list.setVisible(some or self._scan.view is not None)
+        for widget in (self.remove, self.up, self.down, self.measure):
             widget.setVisible(some)
         self._show_list()
         self._show_buttons()
@@ -111,7 +122,13 @@ class FeaturesPanel(QWidget):
 
     def _make_list(self) -> None:
         self.list.setAccessibleName(tr("Features"))
-        self.list.setEditTriggers(QAbstractItemView.EditTrigger.NoEditTriggers)
+        self.list.setEditTriggers(
+            QAbstractItemView.EditTrigger.EditKeyPressed | QAbstractItemView.EditTrigger.DoubleClicked
+        )
+        self.list.setExpandsOnDoubleClick(False)
+        self.list.edited.connect(self._rename)
+        self.list.setContextMenuPolicy(Qt.ContextMenuPolicy.CustomContextMenu)
+        self.list.customContextMenuRequested.connect(self._show_row_menu)
         self.list.setIndentation(14)
         self.list.setItemDelegateForColumn(0, FramesDelegate(self.list))
         self.list.setUniformRowHeights(True)
@@ -133,14 +150,31 @@ class FeaturesPanel(QWidget):
         """The feature chosen is marked, and no other."""
         features = self._features
         results = [(features.result(name), features.outdated(name)) for name in features.plan.names]
-        shown = (features.plan, results, features.measuring)
+        shown = (features.plan, results, features.measuring, self._scan.gauge, self._is_thickness_old)
         if shown != self._shown:
             self._shown = shown
             self._frames, self._datums = words.asked_frames(features.plan), words.datum_frames(features.plan)
-            self.list.set_rows([self._feature_row(spec.name, kind_of(spec)) for spec in features.plan.features])
-            if features.plan.features:
-                self._fit_list()
+            rows = [self._feature_row(spec.name, kind_of(spec)) for spec in features.plan.features]
+            self.list.set_rows([self._thickness_row(), *rows])
+            self._fit_list()
         self.list.choose(features.chosen)
+
+    @property
+    def _is_thickness_old(self) -> bool:
+        """Whether the thickness shown is not what the project would give now."""
+        return self._scan.stale or self._features.model.states["inspect"].state is not State.DONE
+
+    def _thickness_row(self) -> TreeRow:
+        """The gauge's thickness: the first of all results."""
+        name, gauge = tr("Thickness"), self._scan.gauge
+        if gauge is None:
+            return TreeRow(
+                THICKNESS, (Cell(name, icon=icon("mdi6.arrow-expand-vertical")), Cell(tr("not measured"), right=True))
+            )
+        row, old = thickness_characteristic(gauge), self._is_thickness_old
+        tip = tr("Out of date: measure again.") if old else words.tip(row)
+        value = self._value(words.value(row), tip, _verdict_icon(row.verdict), old)
+        return TreeRow(THICKNESS, (Cell(name, tip, icon("mdi6.arrow-expand-vertical")), value))
 
     def _fit_list(self) -> None:
         """As high as the page lets it be, whatever is in it: results that come push nothing below them."""
@@ -150,7 +184,9 @@ class FeaturesPanel(QWidget):
         header, frame = self.list.header().sizeHint().height(), 2 * self.list.frameWidth()
         missing, beyond = max(LOWEST_PAGE - self._page_height, 0), max(self._page_height - LOW_PAGE, 0)
         rows = ROWS - math.ceil(missing / row) + round(SHARE * beyond / row)
-        self.list.setFixedHeight(header + frame + min(max(rows, FEWEST_ROWS), MOST_ROWS) * row)
+        rows = min(max(rows, FEWEST_ROWS), MOST_ROWS) if self._features.plan.features else 1
+        self.list.setFixedHeight(header + frame + rows * row)
+        self.updateGeometry()
 
     def _feature_row(self, name: str, kind: FeatureKind) -> TreeRow:
         outdated = self._features.outdated(name)
@@ -176,6 +212,7 @@ class FeaturesPanel(QWidget):
             tr("{name}, {kind}", name=name, kind=words.short_name(rows[0], name)) if named else name,
             tip,
             icon(kind.icon),
+            edited=name,
             more={
                 FRAMES_ROLE: [*([self._datums[name]] if name in self._datums else []), *frames],
                 SHORT_ROLE: name if named else "",  # its icon says the kind as well
@@ -200,6 +237,83 @@ class FeaturesPanel(QWidget):
             return Cell(text, tip, mark, right=True)
         faint = {int(Qt.ItemDataRole.ForegroundRole): self.palette().placeholderText()}
         return Cell(text, tip, icon("mdi6.clock-outline", colour="muted"), right=True, more=faint)
+
+    # ---- what can be done with a row
+
+    def _make_row_menu(self) -> QMenu:
+        """By the right button of the mouse, and by the menu key."""
+        menu = QMenu(self)
+        menu.setToolTipsVisible(True)
+        for key, text, symbol, does in (
+            ("rename", tr("Rename"), "mdi6.rename-outline", self._edit_name),
+            ("duplicate", tr("Duplicate"), "mdi6.content-duplicate", self._duplicate),
+            ("remove", tr("Remove"), "mdi6.delete-outline", self._remove),
+            ("limits", tr("Limits …"), "mdi6.arrow-collapse-vertical", self._ask_limits),
+            (
+                "show",
+                tr("Show on the part"),
+                "mdi6.crosshairs-gps",
+                lambda: self.show_place.emit(self._features.chosen),
+            ),
+            ("measure", tr("Measure again"), "mdi6.ruler-square", self._measure_again),
+        ):
+            action = menu.addAction(icon(symbol), text)
+            action.triggered.connect(lambda _=False, does=does: does())
+            self.actions_of_row[key] = action
+        self.actions_of_row["rename"].setShortcut(QKeySequence(Qt.Key.Key_F2))
+        self.actions_of_row["remove"].setShortcut(QKeySequence(QKeySequence.StandardKey.Delete))
+        for action in self.actions_of_row.values():  # the list has these keys; the menu only names them
+            action.setShortcutContext(Qt.ShortcutContext.WidgetShortcut)
+        return menu
+
+    def _show_row_menu(self, at: QPoint) -> None:
+        name = self.list.key_at(at)
+        if not name:
+            return
+        self._features.choose(name)
+        self.refresh()
+        self._row_menu.popup(self.list.viewport().mapToGlobal(at))
+
+    def _show_row_actions(self) -> None:
+        """Which of them are possible with the chosen row."""
+        thickness = self._features.chosen == THICKNESS
+        only = tr("The thickness is always measured: draw its faces under “What is measured”.") if thickness else ""
+        can = self._features.buttons
+        measured = (
+            self._scan.gauge is not None if thickness else self._features.result(self._features.chosen) is not None
+        )
+        for key, why_not, tip in (
+            ("rename", only, tr("Call it otherwise (F2, double click)")),
+            ("duplicate", only, tr("Put a copy below it")),
+            ("remove", only or can.remove, tr("Take the chosen feature out (Delete)")),
+            ("limits", "", tr("Enter what is asked of it")),
+            ("show", "" if measured else tr("Measure it first."), tr("Bring it to the middle of the surface")),
+            ("measure", "" if thickness else can.measure, tr("Measure all features on this scan")),
+        ):
+            enable(self.actions_of_row[key], why_not, tip)
+
+    def _edit_name(self) -> None:
+        self.list.edit(self.list.currentIndex().siblingAtColumn(0))
+
+    def _rename(self, name: str, to: str) -> None:
+        self._features.choose(name)
+        self._edit.set_value("name", to)
+
+    def _duplicate(self) -> None:
+        self._features.duplicate(self._features.chosen)
+
+    def _ask_limits(self) -> None:
+        """Go to the first field of its limits, once the form is there."""
+        if self._features.chosen == THICKNESS:
+            self.ask_thickness.emit()
+        else:
+            QTimer.singleShot(0, self, self.form.ask_limits)
+
+    def _measure_again(self) -> None:
+        if self._features.chosen == THICKNESS:
+            self.measure_thickness.emit()
+        else:
+            self._features.measure()
 
     # ---- the buttons
 
@@ -250,6 +364,7 @@ class FeaturesPanel(QWidget):
         ):
             enable(button, why_not, tip)
             button.setAccessibleName(tip)
+        self._show_row_actions()
 
     def _sentence(self) -> str:
         features = self._features
@@ -273,7 +388,7 @@ class FeaturesPanel(QWidget):
             self._edit.add(kind.name, path)
 
     def _remove(self) -> None:
-        if self._features.chosen:
+        if self._features.chosen in self._features.plan.names:
             self._features.remove(self._features.chosen)
 
 

@@ -16,6 +16,7 @@ from core.inspect.plan.feature_spec import FeatureSpec, PointsOf
 from core.inspect.plan.inspection_plan import InspectionPlan
 from workbench.bench import Bench
 from workbench.language import joined, text_of, tr
+from workbench.pages.inspect.features import words
 from workbench.pages.inspect.scan import InspectScan
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -71,6 +72,9 @@ def features_buttons(facts: FeaturesFacts) -> FeaturesButtons:
     )
 
 
+THICKNESS = "#thickness"
+"""What the gauge's thickness is called among the features, where it is chosen or has its callout."""
+
 REMEMBERING = {"progress": "progress", "memory": "memory"}
 """What is offered to the jobs here: features that an edit leaves as they are need not be measured again."""
 
@@ -99,11 +103,14 @@ class InspectFeatures(QObject):
         return self.model.project.inspection
 
     def free_name(self, kind: str, taken: Sequence[str] = ()) -> str:
-        """A name for a new feature that no other has, and that is not `taken`: "plane 2"."""
-        number = 1
-        while f"{kind} {number}" in (*self.plan.names, *taken):
+        """A name for a new feature of a kind that no other has, and that is not `taken`: "plane 2"."""
+        return self._numbered(words.usual_name(kind), 1, taken)
+
+    def _numbered(self, name: str, number: int, taken: Sequence[str] = ()) -> str:
+        """The name with the first number from this one on that no feature has with it."""
+        while f"{name} {number}" in (*self.plan.names, *taken):
             number += 1
-        return f"{kind} {number}"
+        return f"{name} {number}"
 
     def complaint(self, spec: FeatureSpec, instead_of: str = "") -> str:
         """Why the plan would be wrong with this feature (in place of another), or ""."""
@@ -127,6 +134,17 @@ class InspectFeatures(QObject):
         self.chosen = specs[-1].name
         plan = replace(self.plan, features=(*self.plan.features, *specs))
         self.put_plan(plan, tr("add {name}", name=self.chosen))
+
+    def duplicate(self, name: str) -> None:
+        """Put a copy of a feature below it and choose that; undoable."""
+        if name not in self.plan.names:
+            return
+        spec, place = self.plan.feature(name), self.plan.names.index(name) + 1
+        stem, _, number = name.rpartition(" ")
+        copy = replace(spec, name=self._numbered(stem if stem and number.isdigit() else name, 2))
+        self.chosen = copy.name
+        features = (*self.plan.features[:place], copy, *self.plan.features[place:])
+        self.put_plan(replace(self.plan, features=features), tr("duplicate {name}", name=name))
 
     def remove(self, name: str) -> None:
         """Take a feature out of the plan; undoable. One that others rest on stays, and a notice says which."""
@@ -164,7 +182,7 @@ class InspectFeatures(QObject):
     def put_plan(self, plan: InspectionPlan, label: str) -> None:
         """Measure this plan from now on; undoable."""
         self.model.edit(label, replace(self.model.project, inspection=plan))
-        if self.chosen not in plan.names:
+        if self.chosen not in (*plan.names, THICKNESS):
             self.chosen = ""
 
     # ---- measuring
@@ -210,7 +228,7 @@ class InspectFeatures(QObject):
         self._run(jobs.MEASURE_FEATURES, folder, done, tr("Measuring the features"))
 
     def measure_first(self) -> None:
-        """Measure a plan that has not been measured yet; later, every edit of it is measured by itself."""
+        """Measure a plan that has not been measured yet, if it can be; later, every edit is measured by itself."""
         if "inspection" not in self.model.results:
             self.measure()
 
@@ -219,7 +237,7 @@ class InspectFeatures(QObject):
         if self.plan == before:
             return
         self.problem = ""
-        if self.chosen not in self.plan.names:
+        if self.chosen not in (*self.plan.names, THICKNESS):
             self.chosen = ""
         self._measure_again()
 

@@ -28,6 +28,26 @@ def title(kind: FeatureKind) -> str:
     return f"{tr(kind.title)} …" if kind.nominal_file else tr(kind.title)
 
 
+def usual_name(kind: str) -> str:
+    """What a new feature of a kind is called in the language of the window, before its number."""
+    names = {
+        "plane": tr("plane"),
+        "sphere": tr("sphere"),
+        "cylinder": tr("cylinder"),
+        "point": tr("point"),
+        "thickness": tr("thickness"),
+        "steps": tr("steps"),
+        "distance": tr("distance"),
+        "angle": tr("angle"),
+        "parallelism": tr("parallelism"),
+        "perpendicularity": tr("perpendicularity"),
+        "position": tr("position"),
+        "section": tr("section"),
+        "deviation": tr("deviation"),
+    }
+    return names.get(kind, kind)  # a plug-in's own word
+
+
 def source_of_none(spec: FeatureSpec) -> str:
     """What stands for a region that was not drawn."""
     kind = kind_of(spec)
