@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from PySide6.QtCore import QRect
+from PySide6.QtCore import QRect, QTimer
 from PySide6.QtGui import QGuiApplication, QScreen
 from PySide6.QtWidgets import QWidget
 
@@ -13,6 +13,11 @@ from workbench.settings import AppSettings
 
 LAST_SCREEN = "layout/screen"
 """Setting: the screen that the window was on last."""
+
+TITLE_BAR = 40
+"""Pixels of a title bar as long as it is not known how high it is: no usual one is higher."""
+FRAMED_MS = 500
+"""After so long a window that was shown has its frame."""
 
 
 def name_of(screen: QScreen) -> str:
@@ -44,9 +49,29 @@ def restore_layout(window: QWidget, pages: Mapping[str, StepPage], settings: App
         name = name_of(window.screen())
     if geometry := settings.layout(f"{name}/window"):
         window.restoreGeometry(geometry)
-    if not window.isMaximized() and not window.isFullScreen():
-        window.setGeometry(inside(window.geometry(), screens[name].availableGeometry()))
+    put_on_screen(window, screens[name].availableGeometry())
     _restore_pages(name, pages, settings)
+
+
+def put_on_screen(window: QWidget, room: QRect) -> None:
+    """Move a window, and make it smaller where it has to be, so that all of its frame is within the room.
+
+    What the frame takes is not known until the window system has made it: until then a title bar of TITLE_BAR pixels is
+    reckoned with.
+    """
+    if window.isMaximized() or window.isFullScreen():
+        return
+    own, frame = window.geometry(), window.frameGeometry()
+    beside = (
+        frame.left() - own.left(),
+        frame.top() - own.top(),
+        frame.right() - own.right(),
+        frame.bottom() - own.bottom(),
+    )
+    left, top, right, bottom = beside if frame != own else (0, -TITLE_BAR, 0, 0)
+    place = inside(own, room.adjusted(-left, -top, -right, -bottom))
+    if place != own:
+        window.setGeometry(place)
 
 
 def _restore_pages(screen: str, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
@@ -67,12 +92,21 @@ class LayoutOfScreen:
     def __init__(self, window: QWidget, pages: Mapping[str, StepPage], settings: AppSettings) -> None:
         self._window, self._pages, self._settings = window, pages, settings
         self._screen = ""
+        self._framed = QTimer(window)
+        self._framed.setSingleShot(True)
+        self._framed.setInterval(FRAMED_MS)
+        self._framed.timeout.connect(lambda: put_on_screen(window, window.screen().availableGeometry()))
+
+    def rest(self) -> None:
+        """The window is hidden: it has no frame any more."""
+        self._framed.stop()
 
     def follow(self) -> None:
         """Do so from now on; the window is shown."""
         handle = self._window.windowHandle()
         if not self._screen and handle is not None:
             self._screen = name_of(self._window.screen())
+            self._framed.start()
             handle.screenChanged.connect(self._moved)
 
     def _moved(self, screen: QScreen) -> None:

@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pytest
 from PySide6.QtCore import QRect
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QWidget
+from pytestqt.qtbot import QtBot
 
 from core.files.project.data import new_project
 from workbench import window_layout
 from workbench.main_window import MainWindow
-from workbench.window_layout import LAST_SCREEN, inside, keep_layout, name_of, restore_layout
+from workbench.window_layout import LAST_SCREEN, TITLE_BAR, inside, keep_layout, name_of, put_on_screen, restore_layout
 
 ROOM = QRect(1920, 30, 960, 510)
 
@@ -27,6 +28,22 @@ ROOM = QRect(1920, 30, 960, 510)
 )
 def test_a_window_is_put_inside_its_screen(place: QRect, expected: QRect) -> None:
     assert inside(place, ROOM) == expected
+
+
+def test_the_title_bar_is_on_the_screen_before_and_after_the_window_has_its_frame(qtbot: QtBot) -> None:
+    window = QWidget()
+    qtbot.addWidget(window)
+    window.setMinimumSize(200, 100)
+    room = QRect(0, 0, 640, 400)
+    window.setGeometry(room)
+    put_on_screen(window, room)
+    assert window.geometry() == QRect(0, TITLE_BAR, 640, 400 - TITLE_BAR)
+    window.show()
+    qtbot.waitUntil(lambda: window.frameGeometry() != window.geometry())
+    for place in (room, QRect(0, -30, 640, 300), QRect(500, 390, 640, 300)):
+        window.setGeometry(place)
+        put_on_screen(window, room)
+        assert room.contains(window.frameGeometry())
 
 
 def change(window: MainWindow) -> None:
