@@ -1,6 +1,8 @@
 """What can be refused by what was typed is, before anything is compiled and before a second process is started."""
 
 import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 from typer.main import get_command
@@ -8,6 +10,7 @@ from typer.main import get_command
 from core import second_process
 from core.cli import measuring
 from core.cli.app import app
+from core.cli.simulating import as_typed
 from core.pipeline.project import calibration as project_calibration
 from core.pipeline.project import measuring as project_measuring
 from tests.simulated import copy_of, trisect
@@ -103,3 +106,9 @@ def test_a_batch_begins_nothing_where_one_folder_is_not_there(nothing_begun, sim
     said = trisect("batch", simulated, tmp_path / "none", "--out", tmp_path / "out")
     assert (said.code, "none" in said.sentence) == (2, True)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="how a path is quoted there is another thing")
+def test_a_path_in_a_printed_command_is_quoted_where_it_has_to_be():
+    assert as_typed(Path("/data/my set")) == "'/data/my set'"
+    assert as_typed(Path("/data/set")) == "/data/set"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shlex
+import subprocess
 import sys
 import tempfile
 from collections.abc import Iterator
@@ -166,8 +168,17 @@ def simulate(
     if json:
         output.print_json({"set": str(out)})
     else:
-        told = tr("recording set in {path}; measure it with: trisect run {path} --out DIR", path=str(out))
+        told = tr(
+            "recording set in {path}; measure it with: trisect run {typed} --out DIR",
+            path=str(out),
+            typed=as_typed(out),
+        )
         sys.stdout.write(f"{told}\n")
+
+
+def as_typed(path: Path) -> str:
+    """A path as it is typed on this computer's command line: quoted where that is needed."""
+    return subprocess.list2cmdline([str(path)]) if sys.platform == "win32" else shlex.quote(str(path))
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.TRY)

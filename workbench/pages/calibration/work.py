@@ -55,6 +55,7 @@ class StepPictures(QObject):
         self.paths: tuple[Path, ...] | None = None
         self.thumbnails: dict[str, Any] = {}
         self._listed = self._thumbnails_of = ""
+        self._told: set[str] = set()
 
     def follow(self) -> None:
         """The project is another: list its pictures, unless that was done."""
@@ -75,7 +76,16 @@ class StepPictures(QObject):
                 self._make_thumbnails(of, self.paths)
                 self.changed.emit()
 
-        self._bench.run_quick(self, jobs.LIST_PICTURES, folder, label=tr("Listing pictures"), on_done=listed, offers={})
+        label = tr("Listing pictures")
+        self._bench.run_quick(self, jobs.LIST_PICTURES, folder, label=label, on_done=listed, offers={})
+        self._bench.run_quick(self, jobs.NOT_READ, folder, label=label, on_done=self._tell_left_out, offers={})
+
+    def _tell_left_out(self, notes: Sequence[Message]) -> None:
+        """Say once which files of the folder are of a kind that is not read."""
+        for told in map(text_of, notes):
+            if told not in self._told:
+                self._told.add(told)
+                self._bench.notices.warning(told)
 
     def list_again(self) -> None:
         """The folder may hold others by now; what is shown stands until they are listed."""

@@ -379,3 +379,18 @@ def test_views_can_be_added_by_hand_where_nothing_is_missing_and_nobody_nags(pag
     qtbot.waitUntil(lambda: "Nothing is missing" in page.picture.hints.text)
     assert "Turn the board" not in page.picture.hints.text
     assert not page.presenter.live.stopping
+
+
+def test_files_of_a_kind_that_is_not_read_are_among_the_messages_once(page, views_folder, tmp_path, qtbot):
+    folder = tmp_path / "pictures"
+    folder.mkdir()
+    for path in views_folder.iterdir():
+        (folder / path.name).write_bytes(path.read_bytes())
+    (folder / "view99.webp").write_bytes(b"")
+    page.source.folder_chosen.emit(folder)
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED, timeout=30_000)
+    told = [notice.text for notice in page.presenter.bench.notices.all if "view99.webp" in notice.text]
+    assert len(told) == 1
+    page.presenter.do_run()
+    qtbot.waitUntil(lambda: page.presenter.stage is Stage.SOLVED and not page.presenter.bench.quick.busy)
+    assert sum("view99.webp" in notice.text for notice in page.presenter.bench.notices.all) == 1
