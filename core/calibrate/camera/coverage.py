@@ -15,9 +15,10 @@ from core.model import Camera, Pose
 from core.model.arrays import Array
 
 MAP_COLUMNS = 16
-"""Cells across the picture in the map of what the views cover, as it is shown."""
+"""Cells across the picture in the map of what live views cover."""
 _COLUMNS = 8
-"""Cells across the picture in the share that is covered: coarser, for a board has gaps between its corners."""
+"""Cells across the picture in the share that is covered and its map: coarser, for a board has gaps between its
+corners."""
 _GRID, _DEPTHS = (16, 12), 3
 """Pixels across and down, and depths, at which two cameras are compared; a few hundred points of a smooth field."""
 REGIONS = (
@@ -44,10 +45,14 @@ def picture_cells(uv: Array, image_size: tuple[int, int], columns: int, rows: in
     return cells
 
 
+def covered_cells(uv: Array, image_size: tuple[int, int]) -> NDArray[np.bool_]:
+    """Find which cells (rows, 8) of the picture, about square, hold a point of `uv` (N, 2)."""
+    return picture_cells(uv, image_size, _COLUMNS, max(1, round(_COLUMNS * image_size[1] / image_size[0])))
+
+
 def coverage(uv: Array, image_size: tuple[int, int]) -> float:
-    """Compute the share (0 … 1) of the picture's cells, eight across and about square, with a point of `uv` (N, 2)."""
-    rows = max(1, round(_COLUMNS * image_size[1] / image_size[0]))
-    return float(picture_cells(uv, image_size, _COLUMNS, rows).mean())
+    """Compute the share (0 … 1) of `covered_cells`."""
+    return float(covered_cells(uv, image_size).mean())
 
 
 def empty_regions(uv: Array, image_size: tuple[int, int], names: Sequence[Message] = REGIONS) -> tuple[Message, ...]:

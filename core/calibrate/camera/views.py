@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.camera.coverage import MAP_COLUMNS, picture_cells
+from core.calibrate.camera.coverage import covered_cells
 from core.calibrate.camera.expected_error import ExpectedError, ResidualField, expected_error, residual_field
 from core.calibrate.camera.missing import what_is_missing
 from core.calibrate.results import CameraCalibration
@@ -84,9 +84,9 @@ def seen_again(calibration: CameraCalibration, where: str) -> SeenViews:
 class ViewsJudgement:
     """Judgement of a set of views.
 
-    `cells` (rows, MAP_COLUMNS) are True where the views that count cover the picture; `missing` says what to record
-    next, in at most four sentences. `expected` is at the nearest corner's depth, in the middle and at the farthest
-    one's; it is empty, and `residuals` is None, where there is no calibration.
+    `cells` (rows, columns) are True where the corners that count cover the picture: with a calibration their share is
+    its `coverage`. `missing` says what to record next, in at most four sentences. `expected` is at the nearest corner's
+    depth, in the middle and at the farthest one's; it is empty, and `residuals` is None, where there is no calibration.
     """
 
     cells: NDArray[np.bool_]
@@ -104,14 +104,15 @@ def judge_views(
     """Judge the views of `seen` that are not `excluded`; with their `calibration`, those that it uses."""
     progress("judging the views", 0, 1)
     if calibration is not None:
-        views = [quality.view for quality in calibration.views if quality.used]
+        used = [quality for quality in calibration.views if quality.used]
+        views, counted = [one.view for one in used], [one.view.uv[one.counted] for one in used]
     else:
         views = [view for view in seen.found if view.name not in excluded]
+        counted = [view.uv for view in views]
     size = seen.size or (1, 1)
-    rows = max(1, round(MAP_COLUMNS * size[1] / size[0]))
     camera = None if calibration is None else calibration.camera
     return ViewsJudgement(
-        picture_cells(np.concatenate([np.zeros((0, 2)), *(view.uv for view in views)]), size, MAP_COLUMNS, rows),
+        covered_cells(np.concatenate([np.zeros((0, 2)), *counted]), size),
         what_is_missing(views, size, camera),
         () if calibration is None else _over_the_volume(calibration),
         None if calibration is None else residual_field(calibration),
