@@ -126,9 +126,15 @@ def _measure_tiny(tiny: Path, out: Path) -> None:
 
 
 @pytest.fixture(scope="session")
-def finished_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A project with every step done, its pictures within, made once for all test processes; do not change it."""
-    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, simulated))
+def finished_project_folder(tiny_set: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A tiny project with every step done, its pictures within, made once for all test processes; do not change it."""
+    return made_once(tmp_path_factory, "finished-project", lambda folder: _finish_project(folder, tiny_set))
+
+
+@pytest.fixture(scope="session")
+def finished_small_project_folder(simulated: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same of the small set, for proofs that need as many pictures; do not change it."""
+    return made_once(tmp_path_factory, "finished-small-project", lambda folder: _finish_project(folder, simulated))
 
 
 def _finish_project(folder: Path, pictures: Path) -> None:

@@ -6,6 +6,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.image.exclusion import Exclusion
+from tests.simulated import copy_of
 from tests.workbench.watchdog import LIMIT_MS, Watchdog
 from workbench.bench import Bench
 from workbench.pages.scan.check import CheckStage
@@ -17,11 +18,22 @@ from workbench.pages.scan.stage import Stage
 
 @pytest.fixture
 def page(bench: Bench, measured_project: Path, qtbot) -> ScanPage:
+    return shown(bench, measured_project, qtbot)
+
+
+@pytest.fixture
+def small_page(bench: Bench, finished_small_project_folder: Path, tmp_path: Path, qtbot) -> ScanPage:
+    """The page of the small set: its calibrations are those of the simulated rig at a quarter of the size."""
+    return shown(bench, copy_of(finished_small_project_folder, tmp_path / "small"), qtbot)
+
+
+def shown(bench: Bench, project: Path, qtbot) -> ScanPage:
+    """The page of a finished project, with all that is read for it."""
     made = ScanPage(ScanPresenter(bench))
     qtbot.addWidget(made)
     made.resize(1100, 700)
     made.show()
-    bench.model.open(measured_project)
+    bench.model.open(project)
     made.presenter.entered()
     qtbot.waitUntil(lambda: made.presenter.scrub.up_to_date, timeout=60_000)
     qtbot.waitUntil(lambda: made.presenter.work.look is not None, timeout=20_000)
@@ -92,7 +104,8 @@ def test_another_cut_is_solved_without_going_through_the_frames_again(page, qtbo
 
 
 @pytest.mark.accuracy
-def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
+def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(small_page, qtbot):
+    page = small_page
     p = page.presenter
     p.live.settings.set_id("scale = 0.25")
     p.set_setting("sigma_cut_mm", 0.5)
@@ -113,7 +126,7 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(page, qtbot):
 
 
 @pytest.mark.accuracy
-def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot):
+def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(small_page, qtbot):
     """A rig that has not changed passes.
 
     Its first pose is one picture, the same in each run, and the calibration is one draw. With seed 1 that picture is
@@ -121,6 +134,7 @@ def test_the_simulated_rig_is_checked_live_and_the_next_scan_is_told(page, qtbot
     mean, so p was 0.02 to 0.46 in ten runs. It is no bias: tests/accuracy/test_live_check.py looks at six rigs'
     pictures against many calibrations. With seed 2 it is a usual one.
     """
+    page = small_page
     p = page.presenter
     p.live.settings.set_id("scale = 0.25\nseed = 2")
     with Watchdog() as dog:
