@@ -248,3 +248,9 @@ def test_known_artefacts_are_printed_with_certificate_e_n_and_verdict(quick):
     assert content.report_id != quick.report_id
     assert "Checks by known artefacts" not in words(build_report(quick))
     assert "GB 50-7" not in words(build_report(replace(content, hidden=frozenset({"artefacts"}))))
+
+
+def test_the_decision_rule_is_named_always(content, data):
+    assert "Decision rule: ISO 14253-1, a deviation must stay within" in words(data)
+    without = replace(content, gauge=replace(content.gauge, nominal_mm=None, tolerance_mm=None))
+    assert "Decision rule: none, for no limits are stated." in words(build_report(without))

@@ -97,7 +97,15 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     if one.limits is not None and np.isfinite((one.deviation or 0.0) + one.U):
         parts += [Spacer(0, 1 * mm), ToleranceBar(look, one, width)]
     reason, meaning = decision_sentence(one, words), uncertainty_sentence(one.k, one.U, words)
-    return [*parts, Spacer(0, 1.5 * mm), look.text(reason), look.text(meaning, "caption")]
+    captions = [look.text(said, "caption") for said in (_rule(look, one), meaning)]
+    return [*parts, Spacer(0, 1.5 * mm), look.text(reason), *captions]
+
+
+def _rule(look: ReportLook, one: Characteristic) -> str:
+    """The rule by which it is decided, or that none is applied."""
+    if one.limits is None:
+        return look.words("Decision rule: none, for no limits are stated.")
+    return look.words("Decision rule: ISO 14253-1, a deviation must stay within its tolerance even when enlarged by U.")
 
 
 def _value(look: ReportLook, one: Characteristic) -> Paragraph:
