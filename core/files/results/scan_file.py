@@ -69,6 +69,7 @@ _MEMBERS = {
     "frame_names": texts("frames"),
     "frame_reasons": texts("frames"),
     "frame_shift_px": real("frames"),
+    "frame_gain": real("frames", optional=True),
     "notes": texts(None),
     "stripes": real(2, 2),
     **{f"fact_{name}": truth(optional=True) for name in _FACTS},
@@ -174,6 +175,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "of_the_day": pack_messages(scan.facts.of_the_day),
         "unsure_share": np.array(scan.unsure_share),
         **_pack_shifts(features),
+        **_pack_gains(features),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
@@ -211,6 +213,8 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         arrays["frame_shift_px"].tolist(),
         [0.0] * len(arrays["frame_names"]),
         _unpack_shifts(arrays),
+        [{}] * len(arrays["frame_names"]),
+        _unpack_gains(arrays),
         strict=True,
     )
     width, height = arrays["image_size"].tolist()
@@ -272,6 +276,16 @@ def _unpack_shifts(arrays: Arrays) -> list[Array]:
         return [np.zeros(0)] * len(arrays["frame_names"])
     rows = zip(arrays["frame_fan_known"].tolist(), arrays["frame_fan_shifts_px"], strict=True)
     return [shifts if known else np.zeros(0) for known, shifts in rows]
+
+
+def _pack_gains(features: ScanFeatures) -> dict[str, NDArray[Any]]:
+    """The frames' gains (F,); nothing where all have the reference's brightness."""
+    gains = np.array([frame.gain for frame in features.frames], dtype=np.float64)
+    return {"frame_gain": gains} if np.any(gains != 1) else {}
+
+
+def _unpack_gains(arrays: Arrays) -> list[float]:
+    return arrays["frame_gain"].tolist() if "frame_gain" in arrays else [1.0] * len(arrays["frame_names"])
 
 
 def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:

@@ -246,7 +246,7 @@ def choose_sweep_stripe(
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, Reason) and picture.shape == reference.base.shape:
-            difference = reference.of_lasers(picture)[0].astype(np.float32, copy=False)
+            difference = reference.of_lasers(picture).difference.astype(np.float32, copy=False)
             settings = choose_settings(difference, reference.full_scale)
             if settings is not None:
                 seen.append(settings)
@@ -306,7 +306,7 @@ class FurtherExposures:
         picture = self.read(name)
         if picture is None or self.stripe is None or picture.shape != self.reference.base.shape:
             return None
-        difference = self.reference.of_lasers(picture)[0]
+        difference = self.reference.of_lasers(picture).difference
         saturated = saturated_pixels(picture)
         lines = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
         return exposed(picture, lines, saturated)
@@ -332,9 +332,10 @@ class FrameReader:
         if nothing := _shows_nothing(picture, full_scale):
             return FrameFeatures(index, name, (), nothing)
         with stage(self.times, "difference"):
-            difference, change = self.reference.of_lasers(picture)
+            seen = self.reference.of_lasers(picture)
+            difference = seen.difference
             check = check_reference(difference, fan)
-            light = self.reference.light_change(change)
+            light = self.reference.light_change(seen)
         if check.lost:
             return FrameFeatures(index, name, (), Exclusion.WITHOUT_FAN, check.shift_px, light)
         if check.shift_px > self.move_limit_px:
@@ -344,13 +345,15 @@ class FrameReader:
         with stage(self.times, "extraction"):
             saturated = saturated_pixels(picture)
             pieces = extract_centrelines(difference, self.stripe, noise=self.reference.noise, saturated=saturated)
-            others = {number: seen for number, each in self.further.items() if (seen := each.of(name)) is not None}
+            others = {number: more for number, each in self.further.items() if (more := each.of(name)) is not None}
         exposures: dict[int, Exposures] = {}
         if others:
             pieces, told = fused(exposed(picture, pieces, saturated), list(others.values()))
             exposures = dict(zip(others, told, strict=True))
         exclusion = None if pieces else Exclusion.WITHOUT_STRIPE
-        return FrameFeatures(index, name, pieces, exclusion, check.shift_px, light, check.shifts_px, exposures)
+        return FrameFeatures(
+            index, name, pieces, exclusion, check.shift_px, light, check.shifts_px, exposures, seen.gain
+        )
 
 
 def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:

@@ -33,7 +33,8 @@ class FrameFeatures(Excludable):
     Against the reference: `shift_px` of the fan's light, `fan_shifts_px` (C,) of each of its stretches
     (`core.scan.features.reference.fan_stretches`; none where not known), and `light_change` of the background as a
     share of it, 0 where it is too small to tell. `exposures` tells how each of its further exposures goes with
-    it, by their number.
+    it, by their number. `gain` is the factor of its light over the reference's that was taken off; 1 where it is the
+    same, or not known.
     """
 
     index: int
@@ -44,6 +45,7 @@ class FrameFeatures(Excludable):
     light_change: float = 0.0
     fan_shifts_px: Array = field(default_factory=lambda: np.zeros(0))
     exposures: Mapping[int, Exposures] = field(default_factory=dict)
+    gain: float = 1.0
 
     def brought_back(self, sites: Sites) -> FrameFeatures:
         """The same in px of the whole picture, where its `sites` were looked at."""
@@ -128,7 +130,7 @@ class FrameRecord:
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
     """What all frames of a scan tell the technician: of further exposures, movements, and the room's light."""
-    return _moved_notes(frames) + _light_notes(frames) + _exposure_notes(frames)
+    return _moved_notes(frames) + _gain_notes(frames) + _light_notes(frames) + _exposure_notes(frames)
 
 
 def _exposure_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
@@ -164,6 +166,16 @@ def _notes_on_exposure(frames: Sequence[FrameFeatures], number: int) -> Iterator
             name=moved[0][0].name,
             shift_px=moved[0][1].shift_px,
         )
+
+
+def _gain_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
+    changed = [frame for frame in frames if frame.gain != 1]
+    if not changed:
+        return ()
+    most = max(abs(frame.gain - 1) for frame in changed)
+    return (
+        note_of("scan.brightness_changed", n=len(changed), all=len(frames), name=changed[0].name, percent=100 * most),
+    )
 
 
 def _light_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
+from typing import NamedTuple
 
 import cv2
 import numpy as np
@@ -26,6 +27,7 @@ from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.scan.features.crossings import CrossingWindow
+from core.scan.features.fan_light import FanLight
 from core.scan.features.room_light import RoomLight
 
 SAMPLE = 15
@@ -183,12 +185,25 @@ class FeatureOptions:
     compression: Compression = UNCOMPRESSED
 
 
+class LaserLight(NamedTuple):
+    """A frame minus the reference, brought to its exposure and to its light of the room.
+
+    `difference` (H, W) is what is left; `room` what the room's light has changed, in grey levels, as `RoomLight.change`
+    states it, 0 where it was too small to be taken off; `gain` the factor of the frame's light over the reference's.
+    """
+
+    difference: NDArray[np.int16] | NDArray[np.float32]
+    room: float
+    gain: float
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceFeatures:
     """What the picture with the fan alone shows, and what frames are compared with.
 
     `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
-    the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` the room's light it shows.
+    the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` and `light` are what
+    it shows of the room's light and of the fan's.
     """
 
     base: Picture
@@ -197,6 +212,7 @@ class ReferenceFeatures:
     fan: tuple[Centreline, ...]
     stripe: StripeSettings
     room: RoomLight
+    light: FanLight
 
     @property
     def image_size(self) -> tuple[int, int]:
@@ -208,20 +224,21 @@ class ReferenceFeatures:
         """A frame minus the picture, both (H, W)."""
         return picture_difference(picture, self.base)
 
-    def of_lasers(self, picture: Picture) -> tuple[NDArray[np.int16] | NDArray[np.float32], float]:
-        """A frame minus the picture, both (H, W), less what the room's light has changed since, and that change.
-
-        The change is in grey levels, as `RoomLight.change` states it; 0: it was too small to be taken off.
-        """
-        difference = self.difference(picture)
+    def of_lasers(self, picture: Picture) -> LaserLight:
+        """A frame minus the picture, both (H, W), less what exposure and the room's light have changed since."""
+        difference, room = self.difference(picture), 0.0
         changed = self.room.change(difference)
-        if changed is None:
-            return difference, 0.0
-        return difference.astype(np.float32) - changed[0], changed[1]
+        if changed is not None:
+            difference, room = difference.astype(np.float32) - changed[0], changed[1]
+        gain = self.light.gain(difference)
+        if gain != 1:
+            self.light.take_off(difference, gain)
+        return LaserLight(difference, room, gain)
 
-    def light_change(self, grey: float) -> float:
-        """A change of the background by `grey` levels as a share of it; 0 where stripes do not feel it."""
+    def light_change(self, seen: LaserLight) -> float:
+        """What the room's light has changed beside the exposure, as a share of it; 0 where stripes do not feel it."""
         background = max(float(np.median(self.base[::16, ::16])), 1.0)
+        grey = seen.room - (seen.gain - 1) * background if seen.room else 0.0
         if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
             return 0.0
         return grey / background
@@ -247,13 +264,15 @@ def read_reference(
         if first is None:
             raise
         stripe, fan = first.stripe, ()
+    room = RoomLight.of(picture, fan, full_scale)
     return ReferenceFeatures(
         picture,
         full_scale,
         noise.of_difference(float(np.median(base))),
         fan,
         stripe,
-        RoomLight.of(picture, fan, full_scale),
+        room,
+        FanLight.of(picture, room.bare, full_scale),
     )
 
 
