@@ -165,8 +165,7 @@ def solve_scan(
     Returns
     -------
     SolvedScan
-        Its `cloud` has n points with σ. That the light's section has changed since the calibration is not looked for
-        here, as it is in `run`.
+        Its `cloud` has n points with σ.
 
     Raises
     ------

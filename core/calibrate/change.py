@@ -232,7 +232,8 @@ class Change:
             return ()
         if np.isinf(self.times):
             return (note_of("scan.fan_is_elsewhere"),)
-        return (note_of("scan.fan_has_moved", times=self.times, p=self.p),)
+        told = self.surely or self.seemingly
+        return (note_of("scan.fan_has_moved" if told else "scan.fan_seems_moved", times=self.times, p=self.p),)
 
 
 def reckoned(

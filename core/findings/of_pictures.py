@@ -58,7 +58,7 @@ ROWS = (
             "to use them all."),
     # Further exposures
     Finding("scan.further_exposures", Weight.INFORMATION, Effect.NONE,
-            "{n} of {all} frames have an exposure @{number}, {stops:.1f} f-stops {which} than the first one: "
+            "{n} of {all} frames have an exposure @{number}, {stops:.1f} EV {which} than the first one: "
             "{percent:.1f} % of the points on their stripes are from it."),
     Finding("scan.further_exposures_moved", Weight.INFORMATION, Effect.NONE,
             "Between the first exposure and @{number} of {n} of {all} frames, the first {name}, the hand-held laser "
@@ -79,7 +79,7 @@ ROWS = (
     Finding("scan.rows_roll", Weight.CAUTION, Effect.WIDENS_U,
             "The sheets of light are twisted, by about {twist_mm:.2g} mm: rows of the camera see them one after "
             "another while the hand moves (rolling shutter). Their planes follow the hand row by row, and σ holds "
-            "what that leaves unsure. State {field} in rig.toml, move slower, or use a global shutter."),
+            "what that leaves unsure. State {field}, move slower, or use a global shutter."),
     Finding("scan.points_unsure_by_motion", Weight.CAUTION, Effect.NONE,
             "{percent:.0f} % of the points are left out: the hand's motion while rows were read out leaves them "
             "less sure than {cut_mm:g} mm. Move slower, rest the hand, or take more sweeps."),

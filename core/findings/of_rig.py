@@ -39,6 +39,9 @@ ROWS = (
             "Laser or camera have changed since they were calibrated, by {times:.1f} times what the calibrations "
             "allow (probability that it is chance: {p:.1g}), or the target was not true: calibrate again.",
             fact="rig_changed"),
+    Finding("scan.fan_seems_moved", Weight.CAUTION, Effect.NONE,
+            "Laser or camera seem to have changed since they were calibrated, by {times:.1f} times what the "
+            "calibrations allow (probability that it is chance: {p:.1g}), but the check of the day is in order."),
     Finding("scan.fan_is_elsewhere", Weight.GRAVE, Effect.NO_PROOF,
             "In the pictures of the check no stripe is where the calibration has the fan: laser or camera were "
             "moved since; calibrate again.", fact="rig_changed"),

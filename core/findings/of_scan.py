@@ -28,17 +28,17 @@ ROWS = (
     Finding("scan.crossings_scatter", Weight.CAUTION, Effect.WIDENS_U,
             "Crossings of the stripes disagree {times:.1f} times as much as their noise explains, everywhere alike; "
             "the points' σ contains it. The hand may have moved during exposures, or the laser is out of focus."),
-    Finding("scan.fan_disagrees", Weight.GRAVE, Effect.NONE,
+    Finding("scan.fan_disagrees", Weight.GRAVE, Effect.NO_PROOF,
             "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
-            "and that object and camera stood still."),
+            "and that object and camera stood still.", fact="fan_disagrees"),
     Finding("scan.explained_by_change", Weight.GRAVE, Effect.NO_PROOF,
             "Camera or laser are not as calibrated: crossings disagree {times:.2g} times as much as their noise "
             "explains. What would explain it: {changes:;}. Set sensor region, focus and mounts as they "
             "were, or calibrate again.", fact="rig_changed"),
-    Finding("scan.fan_off_in_region", Weight.CAUTION, Effect.WIDENS_U,
+    Finding("scan.fan_off_in_region", Weight.GRAVE, Effect.NO_PROOF,
             "In the {place} of the picture the sweeps lie {mm:.2g} mm {where} than the fan's light, more than its "
             "speckle explains: laser or camera are not as calibrated, or something moved after the reference was "
-            "taken. U need not contain it: check the rig, and scan again."),
+            "taken. U need not contain it: check the rig, and scan again.", fact="fan_disagrees"),
     # What fixes the scale of heights
     Finding("scan.scale_fixed", Weight.INFORMATION, Effect.NONE,
             "The relief under the fan fixes the scale to {percent:.2g} %."),

@@ -69,6 +69,6 @@ ROWS = (
             "Acceptance check after the pattern of VDI/VDE 2634 part 2; not a certificate."),
     Finding("study.few_positions", Weight.CAUTION, Effect.NONE,
             "{what}: {n} of the {all} positions the guideline asks for."),
-    Finding("study.artefact_without_u", Weight.CAUTION, Effect.NONE,
-            "{what}: no uncertainty of the artefact was stated; the verdict takes it as nothing."),
+    Finding("study.artefact_without_u", Weight.GRAVE, Effect.NO_PROOF,
+            "{what}: no uncertainty of the artefact was stated, so it proves nothing."),
 )  # fmt: skip

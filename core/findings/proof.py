@@ -33,6 +33,8 @@ class ScanFacts:
         Whether part, table or camera moved within the scan, or the rig evenly from its first frame to its last.
     collapsed
         Whether the sweeps' light planes have fallen together into one.
+    fan_disagrees
+        Whether sweeps and fan disagree by more than U need contain, and no single change of the rig explains it.
     rig_changed, rig_seems_changed
         Whether camera or laser surely differ from their calibration; whether they seem to, and no check of the day is
         in order.
@@ -52,6 +54,7 @@ class ScanFacts:
     moved: bool | None = None
     drifted: bool | None = None
     collapsed: bool | None = None
+    fan_disagrees: bool | None = None
     rig_changed: bool | None = None
     rig_seems_changed: bool | None = None
     section_changed: bool | None = None

@@ -171,6 +171,7 @@ def reconstruct(
         second_bounces=bounces,
         drifted=watched.drifts,
         collapsed=sweeps.collapsed,
+        fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
     )
@@ -226,6 +227,7 @@ class _Solved:
     datum: Datum | None = None
     read_out: ReadOut = AT_ONCE
     moved: bool = False
+    fan_disagrees: bool = False
     explanation: Explanation | None = None
 
 
@@ -277,6 +279,7 @@ def _solve(
         datum,
         read_out,
         bool(watched.first_after or part.movements),
+        explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
     )
 

@@ -61,6 +61,8 @@ class ScanResult:
         How planes change while the camera reads its rows out.
     collapsed
         Whether the sweeps' light planes have fallen together into one, so that no depth can be trusted.
+    fan_disagrees
+        Whether sweeps and fan disagree by more than U need contain, and no single change of the rig explains it.
     rig_changed
         Whether a single change of camera or fan since their calibration explains crossings that disagree.
     unsure_share
@@ -84,6 +86,7 @@ class ScanResult:
     moved: bool = False
     drifted: bool = False
     collapsed: bool = False
+    fan_disagrees: bool = False
     rig_changed: bool = False
     unsure_share: float = 0.0
     second_bounces: SecondBounces = NO_BOUNCES

@@ -153,7 +153,7 @@ class Reading:
     calibrated
         Of the artefact, in mm; 0 for form and flatness, whose artefact must be much better than the limit.
     u
-        Standard uncertainty of the calibrated value (and of whatever else the check adds), in mm.
+        Standard uncertainty of the calibrated value (and of whatever else the check adds), in mm; 0 if not stated.
     """
 
     quantity: Quantity
@@ -205,8 +205,8 @@ class CheckedQuantity:
         return self.worst.error
 
     def verdict_of(self, reading: Reading) -> Verdict:
-        """Decision on one reading, none without a limit."""
-        return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u)
+        """Decision on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
+        return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, complete=reading.u > 0)
 
     @property
     def verdict(self) -> Verdict:

@@ -22,8 +22,8 @@ LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", 
 ANSWERS = {"readjust.undone"}
 """What a command answers."""
 OF_ONE_RESULT = {
-    "gauge.several_faces", "inspection.light_is_skewed", "inspection.missing_in_u", "study.doubted",
-    "study.series_doubted", "surface.faces_not_spanned",
+    "gauge.several_faces", "inspection.light_is_skewed", "inspection.missing_in_u",
+    "study.artefact_without_u", "study.doubted", "study.series_doubted", "surface.faces_not_spanned",
 }  # fmt: skip
 """What takes away the proof of one result, or of a study, by a doubt of its own."""
 NOT_KNOWN = {"validity.scan_unknown", "validity.planes_unknown"}

@@ -26,8 +26,12 @@ def test_every_position_must_prove_itself_against_the_limit_and_its_uncertainty(
     assert found.quantities[0].worst.position == "p9"
 
 
+def test_an_artefact_whose_uncertainty_is_not_stated_proves_nothing():
+    assert acceptance_check(spheres([0.0] * 10, u=0.0), {"size": 0.05}).verdict == "not proven"
+
+
 def test_one_quantity_that_fails_fails_the_check():
-    readings = [*spheres([0.0] * 10), *(Reading("form", f"p{n}", 0.09) for n in range(10))]
+    readings = [*spheres([0.0] * 10), *(Reading("form", f"p{n}", 0.09, u=0.001) for n in range(10))]
     found = acceptance_check(readings, {"size": 0.05, "form": 0.08})
     assert [(one.quantity, one.verdict) for one in found.quantities] == [
         ("form", "not conforming"),

@@ -197,7 +197,7 @@ def test_clouds_of_a_sphere_give_its_probing_errors_position_by_position(tmp_pat
         folders.append(tmp_path / f"position{seed}")
         folders[-1].mkdir()
         write_cloud(folders[-1] / "cloud.ply", cloud, "abc")
-    said = trisect("study", "acceptance", *folders, "--nominal", 2 * RADIUS, "--size", 0.05, "--json")
+    said = trisect("study", "acceptance", *folders, "--nominal", 2 * RADIUS, "--u", 0.001, "--size", 0.05, "--json")
     form, size = json.loads(said.out)["quantities"]
     assert said.code == 0, said.err
     assert [reading["position"] for reading in size["readings"]] == ["position0", "position1"]

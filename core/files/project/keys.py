@@ -105,8 +105,8 @@ def made_anew(step: str, results: Mapping[str, Done]) -> dict[str, Done]:
 
 
 _MADE: Mapping[str, str] = {
-    "planes": label("laser planes"), "scan": label("scan"), "inspect": label("thickness"),
-    "features": label("features"),
+    "camera": label("camera calibration"), "planes": label("laser planes"), "scan": label("scan"),
+    "gauge": label("thickness"), "inspection": label("features"),
 }  # fmt: skip
 """What the steps that rest on a result call it, by the step that makes it."""
 

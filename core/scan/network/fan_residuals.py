@@ -102,18 +102,15 @@ def judge_fan_cells(cells: CellErrors, image_size: tuple[int, int], scale: float
     )
 
 
-def notes_on_network(scale: float, cells: CellErrors, image_size: tuple[int, int]) -> tuple[Message, ...]:
-    """What is wrong with crossings, and in which direction."""
+def judge_network(scale: float, cells: CellErrors, image_size: tuple[int, int]) -> tuple[bool, tuple[Message, ...]]:
+    """Whether the sweeps are off the fan's light by its place in the picture, and what is wrong with crossings."""
     if len(cells.z) and (found := judge_fan_cells(cells, image_size, scale)).p < SURELY:
         place = found.strongest
-        return (
-            note_of(
-                "scan.fan_off_in_region",
-                place=REGIONS[place],
-                mm=abs(float(found.profile[place])),
-                where=_FARTHER if found.profile[place] > 0 else _NEARER,
-            ),
+        note = note_of(
+            "scan.fan_off_in_region",
+            place=REGIONS[place],
+            mm=abs(float(found.profile[place])),
+            where=_FARTHER if found.profile[place] > 0 else _NEARER,
         )
-    if scale > TIMES:
-        return (note_of("scan.crossings_scatter", times=scale),)
-    return ()
+        return True, (note,)
+    return False, (note_of("scan.crossings_scatter", times=scale),) if scale > TIMES else ()

@@ -19,7 +19,7 @@ from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
 from core.scan.network.adjustment import has_collapsed, solve_network, solve_planes
 from core.scan.network.equations import Adjustment
-from core.scan.network.fan_residuals import notes_on_network
+from core.scan.network.fan_residuals import judge_network
 from core.scan.network.geometry import CrossingRays, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
 from core.scan.network.read_out import AT_ONCE, ReadOut
@@ -38,7 +38,8 @@ class LocatedSweeps:
 
     `fan_cells` (F, 2), `fan_covariance` (3S, F), `line_cells` (Q, 3) and `line_covariance` (Q, 3) as of
     `core.scan.network.adjustment.Network`; F = Q = 0 where not known. `judged`: what is wrong with the residuals.
-    `collapsed`: whether the planes have fallen together into one; `fan_silenced`: whether they disagree with the fan.
+    `collapsed`: whether the planes have fallen together into one; `fan_silenced`: whether many crossings disagree with
+    the fan; `off_fan`: whether the planes are off its light by the place in the picture.
     """
 
     frames: NDArray[np.int64]
@@ -54,6 +55,7 @@ class LocatedSweeps:
     judged: tuple[Message, ...] = ()
     collapsed: bool = False
     fan_silenced: bool = False
+    off_fan: bool = False
 
     @property
     def middle_planes(self) -> tuple[Array, Array]:
@@ -192,6 +194,7 @@ def locate_together(
         notes = (note_of("scan.fan_disagrees"),)
     if network.collapsed:
         notes += (note_of("scan.collapsed"),)
+    off_fan, judged = judge_network(network.scale, network.fan_off, camera.image_size)
     return LocatedSweeps(
         frames,
         network.pis,
@@ -203,9 +206,10 @@ def locate_together(
         network.fan_covariance,
         network.line_cells,
         network.line_covariance,
-        notes_on_network(network.scale, network.fan_off, camera.image_size),
+        judged,
         network.collapsed,
         network.fan_silenced,
+        off_fan,
     )
 
 

@@ -23,7 +23,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.findings.table import note_of
-from core.messages import Message
+from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.robust import huber_weights
 from core.progress import Progress, silent
@@ -99,7 +99,7 @@ def hand_notes(
         return ()
     twist = _twist(sweeps, crossings, camera, read_out)
     if not stated:
-        return (note_of("scan.rows_roll", twist_mm=twist, field="[camera] row_time_us"),)
+        return (note_of("scan.rows_roll", twist_mm=twist, field=Field("camera.row_time_us", whole=True)),)
     return (
         note_of("scan.hand_moved", speed=1000 * twist / read_out.time_ms, time_ms=read_out.time_ms, twist_mm=twist),
     )

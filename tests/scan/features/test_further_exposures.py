@@ -152,7 +152,7 @@ def test_where_the_first_exposure_is_saturated_all_over_the_second_one_alone_cou
 
 def test_the_notes_tell_of_further_exposures_and_of_those_that_are_of_no_use(shiny):
     (note,) = (one for one in notes_on(shiny.twice) if one.code == "scan.further_exposures")
-    assert "3 of 3 frames have an exposure @2, 3.0 f-stops shorter than the first one" in str(note)
+    assert "3 of 3 frames have an exposure @2, 3.0 EV shorter than the first one" in str(note)
     moved = replace(shiny.twice[1], exposures={2: replace(shiny.twice[1].exposures[2], moved=True, shift_px=0.4)})
     (note,) = (one for one in notes_on([moved]) if one.code == "scan.further_exposures_moved")
     assert note.values["name"] == "frame7"
@@ -182,8 +182,8 @@ def test_of_three_exposures_each_point_is_from_the_longest_that_is_not_saturated
 def test_the_notes_tell_of_each_further_exposure_whether_it_is_longer(thrice):
     notes = [str(one) for one in notes_on(thrice.twice) if one.code == "scan.further_exposures"]
     assert len(notes) == 2
-    assert "@2, 2.0 f-stops longer" in notes[0]
-    assert "@3, 2.0 f-stops shorter" in notes[1]
+    assert "@2, 2.0 EV longer" in notes[0]
+    assert "@3, 2.0 EV shorter" in notes[1]
 
 
 def test_a_longer_exposure_that_moved_is_left_out_and_the_shorter_one_is_not(shiny):

@@ -5,7 +5,7 @@ import pytest
 
 from core.model import Camera
 from core.scan.network.adjustment import Network, solve_network
-from core.scan.network.fan_residuals import judge_fan_cells, notes_on_network
+from core.scan.network.fan_residuals import judge_fan_cells, judge_network
 from core.scan.network.geometry import CrossingRays
 from tests.scan.synthetic import CAMERA, FAN, network, sweeps
 
@@ -21,7 +21,7 @@ def solved(seed: int, camera: Camera = CAMERA, stated: float = 1.0) -> Network:
 
 
 def codes(result: Network) -> list[str]:
-    return [note.code for note in notes_on_network(result.scale, result.fan_off, CAMERA.image_size)]
+    return [note.code for note in judge_network(result.scale, result.fan_off, CAMERA.image_size)[1]]
 
 
 def test_ideal_networks_are_not_accused_and_chance_is_as_rare_as_stated() -> None:

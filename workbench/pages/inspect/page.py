@@ -161,9 +161,7 @@ class InspectPage(StepPage):
         p = self.presenter
         title, said = self._words()[stage]
         why_not = p.repeats.can_add
-        self.card.buttons["measure"].setText(
-            tr("Measure again") if p.scan.gauge is not None else tr("Measure thickness")
-        )
+        self.card.buttons["measure"].setText(tr("Measure again") if p.scan.gauge is not None else tr("Measure"))
         fresh = stage is Stage.MEASURED
         self.card.show_stage(
             title,

@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QDialog, QDialogButtonBox, QGridLayout, QLabel, QW
 from workbench.language import tr
 from workbench.views.layouts import in_column
 
-MEANING_WIDTH = 235
+MEANING_WIDTH = 245
 """Pixels of what a key does; longer words are wrapped, so that both columns fit a small screen."""
 
 

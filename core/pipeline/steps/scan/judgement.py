@@ -141,6 +141,7 @@ def facts_of(
         moved=scan is not None and scan.moved,
         drifted=scan is not None and scan.drifted,
         collapsed=scan is not None and scan.collapsed,
+        fan_disagrees=scan is not None and scan.fan_disagrees,
         rig_changed=change.surely or (scan is not None and scan.rig_changed),
         rig_seems_changed=change.seemingly,
         section_changed=section.surely,

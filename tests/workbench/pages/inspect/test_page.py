@@ -232,7 +232,7 @@ def test_notes_of_the_measurement_are_shown(page, quick, qtbot):
 def test_a_scan_without_a_thickness_offers_to_measure_it(unmeasured):
     assert unmeasured.card.title.text() == "No thickness yet"
     measure = unmeasured.card.buttons["measure"]
-    assert measure.property("primary") and measure.text() == "Measure thickness" and "Ctrl+R" in measure.toolTip()
+    assert measure.property("primary") and measure.text() == "Measure" and "Ctrl+R" in measure.toolTip()
     assert unmeasured.result_fold.isHidden()
     assert unmeasured.surface.choices.colours.itemText(1) == "depth"
 

@@ -45,7 +45,7 @@ class RepeatsTab(QWidget):
             [
                 (tr("Scan"), ""),
                 (tr("Thickness"), "mm"),
-                (tr("U (k = 2)"), "mm"),
+                (tr("U"), "mm"),
                 (tr("Calibration"), ""),
                 (tr("Scanned"), ""),
             ]
