@@ -68,7 +68,7 @@ def studies():
     known = {"complete": True, "U": [0.02] * 12, "asked": Requirement(50.0, (-0.1, 0.1))}
     series = (50.0 + 0.01 * rng.standard_normal(40)).tolist()
     series[25] += 0.06
-    readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place) for place in range(10)]
+    readings = [Reading("form", f"p{place}", 0.02 + 0.001 * place, u=0.001) for place in range(10)]
     readings += [Reading("size", f"p{place}", 50.01 - 0.002 * place, 50.0, 0.001) for place in range(4)]
     return (
         type1_study(values, 50.0, 0.4),
