@@ -8,7 +8,7 @@ laser, another focal length. Those are named that explain nearly all of what is 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from functools import partial
 
@@ -143,13 +143,16 @@ def explain_by_change(
     """
     some = some_sweeps(crossings)
     crossings, line = crossings.select(some), line[some]
-    misfit = _misfit(crossings, line, camera, fan)
+    frames = sweeping_frames(crossings)
+    table = by_sweep(crossings, frames)
+    calibrated = Adjustment(table, CrossingRays.of(table, camera), line, fan, len(frames), LineErrors.of(table))
+    misfit = _misfit(calibrated)
     if misfit < LEAST_MISFIT:
         return None
     enough = misfit - EXPLAINED * (misfit - 1)
     found: list[SingleChange] = []
     for what, unknowns, changed in _changes(camera, fan):
-        size_px, left = _least(partial(_misfit_of_change, changed, crossings, line), unknowns, progress)
+        size_px, left = _least(partial(_misfit_of_change, calibrated, changed), unknowns, progress)
         size = size_px / camera.matrix[0, 0] if what in (Changed.FOCUS, Changed.FAN) else size_px
         found.append(SingleChange(what, size, left))
     alike = min(one.left for one in found) + SURELY / len(crossings)
@@ -174,7 +177,10 @@ def _least(misfit: Callable[[Array], float], unknowns: int, progress: Progress) 
 
 
 def _changes(camera: Camera, fan: Fan) -> Iterator[tuple[Changed, int, Callable[[Array], tuple[Camera, Fan]]]]:
-    """What may have changed, by how many numbers, and camera and fan changed by them, in px at the picture's edge."""
+    """What may have changed, by how many numbers, and camera and fan changed by them.
+
+    All numbers are in pixels: those of angles and of the focal length are divided by the focal length.
+    """
     here, pivot = parameters_of(camera), laser_of(fan)
 
     def shifted(*places: int) -> Callable[[Array], tuple[Camera, Fan]]:
@@ -190,24 +196,19 @@ def _changes(camera: Camera, fan: Fan) -> Iterator[tuple[Changed, int, Callable[
     yield Changed.FAN, 3, lambda size: (camera, displaced_fan(fan, size / here[0], pivot))
 
 
-def _misfit_of_change(
-    changed: Callable[[Array], tuple[Camera, Fan]], crossings: CrossingTable, line: NDArray[np.int64], size: Array
-) -> float:
-    return _misfit(crossings, line, *changed(size))
+def _misfit_of_change(calibrated: Adjustment, changed: Callable[[Array], tuple[Camera, Fan]], size_px: Array) -> float:
+    camera, fan = changed(size_px)
+    return _misfit(replace(calibrated, geometry=CrossingRays.of(calibrated.crossings, camera), fan=fan))
 
 
-def _misfit(crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan) -> float:
+def _misfit(equations: Adjustment) -> float:
     """Mean square of what crossings and the fan's cells are off, in their variances; wrong crossings count as LARGE.
 
     None is rejected, so that it changes steadily with camera and fan.
     """
-    frames = sweeping_frames(crossings)
-    table = by_sweep(crossings, frames)
-    errors = LineErrors.of(table)
-    equations = Adjustment(table, CrossingRays.of(crossings, camera), line, fan, len(frames), errors)
     solution = equations.start()
     for _ in range(ROUNDS):
         size = np.abs(solution.residuals) / max(1.0, mad_sd(solution.residuals))
         solution = equations.improve(solution, huber_weights(size, HUBER_AT))
     squares = np.minimum(solution.residuals**2, LARGE**2).sum() + solution.cells @ solution.cells
-    return float(squares) / len(crossings)
+    return float(squares) / len(equations.crossings)
