@@ -12,7 +12,16 @@ from pytestqt.qtbot import QtBot
 from core.files.project.data import new_project
 from workbench import window_layout
 from workbench.main_window import MainWindow
-from workbench.window_layout import LAST_SCREEN, TITLE_BAR, inside, keep_layout, name_of, put_on_screen, restore_layout
+from workbench.window_layout import (
+    FRAMED_MS,
+    LAST_SCREEN,
+    TITLE_BAR,
+    inside,
+    keep_layout,
+    name_of,
+    put_on_screen,
+    restore_layout,
+)
 
 ROOM = QRect(1920, 30, 960, 510)
 
@@ -100,12 +109,12 @@ def test_a_layout_of_a_screen_that_is_gone_puts_the_window_on_one_that_is_there(
 
 
 def test_moved_to_another_screen_the_pages_are_as_they_were_there_and_the_window_stays_where_it_was_put(
-    window: MainWindow, qapp: QApplication, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    window: MainWindow, qapp: QApplication, qtbot: QtBot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     window.model.create(tmp_path / "empty", new_project("Empty"))
     window.go_to("scan")
     window.show()
-    qapp.processEvents()
+    qtbot.wait(2 * FRAMED_MS)  # until it was put on the screen with its frame: where that is small, its size changes
     handle = window.windowHandle()
 
     def move_to(name: str) -> None:

@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 
 from core.files.project.folder import read_project
+from tests.simulated import TINY
 from workbench.bench import Bench
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes.presenter import PlanesPresenter
@@ -64,7 +65,7 @@ def test_a_finished_project_shows_what_it_was_made_from_and_can_be_changed(page:
 def test_poses_of_the_simulated_rig_are_taken_with_or_without_the_laser_off_and_calibrated(
     page: PlanesPresenter, qtbot: Any, pairs: bool
 ) -> None:
-    page.live.settings.set_id("scale = 0.25")
+    page.live.settings.set_id(f"scale = {TINY.scale}")  # as large as the project's pictures
     page.set_pairs(pairs)
     page.live.view.connect(lambda _: page.live.shown())
     page.do_live()
