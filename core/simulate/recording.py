@@ -32,6 +32,7 @@ from core.simulate.scene.scene import Scene
 from core.simulate.scene.stage import WORK_POINT, aim_of, build_scene
 from core.simulate.sweep import hand_sweeps, headings_of, sweep_range
 from core.simulate.truth import TRUTH_FILE, Truth, load_truth, save_truth, truth_folder
+from core.simulate.turn import Turn
 from core.threads import ordered_map
 
 RENDER_THREADS = 2
@@ -143,6 +144,10 @@ def scenario_rig(scenario: Scenario) -> Rig:
         laser=scenario.laser,
     )
     rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
+    if scenario.setup.fan_turned_deg:
+        turn = Turn.about_the_view(WORK_POINT, scenario.setup.fan_turned_deg)
+        planes = tuple(turn.plane(plane) for plane in rig.fan.planes)
+        rig = replace(rig, fan=Fan(planes), fan_emitter=turn.point(rig.fan_emitter))
     return rig if scenario.fan_lines == rig.fan.lines else replace(rig, fan=Fan((rig.fan.planes[1],)))
 
 
@@ -188,7 +193,10 @@ def scan_of(scenario: Scenario, rig: Rig | None = None) -> tuple[ScanStage, list
     rig = rig or scenario_rig(scenario)
     scene, figures = build_scene(scenario)
     reach = sweep_range(scene, aim_of(scene))
-    sheets = hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"))
+    sheets = hand_sweeps(rig, reach, scenario.frames, generator(scenario.seed, "sweeps"), scenario.setup)
+    if scenario.setup.fan_turned_deg:
+        turn = Turn.about_the_view(WORK_POINT, scenario.setup.fan_turned_deg)
+        sheets = [turn.sheet(sheet) for sheet in sheets]
     return _stage(scenario, rig, scene), sheets, figures
 
 

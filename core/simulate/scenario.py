@@ -19,6 +19,7 @@ from core.simulate.effects.plates import TRUE_PLATES, PlateEffects
 from core.simulate.effects.ranges import require_ranges
 from core.simulate.effects.room import STEADY_ROOM, RoomEffects
 from core.simulate.effects.sensor import IDEAL_SENSOR, SensorEffects
+from core.simulate.effects.setup import USUAL_SETUP, Setup
 from core.simulate.effects.warming import NO_WARMING, Warming
 
 OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
@@ -101,6 +102,8 @@ class Scenario:
         rig.toml says that nothing can change and that plates are true; False: it says nothing of either, as most do.
     laser, lens, sensor, room, plates, warming
         What real rigs do beyond that, by subject (`core.simulate.effects`); tables of these names in TOML.
+    setup
+        How fan, table and hand are turned beside their usual places; a table as well.
     yaw_deg, right_mm, away_mm
         Where the object stands: turned about the table's normal, and moved over the table, from its middle.
     fan_lines
@@ -161,6 +164,7 @@ class Scenario:
     room: RoomEffects = STEADY_ROOM
     plates: PlateEffects = TRUE_PLATES
     warming: Warming = NO_WARMING
+    setup: Setup = USUAL_SETUP
 
     def __post_init__(self) -> None:
         choices = (
@@ -226,7 +230,7 @@ class Scenario:
             )
 
     def with_effects_of(self, other: Scenario) -> Scenario:
-        """Make the same scenario with laser, lens, sensor, room, plates and warming of another one."""
+        """Make the same scenario with laser, lens, sensor, room, plates, warming and setup of another one."""
         effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
         return replace(self, **effects)
 

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from core.model import LightPlane
 from core.model.arrays import Array
+from core.simulate.effects.setup import USUAL_SETUP, Setup
 from core.simulate.rig import Rig
 from core.simulate.scene.laser import Sheet
 from core.simulate.scene.scene import Scene
@@ -85,7 +86,7 @@ class HandCourse:
         return [_sheet(rig, *row) for row in zip(emitters, self.aims, stripes, strict=True)]
 
 
-def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> HandCourse:
+def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator, setup: Setup = USUAL_SETUP) -> HandCourse:
     """Make the course of the hand during a scan of `frames` frames, in the order of time."""
     number = _passes(frames)
     passes = int(number.max(initial=-1)) + 1
@@ -95,20 +96,22 @@ def hand_course(reach: SweepRange, frames: int, rng: np.random.Generator) -> Han
     along = np.where(number % 2 == 0, along, 1 - along)
     wander = _wander(frames, 5, rng)
     side = np.where((number // 2 + number) % 2 == 0, 1.0, -1.0)
-    middle = np.radians(np.array(TILTS_DEG)[number % len(TILTS_DEG)])
+    middle = setup.stripes_turned * np.radians(np.array(TILTS_DEG)[number % len(TILTS_DEG)])
     tilt = np.clip(
         middle + np.radians(4.0) * wander[:, 0] + rng.normal(0, np.radians(0.5), frames), -LARGEST_TILT, LARGEST_TILT
     )
-    baseline = BASELINE_MM + BASELINE_RANGE_MM * np.tanh(wander[:, 1])
+    baseline = setup.hand_aside * BASELINE_MM + BASELINE_RANGE_MM * np.tanh(wander[:, 1])
     nearness = HEIGHT_MM + HEIGHT_RANGE_MM * np.tanh(wander[:, 3])
     across = (2 * along - 1) * reach.half_width_mm + rng.normal(0, 0.8, frames)
     aims = np.array(reach.centre) + np.column_stack([across, 6 * wander[:, 4], np.zeros(frames)])
     return HandCourse(number, tilt, side, baseline, wander[:, 2], nearness, aims)
 
 
-def hand_sweeps(rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator) -> list[Sheet]:
+def hand_sweeps(
+    rig: Rig, reach: SweepRange, frames: int, rng: np.random.Generator, setup: Setup = USUAL_SETUP
+) -> list[Sheet]:
     """Make the sheets of light of a scan of `frames` frames, in the camera frame, in the order of time."""
-    return hand_course(reach, frames, rng).sheets(rig)
+    return hand_course(reach, frames, rng, setup).sheets(rig)
 
 
 def headings_of(frames: int) -> Array:

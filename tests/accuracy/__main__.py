@@ -1,4 +1,4 @@
-"""`make accuracy`: measure the accuracy table anew, the hostile one, or false alarms on ideal rigs.
+"""`make accuracy`: measure the accuracy table anew, the hostile one, false alarms on ideal rigs, or causes told.
 
 Long: hours; `--short` takes a few minutes.
 """
@@ -14,6 +14,7 @@ import numpy as np
 
 from core.files.atomic import write_text
 from tests.accuracy import bounds, coverage, hostile, points
+from tests.accuracy.benign import benign_cases, benign_table, first_cases, first_table
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
 from tests.accuracy.hostile_cases import CHECK_POSES, NOTHING_STATED, SEEDS, hostile_cases
@@ -28,7 +29,11 @@ BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy
 def main() -> None:
     parser = argparse.ArgumentParser(prog="python -m tests.accuracy", description=__doc__)
     parser.add_argument(
-        "what", nargs="?", choices=("accuracy", "hostile", "ideal"), default="accuracy", help="which table"
+        "what",
+        nargs="?",
+        choices=("accuracy", "hostile", "ideal", "benign", "causes"),
+        default="accuracy",
+        help="which table",
     )
     parser.add_argument("--short", action="store_true", help="one scan of each kind, at half resolution")
     parser.add_argument("--only", default="", metavar="WORDS", help="of the hostile table, effects called so")
@@ -44,6 +49,12 @@ def main() -> None:
         known = hostile_cases(0.25, IDEAL_SEEDS, (CHECK_POSES,))
         ideal = [case for case in known if case.effect == "nothing" and case.strength != NOTHING_STATED]
         print("\n".join(hostile.false_alarms(ideal, hostile.run(ideal, chosen.out / f"ideal-{commit}.jsonl"))))
+        return
+    if chosen.what in ("benign", "causes"):
+        made, table_of = (benign_cases, benign_table) if chosen.what == "benign" else (first_cases, first_table)
+        chosen_cases = [case for case in made() if chosen.only in f"{case.effect} {case.strength}"]
+        results = hostile.run(chosen_cases, chosen.out / f"{chosen.what}-{commit}.jsonl")
+        print("\n".join(table_of(chosen_cases, results)))
         return
     kept = chosen.out / f"{commit}{'-short' if chosen.short else ''}.jsonl"
     scans = cases(short=chosen.short)

@@ -22,6 +22,7 @@ from core.files.recording.recording_set import RecordingSet, open_set
 from core.files.results.gauge_file import read_gauge
 from core.files.results.ply import read_cloud
 from core.files.results.run_file import read_run
+from core.findings.table import gravest_first
 from core.inspect.conformity import Verdict
 from core.messages import Message
 from core.pipeline.steps.camera_step import camera_step
@@ -96,7 +97,7 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
     try:
         calibrated = calibration_in(folder, case)
     except InputError as refused:
-        return {"refused": refused.code, "told": codes_in(refused.what)}
+        return {"refused": refused.code, "told": sorted({*codes_in(refused.what)}), "first": codes_in(refused.what)}
     simulate_set(scenario, place, calibration_from=calibrated, rig=None)
     out = place.with_suffix(".out")
     shutil.copytree(calibrated.with_suffix(".out"), out)
@@ -105,14 +106,17 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         scan_step(work)
         gauge_step(work)
     except InputError as refused:
-        return {"refused": refused.code, "told": sorted({*_told(out), *codes_in(refused.what)})}
+        first = list(dict.fromkeys([*codes_in(refused.what), *_told(out)]))
+        return {"refused": refused.code, "told": sorted(first), "first": first}
     gauge = read_gauge(work.path("gauge"), read_cloud(work.path("cloud")).cloud)
+    first = _told(out)
     return {
         "error": gauge.thickness_mm - scenario.height_mm,
         "U": gauge.U_mm,
         "verdict": str(gauge.verdict),
         "complete": gauge.complete,
-        "told": _told(out),
+        "told": sorted(first),
+        "first": first,
         "budget": {row.words.code: row.u_mm for row in gauge.budget},
     }
 
@@ -127,8 +131,9 @@ def codes_in(what: Message) -> list[str]:
 
 
 def _told(out: Path) -> list[str]:
-    """Codes of the notes of all steps whose results are in the folder `out`."""
-    return sorted({note.code for notes in read_run(out / "run.json").notes.values() for note in notes})
+    """Codes of the notes of all steps whose results are in the folder `out`, the gravest first, as they are read."""
+    notes = gravest_first(note for notes in read_run(out / "run.json").notes.values() for note in notes)
+    return list(dict.fromkeys(note.code for note in notes))
 
 
 def _opened(case: HostileCase, place: Path) -> RecordingSet:

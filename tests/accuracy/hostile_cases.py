@@ -14,6 +14,7 @@ from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.plates import PlateEffects
 from core.simulate.effects.room import RoomEffects
 from core.simulate.effects.sensor import SensorEffects
+from core.simulate.effects.setup import Setup
 from core.simulate.effects.warming import Warming
 from core.simulate.sample import METAL_AT_20
 from core.simulate.scenario import Scenario
@@ -274,6 +275,7 @@ class HostileCase:
             lens=scenario.lens,
             plates=scenario.plates,
             sensor=replace(scenario.sensor, brightness=1.0),
+            setup=Setup(fan_turned_deg=scenario.setup.fan_turned_deg),
             frames=0,
         )
 

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 
 from core.model import Pose
 from core.model.arrays import Array
+from core.simulate.effects.setup import USUAL_SETUP, Setup
 from core.simulate.scenario import Scenario
 from core.simulate.scene.objects import cylinder, face_mask, gauge_block, step_block, stl, turned
 from core.simulate.scene.scene import Material, Mesh, Scene, Sphere
@@ -28,16 +29,18 @@ SPHERE_BACK_MM = 3.0
 """How far a sphere stands back: the outer fan lines are equally far from its rims."""
 
 
-def table_pose() -> Pose:
+def table_pose(setup: Setup = USUAL_SETUP) -> Pose:
     """Pose of the table: under the work point, z towards the camera, tilted and turned by a few degrees."""
     facing = Rotation.from_rotvec([np.pi, 0.0, 0.0])
     tilt = Rotation.from_euler("xyz", TABLE_TILT_DEG, degrees=True)
-    return Pose((tilt * facing).as_matrix(), np.array([WORK_POINT[0], WORK_POINT[1], TABLE_DEPTH_MM]))
+    further = Rotation.from_euler("xy", (setup.table_right_deg, setup.table_away_deg), degrees=True)
+    turned = tilt * facing * further
+    return Pose(turned.as_matrix(), np.array([WORK_POINT[0], WORK_POINT[1], TABLE_DEPTH_MM]))
 
 
 def build_scene(scenario: Scenario) -> tuple[Scene, dict[str, object]]:
     """Build the scene of a scenario, and the true figures of the object (mm, camera frame where a place is given)."""
-    pose = table_pose()
+    pose = table_pose(scenario.setup)
     thing = _thing(scenario)
     things = () if thing is None else (thing,)
     material = _material(scenario, pose)

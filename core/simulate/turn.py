@@ -1,0 +1,43 @@
+"""A turn of lasers about a line along the viewing direction."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.spatial.transform import Rotation
+
+from core.model import LightPlane
+from core.model.arrays import Array
+from core.simulate.scene.laser import Sheet
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class Turn:
+    """A rotation (3, 3) about the line along z through a point (3,) in mm."""
+
+    rotation: Array
+    through: Array
+
+    @classmethod
+    def about_the_view(cls, through: Array, degrees: float) -> Turn:
+        """Make the turn by so many degrees."""
+        return cls(Rotation.from_euler("z", degrees, degrees=True).as_matrix(), np.asarray(through, dtype=np.float64))
+
+    def point(self, point: Array) -> Array:
+        """Turn a point (3,) in mm."""
+        return np.asarray(self.rotation @ (point - self.through) + self.through)
+
+    def plane(self, plane: LightPlane) -> LightPlane:
+        """Turn a plane of light."""
+        normal = self.rotation @ plane.normal
+        return LightPlane(normal / (plane.d_mm + (normal - plane.normal) @ self.through))
+
+    def sheet(self, sheet: Sheet) -> Sheet:
+        """Turn a laser that does not move within an exposure."""
+        return replace(
+            sheet,
+            plane=self.plane(sheet.plane),
+            emitter=self.point(sheet.emitter),
+            axis=self.rotation @ sheet.axis,
+        )
