@@ -17,8 +17,7 @@ _STAGES: Mapping[str, Mapping[str, tuple[float, float | None]]] = {
     "planes": {"plane poses": (5.0, 3.1), "fan poses": (0.5, 0.3)},
     "scan": {
         "reference": (0.15, None),
-        "frames": (2.0, None),
-        "smoothing": (0.7, None),
+        "frames": (2.7, None),
         "crossings": (0.1, 0.1),
         "network": (1.1, 1.2),
         "calibration uncertainty": (0.25, 0.45),

@@ -24,7 +24,7 @@ class Clock:
 
 REPORTS = {
     **{"camera views": 10, "Calibrating the camera": 5, "plane poses": 9, "fan poses": 9, "reference": 1, "frames": 48},
-    **{"smoothing": 48, "crossings": 48, "network": 3, "calibration uncertainty": 9, "normals": 2, "mesh": 3},
+    **{"crossings": 48, "network": 3, "calibration uncertainty": 9, "normals": 2, "mesh": 3},
     **{"faces": 8, "features": 8, "report": 1},
 }
 """How often a stage tells how far it is."""

@@ -189,7 +189,7 @@ class Recording:
                 for check in checks:
                     if check.state == "failed":
                         say(told(check.message))
-            case LiveSaving(waiting):
+            case LiveSaving(waiting) if waiting:
                 say(told(_saving(waiting)))
 
     def _judge(self, view: LiveView) -> None:

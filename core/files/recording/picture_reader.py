@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
+from itertools import chain, islice
 from pathlib import Path
 
 from core.acquire.folder import read_ahead
@@ -136,7 +137,7 @@ class PictureReader:
         text = "\n".join(sorted(self.hashes.get(name, "") for name in named))
         return hashlib.sha256(text.encode()).hexdigest()[:12]
 
-    def stream(self, paths: Sequence[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Reason]]:
+    def stream(self, paths: Iterable[Path], times: StageTimes | None = None) -> Iterator[tuple[str, Picture | Reason]]:
         """Yield name and picture of each of `paths`, a few read ahead; for a damaged one, why it cannot be read.
 
         For one that is an earlier one again, `Exclusion.REPEATED`. `times` learns what decoding costs.
@@ -157,9 +158,11 @@ class PictureReader:
 
         first: tuple[str, Picture] | None = None
         repeats = Repeats()
-        if paths:
-            self.laser_channel(self.recording_set.part_of(paths[0]))  # once, before several threads ask for it
-        for path, (result, pixels) in read_ahead(paths, attempt):
+        paths = iter(paths)
+        begin = tuple(islice(paths, 1))
+        for path in begin:
+            self.laser_channel(self.recording_set.part_of(path))  # once, before several threads ask for it
+        for path, (result, pixels) in read_ahead(chain(begin, paths), attempt):
             name = self.recording_set.name_of(path)
             if not isinstance(result, Message):
                 first = first or (name, result)

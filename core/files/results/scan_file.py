@@ -16,31 +16,24 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.files.arrays_file import (
     Arrays,
-    centreline_members,
-    pack_centrelines,
     pack_messages,
-    pack_texts,
     read_arrays,
     real,
     texts,
     truth,
-    unpack_centrelines,
     unpack_messages,
-    unpack_texts,
     unpacking,
     whole,
     write_arrays,
     wrong_shape,
 )
+from core.files.results.scan_features import FEATURES_MEMBERS, pack_features, unpack_features
 from core.findings.proof import ScanFacts
-from core.image.exclusion import known_exclusion
-from core.image.stripes.stripe import StripeSettings
 from core.inspect.causes import CALIBRATIONS
 from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
-from core.scan.features.crossings import CrossingTable
-from core.scan.features.extraction import FrameFeatures, ScanFeatures
+from core.scan.features.extraction import ScanFeatures
 from core.scan.network.fan_speckle import FanSpeckle
 
 _TODO = Message(
@@ -53,31 +46,21 @@ _COMMON = ("sources", "cameras", "fans", "sweeps")
 _OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
 """Files of earlier versions call them as budgets do."""
 _SPECKLE = tuple(one.name for one in fields(FanSpeckle))
-_CROSSINGS = tuple(one.name for one in fields(CrossingTable))
 
 
 _MEMBERS = {
+    **FEATURES_MEMBERS,
     "calibration_id": texts(),
-    "features_key": texts(optional=True),
-    "image_size": whole(2),
     "pis": real("sweeps", None),
     "covariance": real("planes", "planes"),
     "sweep_frames": whole("sweeps"),
     "fan_line": whole("fan pieces"),
     "shown": whole(),
     "crossings_used": real(None, 2),
-    "frame_names": texts("frames"),
-    "frame_reasons": texts("frames"),
-    "frame_shift_px": real("frames"),
-    "frame_gain": real("frames", optional=True),
-    "notes": texts(None),
-    "stripes": real(2, 2),
     **{f"fact_{name}": truth(optional=True) for name in _FACTS},
     "of_the_day": texts(None, optional=True),
     "unsure_share": real(optional=True),
     "second_bounces": whole(None, 2, optional=True),
-    "frame_fan_shifts_px": real("frames", None, optional=True),
-    "frame_fan_known": truth("frames", optional=True),
     "common_sources": texts(None, optional=True),
     "common_cameras": real("displaced", 10, optional=True),
     "common_fans": real("displaced", None, 3, optional=True),
@@ -89,13 +72,6 @@ _MEMBERS = {
     "speckle_first": whole("speckle points", optional=True),
     "speckle_shares": real("speckle points", None, optional=True),
     "speckle_covariance": real(None, "cells", optional=True),
-    "crossing_half_length_px": real(),
-    **{f"crossing_{name}": real("crossings", 2) for name in ("uv", "tangent_a", "tangent_b")},
-    **{f"crossing_{name}": real("crossings") for name in ("sigma_a", "sigma_b", "along_a", "along_b")},
-    **{f"crossing_{name}": whole("crossings") for name in ("a", "b", "piece_a", "piece_b", "cell_a", "cell_b")},
-    **{f"crossing_{name}": real("crossings", None) for name in ("share_a", "share_b")},
-    **centreline_members("fan", 1),
-    **centreline_members("sweep", "frames"),
 }
 
 
@@ -154,35 +130,23 @@ class ScanFile:
 
 def write_scan(path: Path, scan: ScanFile) -> None:
     """Write scan.npz; the same scan gives the same bytes. InputError if it cannot be written."""
-    features = scan.features
-    crossings, common, speckle = features.crossings, scan.common, scan.speckle
+    common, speckle = scan.common, scan.speckle
     arrays: dict[str, NDArray[Any]] = {
+        **pack_features(scan.features, scan.features_key),
         "calibration_id": np.array(scan.calibration_id),
-        "features_key": np.array(scan.features_key),
-        "image_size": np.array(features.image_size),
         "pis": scan.pis,
         "covariance": scan.covariance,
         "sweep_frames": scan.sweep_frames,
         "fan_line": np.array(scan.fan_line, dtype=np.int64),
         "shown": np.array(_NO_FRAME if scan.shown is None else scan.shown),
         "crossings_used": scan.crossings_used,
-        "frame_names": pack_texts([frame.name for frame in features.frames]),
-        "frame_reasons": pack_messages([frame.reason for frame in features.frames]),
-        "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
-        "notes": pack_messages(features.notes),
-        "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         **{f"fact_{name}": np.array(getattr(scan.facts, name)) for name in _known(scan.facts)},
         "of_the_day": pack_messages(scan.facts.of_the_day),
         "unsure_share": np.array(scan.unsure_share),
-        **_pack_shifts(features),
-        **_pack_gains(features),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
-        **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
-        **pack_centrelines("fan", [features.fan]),
-        **pack_centrelines("sweep", [frame.centrelines for frame in features.frames]),
     }
     write_arrays(path, arrays)
 
@@ -206,31 +170,8 @@ def read_scan(path: Path) -> ScanFile:
 
 
 def _unpacked(arrays: Arrays) -> ScanFile:
-    frames = zip(
-        unpack_texts(arrays["frame_names"]),
-        unpack_centrelines("sweep", arrays),
-        map(known_exclusion, unpack_messages(arrays["frame_reasons"])),
-        arrays["frame_shift_px"].tolist(),
-        [0.0] * len(arrays["frame_names"]),
-        _unpack_shifts(arrays),
-        [{}] * len(arrays["frame_names"]),
-        _unpack_gains(arrays),
-        strict=True,
-    )
-    width, height = arrays["image_size"].tolist()
-    fan_stripe, sweep_stripe = _settings(arrays["stripes"])
-    table: dict[str, Any] = {name: arrays[f"crossing_{name}"] for name in _CROSSINGS}
-    table["half_length_px"] = float(table["half_length_px"])
+    features = unpack_features(arrays)
     shown = int(arrays["shown"])
-    features = ScanFeatures(
-        image_size=(width, height),
-        fan=unpack_centrelines("fan", arrays)[0],
-        frames=tuple(FrameFeatures(index, *frame) for index, frame in enumerate(frames)),
-        crossings=CrossingTable(**table),
-        sweep_stripe=sweep_stripe,
-        fan_stripe=fan_stripe,
-        notes=tuple(filter(None, unpack_messages(arrays["notes"]))),
-    )
     return ScanFile(
         features=features,
         pis=arrays["pis"],
@@ -241,7 +182,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         shown=None if shown == _NO_FRAME else shown,
         calibration_id=str(arrays["calibration_id"]),
         features_key=str(arrays.get("features_key", "")),
-        common=_common(arrays, (width, height)),
+        common=_common(arrays, features.image_size),
         speckle=_speckle(arrays),
         facts=_facts(arrays),
         second_bounces=tuple(
@@ -259,33 +200,6 @@ def _facts(arrays: Arrays) -> ScanFacts:
     known = {name: bool(arrays[f"fact_{name}"]) for name in _FACTS if f"fact_{name}" in arrays}
     of_the_day = unpack_messages(arrays["of_the_day"]) if "of_the_day" in arrays else []
     return ScanFacts(**known, of_the_day=tuple(filter(None, of_the_day)))
-
-
-def _pack_shifts(features: ScanFeatures) -> dict[str, NDArray[Any]]:
-    """Shifts (F, C) of the fan's stretches, and of which frames (F,) they are known."""
-    known = np.array([len(frame.fan_shifts_px) > 0 for frame in features.frames], dtype=np.bool_)
-    widest = max((len(frame.fan_shifts_px) for frame in features.frames), default=0)
-    shifts = np.zeros((len(known), widest))
-    for row, frame in zip(shifts, features.frames, strict=True):
-        row[: len(frame.fan_shifts_px)] = frame.fan_shifts_px
-    return {"frame_fan_shifts_px": shifts, "frame_fan_known": known}
-
-
-def _unpack_shifts(arrays: Arrays) -> list[Array]:
-    if "frame_fan_known" not in arrays:
-        return [np.zeros(0)] * len(arrays["frame_names"])
-    rows = zip(arrays["frame_fan_known"].tolist(), arrays["frame_fan_shifts_px"], strict=True)
-    return [shifts if known else np.zeros(0) for known, shifts in rows]
-
-
-def _pack_gains(features: ScanFeatures) -> dict[str, NDArray[Any]]:
-    """The frames' gains (F,); nothing where all have the reference's brightness."""
-    gains = np.array([frame.gain for frame in features.frames], dtype=np.float64)
-    return {"frame_gain": gains} if np.any(gains != 1) else {}
-
-
-def _unpack_gains(arrays: Arrays) -> list[float]:
-    return arrays["frame_gain"].tolist() if "frame_gain" in arrays else [1.0] * len(arrays["frame_names"])
 
 
 def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:
@@ -310,13 +224,3 @@ def _speckle(arrays: Arrays) -> FanSpeckle | None:
     if len(speckle.covariance) != arrays["pis"].size:
         raise ValueError(f"speckle_covariance has {len(speckle.covariance)} rows, not {arrays['pis'].size}")
     return speckle
-
-
-def _stripes(fan: StripeSettings, sweep: StripeSettings | None) -> Array:
-    """Width and contrast of the fan's stripes and of the sweep's; 0 where there is none."""
-    return np.array([[fan.width_px, fan.contrast], [sweep.width_px, sweep.contrast] if sweep else [0.0, 0.0]])
-
-
-def _settings(stripes: NDArray[Any]) -> tuple[StripeSettings, StripeSettings | None]:
-    fan, sweep = stripes.tolist()
-    return StripeSettings(*fan), StripeSettings(*sweep) if sweep[0] > 0 else None

@@ -220,9 +220,13 @@ class LiveBack:
 
 @dataclass(frozen=True, slots=True)
 class LiveSaving:
-    """It is being stopped, and so many frames still wait for the disk. Comes several times a second until all are."""
+    """It is being stopped, and so many frames still wait for the disk, or are there and have not been looked at.
+
+    Comes several times a second until all are.
+    """
 
     waiting: int
+    unseen: int = 0
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,6 +20,7 @@ from core.pipeline.live.commands import Command, Configure, Mark, Pause, Resume,
 from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveSaving, ScanDetail, ScanStage
 from core.pipeline.live.preview import PreviewedFrame, PreviewFailed, ReferenceMismatch, ScanPreviewer
+from core.pipeline.live.recorded_features import RecordedFeatures
 from core.pipeline.live.warm_up import get_ready_for_live
 from core.scan.preview.shown import FramePreview, PreviewCloud, cloud_of
 from core.scan.surface.coverage_map import CoverageMap
@@ -38,6 +39,10 @@ SAY_EVERY_S = 0.2
 """How often in s it is told how many frames still wait for the disk."""
 STUCK_S = 2.0
 """A disk that has not taken a frame for so long when all is to be saved is given one last try."""
+
+LOOKING_S = 10.0
+"""So long the end of a recording waits for frames to be looked at; then the measurement does it, which shows how far
+it is and can be cancelled."""
 
 SLOWER = 0.8
 """A camera that is too fast for the disk is told so much of the rate it has."""
@@ -93,6 +98,7 @@ class LiveScan:
         self._new: list[PreviewCloud] = []
         self._renewed = False
         self._checks = ScanChecks(context, self._previewer)
+        self._features: RecordedFeatures | None = None
 
     @property
     def paired(self) -> bool:
@@ -204,6 +210,20 @@ class LiveScan:
             self._store.close()
         finally:
             self._context.recorded, self._context.lost = self._store.written, self._store.dropped
+            self._keep_features()
+
+    def _keep_features(self) -> None:
+        """Have the frames looked at that have not been, as long as that is a matter of seconds."""
+        features = self._features
+        if features is None:
+            return
+        features.finish()
+        until = time.monotonic() + LOOKING_S
+        while not features.wait(SAY_EVERY_S):
+            if time.monotonic() > until:
+                features.give_up()
+                return
+            self._context.emit(LiveSaving(0, features.unseen))
 
     def _record(self, frame: Frame) -> None:
         name = f"frame{self._number:05d}"
@@ -227,6 +247,8 @@ class LiveScan:
             )  # fmt: skip
             return
         self._context.worker.start(self._previewer.look, self._number, name, frame)
+        if self._features is not None:
+            self._features.add(name)
         self._number, self._newest = self._number + 1, name
         self._context.recorded += 1
 
@@ -294,6 +316,12 @@ class LiveScan:
         self._context.took(REFERENCE, picture)
         self._looking = self._forced = False
         self._checks.accepted()
+        request = self._context.request
+        if request.camera is not None:
+            settings = replace(request.options.for_scan, excluded=frozenset())
+            self._features = RecordedFeatures(
+                request.folder, request.ending, request.rig, request.camera, settings, lambda: self._store.written
+            )
         fan = self._previewer.fan_cloud()
         self._new, self._renewed = [fan], True
         if self._coverage is not None:

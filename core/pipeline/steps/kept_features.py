@@ -1,4 +1,4 @@
-"""What a scan's pictures showed, kept from the measurement before: solving again with other settings needs no picture.
+"""What a scan's pictures showed, kept from the measurement before or while they were recorded: no picture is needed.
 
 The pictures are known by their bytes, so nothing is taken over that they might not show; and the program by its own
 text, so that a version that looks at pictures in another way looks at them again.
@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -25,6 +25,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import rig_tables, without_warmth
 from core.files.recording.step_settings import ScanSettings
+from core.files.results.scan_features import FEATURES, read_features, write_features
 from core.files.results.scan_file import read_scan
 from core.model import Camera
 from core.progress import Progress, silent
@@ -36,22 +37,48 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 
 
 def kept_features(
-    scan: Path, pictures: PictureReader, settings: ScanSettings, camera: Camera, progress: Progress = silent
+    earlier: Path | None,
+    pictures: PictureReader,
+    settings: ScanSettings,
+    camera: Camera,
+    progress: Progress = silent,
 ) -> ScanFeatures | None:
-    """The features that `scan`, an earlier scan.npz, holds, if they are those of these pictures, settings and camera.
+    """The features that were kept of these pictures, settings and camera: by an earlier scan.npz, or by the recording.
 
-    Takes the hashes of the pictures, as reading them would.
+    Takes the hashes of the pictures, as reading them would, if features were kept.
     """
-    if not scan.exists():
-        return None
-    try:
-        earlier = read_scan(scan)
-    except InputError:
-        return None  # damaged: it will be replaced
-    if not earlier.features_key:
+    kept = [*_features_of_scan(earlier), *_features_of_recording(pictures.recording_set)]
+    if not kept:
         return None
     pictures.take_hashes(_pictures(pictures.recording_set, settings), progress)
-    return earlier.features if earlier.features_key == features_key(pictures, settings, camera) else None
+    key = features_key(pictures, settings, camera)
+    return next((features for features, known in kept if known == key), None)
+
+
+def keep_features(pictures: PictureReader, settings: ScanSettings, camera: Camera, features: ScanFeatures) -> None:
+    """Keep the features of a recording beside its frames; the hashes of its pictures must have been taken.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be written.
+    """
+    folder = pictures.recording_set.folders["scan"]
+    write_features(folder / FEATURES, features, features_key(pictures, settings, camera))
+
+
+def _features_of_scan(path: Path | None) -> Iterator[tuple[ScanFeatures, str]]:
+    if path is not None and path.exists():
+        with suppress(InputError):  # damaged: it will be replaced
+            scan = read_scan(path)
+            yield scan.features, scan.features_key
+
+
+def _features_of_recording(recording_set: RecordingSet) -> Iterator[tuple[ScanFeatures, str]]:
+    path = recording_set.folders["scan"] / FEATURES if "scan" in recording_set.folders else None
+    if path is not None and path.exists():
+        with suppress(InputError):  # damaged: the pictures are still there
+            yield read_features(path)
 
 
 def features_key(pictures: PictureReader, settings: ScanSettings, camera: Camera) -> str:

@@ -15,7 +15,6 @@ from numpy.typing import NDArray
 
 from core.errors import InputError
 from core.image.exclusion import Exclusion, Reason
-from core.image.mosaic import Sites
 from core.image.stripes.bracket import Exposure, Exposures, fused
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -87,23 +86,11 @@ class SeenLines:
     frames: tuple[FrameFeatures, ...]
     stripes: tuple[StripeSettings, StripeSettings | None]
 
-    def brought_back(self, sites: Sites, image_size: tuple[int, int]) -> SeenLines:
-        """The same in px of the whole picture, of `image_size`, where its `sites` were looked at."""
-        of_fan, of_sweeps = self.stripes
-        stripes = (sites.stripe_back(of_fan), sites.stripe_back(of_sweeps))
-        frames = tuple(frame.brought_back(sites) for frame in self.frames)
-        return SeenLines(image_size, sites.brought_back(self.fan), frames, stripes)
-
-    def averaged(self, progress: Progress = silent, times: StageTimes | None = None) -> SeenLines:
+    def averaged(self, progress: Progress = silent) -> SeenLines:
         """The same, with the centrelines averaged along themselves, several at a time."""
-
-        def averaged(frame: FrameFeatures) -> FrameFeatures:
-            with stage(times, "smoothing"):
-                return replace(frame, centrelines=refined(frame.centrelines))
-
         step, total = StepProgress(progress), len(self.frames)
         idle = partial(step.within_step, "smoothing", 0, total)
-        frames = tuple(steps(ordered_map(averaged, self.frames, idle=idle), step, "smoothing", total))
+        frames = tuple(steps(ordered_map(_averaged, self.frames, idle=idle), step, "smoothing", total))
         return replace(self, fan=refined(self.fan), frames=frames)
 
 
@@ -117,8 +104,7 @@ def extract_features(
     times: StageTimes | None = None,
 ) -> ScanFeatures:
     """Reduce a scan to features; parameters and errors as `extract_lines`."""
-    seen = extract_lines(reference, frames, total, options, progress, watch, times)
-    return crossed(seen, seen.averaged(progress, times), options, progress)
+    return crossed(*extract_lines(reference, frames, total, options, progress, watch, times), options, progress)
 
 
 def extract_lines(
@@ -130,8 +116,8 @@ def extract_lines(
     watch: Callable[[FrameFeatures], None] | None = None,
     times: StageTimes | None = None,
     further: Mapping[int, FurtherExposures] | None = None,
-) -> SeenLines:
-    """Reduce a scan to centrelines as they are.
+) -> tuple[SeenLines, SeenLines]:
+    """Reduce a scan to centrelines as they are, and averaged along themselves.
 
     Parameters
     ----------
@@ -154,6 +140,7 @@ def extract_lines(
         If the reference shows no fan line, or no frame shows a sweep.
     """
     options = options or FeatureOptions()
+    sites = options.sites
     progress = told = StepProgress(progress)
     progress("frames", 0, total)
     seen = reference if isinstance(reference, ReferenceFeatures) else read_reference(reference, options)
@@ -165,16 +152,26 @@ def extract_lines(
     else:
         sweep_stripe = choose_sweep_stripe(ahead, seen, told.within_step)
     reader = FrameReader(seen, sweep_stripe, options.move_limit_px, times, further or {})
+
+    def look(item: tuple[int, Frame]) -> tuple[FrameFeatures, FrameFeatures]:
+        features = reader(item).brought_back(sites)
+        with stage(times, "smoothing"):
+            return features, _averaged(features)
+
     found: list[FrameFeatures] = []
+    averaged: list[FrameFeatures] = []
     numbered = enumerate(_handed_on(ahead, stream))
-    for features in ordered_map(reader, numbered, idle=lambda: told.within_step("frames", 0, total)):
+    for features, smooth_features in ordered_map(look, numbered, idle=lambda: told.within_step("frames", 0, total)):
         progress("frames", len(found), total)
         found.append(features)
+        averaged.append(smooth_features)
         if watch is not None:
             watch(features)
     progress("frames", len(found), total)
     _require_sweeps(found)
-    return SeenLines(seen.image_size, seen.fan, tuple(found), (seen.stripe, sweep_stripe))
+    fan, stripes = sites.brought_back(seen.fan), (sites.stripe_back(seen.stripe), sites.stripe_back(sweep_stripe))
+    lines = SeenLines(seen.image_size, fan, tuple(found), stripes)
+    return lines, replace(lines, fan=refined(fan), frames=tuple(averaged))
 
 
 def gather(
@@ -218,6 +215,10 @@ def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
     """Averaged along themselves, and as uncertain as uneven brightness makes them."""
     smoothed = (smooth(piece) for piece in pieces)
     return tuple(replace(piece, sigma=np.hypot(piece.sigma, shading_sigma(piece))) for piece in smoothed)
+
+
+def _averaged(frame: FrameFeatures) -> FrameFeatures:
+    return replace(frame, centrelines=refined(frame.centrelines))
 
 
 def _look_ahead(frames: Iterator[Frame]) -> list[Frame]:

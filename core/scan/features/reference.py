@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from core.compiled import compiled
 from core.errors import InputError
+from core.image.mosaic import ALL_SITES, Sites
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import UNCOMPRESSED, Compression, NoiseModel, estimate_noise
@@ -175,6 +176,7 @@ class FeatureOptions:
 
     A frame in which a stretch of the fan has moved by more than `move_limit_px` since the reference is left out. With
     a `camera`, centrelines are crossed as they would be without its distortion. `compression` is that of each picture.
+    Of whole pictures only the `sites` are handed in; what is found is in px of the whole pictures.
     """
 
     sweep_stripe: StripeSettings | None = None
@@ -183,6 +185,7 @@ class FeatureOptions:
     move_limit_px: float = 0.3
     camera: Camera | None = None
     compression: Compression = UNCOMPRESSED
+    sites: Sites = ALL_SITES
 
 
 class LaserLight(NamedTuple):

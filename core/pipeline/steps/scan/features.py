@@ -12,7 +12,7 @@ from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
 from core.pipeline.steps.workspace import Calibration, check_size
-from core.progress import Progress
+from core.progress import Progress, silent
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview
@@ -36,7 +36,8 @@ def scan_features(
     watch
         Shown each frame with what it would give by itself, if the pictures are looked at now.
     earlier
-        A scan.npz, whose features are taken if they are those of these pictures, settings and camera.
+        A scan.npz, whose features are taken if they are those of these pictures, settings and camera; so are those that
+        were kept while the frames were recorded.
     seen
         Gives what the pictures show, if they are looked at already.
 
@@ -46,7 +47,7 @@ def scan_features(
         If the reference shows no line of the fan, no frame a sweep, or a picture has another size than the camera's.
     """
     camera = calibration.camera.camera
-    kept = kept_features(earlier, pictures, settings, camera, progress) if earlier is not None else None
+    kept = kept_features(earlier, pictures, settings, camera, progress) if seen is None else None
     if kept is not None and kept.image_size == camera.image_size:
         return kept
     if seen is None:
@@ -57,6 +58,11 @@ def scan_features(
     width, height = looked.lines.image_size
     check_size(looked.reference, (height, width), camera)
     pictures.learn(looked.hashes, looked.channels)
+    return crossed_scan(looked, camera, progress)
+
+
+def crossed_scan(looked: SeenScan, camera: Camera, progress: Progress = silent) -> ScanFeatures:
+    """The features of a scan whose pictures have been looked at."""
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
     return replace(features, notes=(*looked.notes, *features.notes))
 

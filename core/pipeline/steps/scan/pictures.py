@@ -70,6 +70,7 @@ def look_at_scan(
     progress: Progress = silent,
     camera: Camera | None = None,
     watching: Callable[[ReferenceFeatures], Callable[[FrameFeatures], None]] | None = None,
+    coming: Iterable[Path] | None = None,
 ) -> SeenScan:
     """What the reference and all frames of a set show.
 
@@ -83,6 +84,8 @@ def look_at_scan(
         If it is known: it must have pictures of this size.
     watching
         Gives what is shown each frame, once the reference is read.
+    coming
+        All frames as they are recorded, in their order, where the set has the first ones only; none is left out.
 
     Raises
     ------
@@ -106,13 +109,11 @@ def look_at_scan(
         reference = replace(reference, fan=fan)
         factor = float(np.nanmax([1.0, *(each.factor for each in exposures)]))
     progress("reference", 1, 1)
-    frames, total = stream_frames(pictures, settings, times), len(found.frames)
+    frames, total = stream_frames(pictures, settings, times, coming), len(found.frames)
     shown = of_whole(reference, sites, picture)
-    show = watching(shown) if watching else None
-    watch = None if show is None else lambda features: show(features.brought_back(sites))
-    lines = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, further)
-    lines = lines.brought_back(sites, shown.image_size)
-    averaged = lines.averaged(progress, times)
+    watch = watching(shown) if watching else None
+    seen = extract_lines(reference, _seen_at(sites, frames), total, looking, progress, watch, times, further)
+    lines, averaged = (replace(each, image_size=shown.image_size) for each in seen)
     of_width = told_width_notes(settings.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
@@ -128,6 +129,7 @@ def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
         sweep_stripe=sites.stripe_of(looking.sweep_stripe),
         fan_stripe=sites.stripe_of(looking.fan_stripe),
         move_limit_px=looking.move_limit_px / sites.period,
+        sites=sites,
     )
 
 
@@ -193,9 +195,17 @@ def feature_options(settings: ScanSettings) -> FeatureOptions:
     return FeatureOptions(sweep_stripe=settings.stripe, fan_stripe=settings.stripe)
 
 
-def stream_frames(pictures: PictureReader, settings: ScanSettings, times: StageTimes | None = None) -> Iterator[Frame]:
-    """Every frame in the order of the recording; those left out by hand are not read."""
+def stream_frames(
+    pictures: PictureReader,
+    settings: ScanSettings,
+    times: StageTimes | None = None,
+    coming: Iterable[Path] | None = None,
+) -> Iterator[Frame]:
+    """Every frame in the order of the recording, or all that are `coming`; those left out by hand are not read."""
     recording_set = pictures.recording_set
+    if coming is not None:
+        yield from pictures.stream(coming, times)
+        return
     taken = pictures.stream(taken_frames(recording_set, settings), times)
     for path in recording_set.frames:
         name = recording_set.name_of(path)
