@@ -78,7 +78,7 @@ class SolvedScan:
         """How the errors of the points hang together: what an uncertainty is reckoned from."""
         scan = self.result
         errors = PointErrors.of_scan(self.features, scan.covariance, self.common, scan.speckle, scan.pis.shape[1])
-        return errors.doubted_by(self.facts)
+        return replace(errors, facts=self.facts)
 
 
 def triangulate(stripe: Centreline, plane: LightPlane, camera: Camera, *, covariance: ArrayLike | None = None) -> Cloud:

@@ -44,15 +44,16 @@ class Finding:
         The English text of the note with {places}, as of a `Message`; where it counts `n` things, that of a single one
         and that of any other number.
     fact
-        Of what takes away a proof: the field of `core.findings.proof.ScanFacts` that does so. "" where it is no fact
-        of a scan, but of one result or of a study.
+        Of what takes away a proof: the fact that does so, by its name in files, which is that of a field of
+        `core.findings.proof.ScanFacts` if it is one of a scan.
     of_pictures
         Whether it is a fault of a scan's pictures themselves, which may be why what is made of them is refused.
 
     Raises
     ------
     ValueError
-        If nothing is proven, or there is no result, and it is not grave; if a fact is named that takes away no proof.
+        If nothing is proven, or there is no result, and it is not grave; if it takes away a proof by no fact that is
+        named, or names one and takes away none.
     """
 
     code: str
@@ -66,8 +67,8 @@ class Finding:
     def __post_init__(self) -> None:
         if self.effect in (Effect.NO_PROOF, Effect.NO_RESULT) and self.weight != Weight.GRAVE:
             raise ValueError(f"{self.code} takes away a proof and is not grave")
-        if self.fact and self.effect != Effect.NO_PROOF:
-            raise ValueError(f"{self.code} names a fact and takes away no proof")
+        if bool(self.fact) != (self.effect == Effect.NO_PROOF):
+            raise ValueError(f"{self.code} takes away a proof by no fact, or names a fact and takes away none")
 
     @property
     def places(self) -> frozenset[str]:

@@ -23,10 +23,11 @@ ROWS = (
             "There are {n} pairs of parallel faces that could be meant. Measured is the one of {mm:.1f} mm, its upper "
             "face at pixel {u:.0f}, {v:.0f}; the next is one of {other_mm:.1f} mm at pixel {other_u:.0f}, "
             "{other_v:.0f}. Nothing is proven until the faces are outlined, as [gauge] upper_polygon_px and {lower}; "
-            "gauge.json has the outlines of each pair."),
+            "gauge.json has the outlines of each pair.", fact="several_faces"),
     Finding("surface.faces_not_spanned", Weight.GRAVE, Effect.NO_PROOF,
             "The points of {name:and} lie on one stripe, or too near to each other for their noise: nothing says how "
-            "it lies, or whether it is a face, and what is measured from it proves nothing. Scan it with more sweeps."),
+            "it lies, or whether it is a face, and what is measured from it proves nothing. Scan it with more sweeps.",
+            fact="faces_not_spanned"),
     Finding("form.scatter", Weight.CAUTION, Effect.WIDENS_U,
             "Points scatter about {name:and} {times:.1f} times as much as their uncertainty says: something acts on "
             "them that is not known (gloss, vibration, a laser out of focus). U contains the scatter as noise."),
@@ -84,11 +85,12 @@ ROWS = (
     Finding("inspection.no_frame", Weight.GRAVE, Effect.NO_RESULT,
             "There are no part coordinates: {why}"),
     Finding("inspection.missing_in_u", Weight.GRAVE, Effect.NO_PROOF,
-            "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing."),
+            "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing.",
+            fact="u_incomplete"),
     Finding("inspection.light_is_skewed", Weight.GRAVE, Effect.NO_PROOF,
             "The laser's light is skewed in depth on what was measured: part of it comes from below the surface "
             "(plastic, wax, paper), or shines to one side. U holds what that may do, but nothing is proved: spray "
-            "the part matt, or compare it with a master of its material."),
+            "the part matt, or compare it with a master of its material.", fact="light_skewed"),
     Finding("inspection.rig_not_checked", Weight.CAUTION, Effect.WIDENS_U,
             "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
             "Take 3 pictures of the plane target in the fan (1 min)."),

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from core.findings.finding import Effect, Finding, Weight
+from core.messages import Message
 
 SCAN = (
     Finding("inspection.moved_during_scan", Weight.GRAVE, Effect.NO_PROOF,
@@ -46,11 +49,46 @@ OTHERS = (
     Finding("validity.scan_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the scan, of another program or an earlier version, does not say whether anything moved or "
             "changed, or the stripes of the laser planes' calibration are not kept or too short to show it: nothing "
-            "measured proves conformity. Measure the scan again, or first calibrate the laser planes again."),
+            "measured proves conformity. Measure the scan again, or first calibrate the laser planes again.",
+            fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the laser planes' calibration, of another program or an earlier version, does not say "
             "whether it had settled and fitted its target: nothing measured proves conformity. Calibrate the laser "
-            "planes again."),
+            "planes again.", fact="planes_unknown"),
 )  # fmt: skip
 """That of the size, which a comparison with a master does not need, and of what a file does not say."""
 ROWS = (*SCAN, *PLANES, *OTHERS)
+DAY = "of_the_day"
+"""Stands for what did not hold on the day of a scan whose file, of an earlier version, has the words of it alone."""
+UNNAMED = "unnamed"
+"""Stands for the doubts of a result whose file, of an earlier version, says only that there are some."""
+REASONS: Mapping[str, Message] = {
+    "moved": Message("doubt.moved", "something moved during the scan"),
+    "drifted": Message("doubt.drifted", "the rig drifted during the scan"),
+    "collapsed": Message("doubt.collapsed", "the sweeps' light planes have fallen together"),
+    "fan_disagrees": Message("doubt.fan_disagrees", "sweeps and fan disagree"),
+    "rig_changed": Message("doubt.rig_changed", "camera or laser have changed"),
+    "rig_seems_changed": Message("doubt.rig_seems_changed", "camera or laser seem to have changed"),
+    "section_changed": Message("doubt.section_changed", "the fan's light is skewed otherwise than when calibrated"),
+    "scan_unknown": Message("doubt.scan_unknown", "it is not known whether anything moved or changed"),
+    DAY: Message("doubt.of_the_day", "calibration or check did not hold on the day"),
+    "calibration_undated": Message("doubt.calibration_undated", "it is not known when the rig was calibrated"),
+    "calibration_lapsed": Message("doubt.calibration_lapsed", "the calibration was too old"),
+    "never_checked": Message("doubt.never_checked", "camera and laser were never checked"),
+    "check_lapsed": Message("doubt.check_lapsed", "the check of camera and laser was too old"),
+    "check_failed": Message("doubt.check_failed", "the check of camera and laser failed"),
+    "history_unreadable": Message("doubt.history_unreadable", "the history of the rig's checks cannot be read"),
+    "planes_unsettled": Message("doubt.planes_unsettled", "the laser planes' calibration had not settled"),
+    "points_off_alike": Message("doubt.points_off_alike", "the plane target's points lie off alike in all poses"),
+    "planes_unknown": Message("doubt.planes_unknown", "it is not known whether the planes' calibration had settled"),
+    "size_unconfirmed": Message("doubt.size_unconfirmed", "the size of the plane target is not confirmed"),
+    "u_incomplete": Message("doubt.u_incomplete", "U does not hold all that is known"),
+    "light_skewed": Message("doubt.light_skewed", "the light on the part is skewed in depth"),
+    "faces_not_spanned": Message("doubt.faces_not_spanned", "the points do not span a face"),
+    "several_faces": Message("doubt.several_faces", "several pairs of faces could be meant"),
+    "results_doubted": Message("doubt.results_doubted", "results that it rests on prove nothing"),
+    "scatter_alone": Message("doubt.scatter_alone", "U holds the scatter of the repeats alone"),
+    "artefact_without_u": Message("doubt.artefact_without_u", "no uncertainty of the artefact is stated"),
+    UNNAMED: Message("doubt.unnamed", "its file does not say why"),
+}
+"""Each fact that takes away a proof, in few words, by its name in files."""

@@ -67,22 +67,22 @@ ROWS = (
             "stated has no limit."),
     Finding("validity.calibration_undated", Weight.GRAVE, Effect.NO_PROOF,
             "It is not known when camera and laser were calibrated, and a calibration holds for {days:g} days only: "
-            "nothing measured proves conformity.", fact="of_the_day"),
+            "nothing measured proves conformity.", fact="calibration_undated"),
     Finding("validity.calibration_lapsed", Weight.GRAVE, Effect.NO_PROOF,
             "Camera and laser were calibrated {n} day before this was recorded, and a calibration holds for "
             "{days:g}: nothing measured proves conformity; calibrate again.",
             "Camera and laser were calibrated {n} days before this was recorded, and a calibration holds for "
-            "{days:g}: nothing measured proves conformity; calibrate again.", fact="of_the_day"),
+            "{days:g}: nothing measured proves conformity; calibrate again.", fact="calibration_lapsed"),
     Finding("validity.never_checked", Weight.GRAVE, Effect.NO_PROOF,
             "Camera and laser were never checked with these calibrations, and are to be every {days:g} days: "
-            "nothing measured proves conformity; check.", fact="of_the_day"),
+            "nothing measured proves conformity; check.", fact="never_checked"),
     Finding("validity.check_lapsed", Weight.GRAVE, Effect.NO_PROOF,
             "The check of camera and laser nearest to this recording is of {date}, and they are to be checked every "
-            "{days:g} days: nothing measured proves conformity; check again.", fact="of_the_day"),
+            "{days:g} days: nothing measured proves conformity; check again.", fact="check_lapsed"),
     Finding("validity.check_failed", Weight.GRAVE, Effect.NO_PROOF,
             "The check of camera and laser of {date} failed: nothing measured with these calibrations proves "
-            "conformity; calibrate again.", fact="of_the_day"),
+            "conformity; calibrate again.", fact="check_failed"),
     Finding("validity.history_unreadable", Weight.GRAVE, Effect.NO_PROOF,
             "The history of this rig's checks cannot be read ({reason}): nothing measured proves conformity.",
-            fact="of_the_day"),
+            fact="history_unreadable"),
 )  # fmt: skip

@@ -16,10 +16,11 @@ ROWS = (
             "calibrate again."),
     # Repeats
     Finding("study.doubted", Weight.GRAVE, Effect.NO_PROOF,
-            "By their own results {names} prove nothing, and so their mean does not: read their notes."),
-    Finding("study.scatter_alone", Weight.CAUTION, Effect.NONE,
+            "By their own results {names} prove nothing, and so their mean does not: read their notes.",
+            fact="results_doubted"),
+    Finding("study.scatter_alone", Weight.GRAVE, Effect.NO_PROOF,
             "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what is "
-            "common to all of them (calibration) is not in it, and nothing is proven."),
+            "common to all of them (calibration) is not in it, and nothing is proven.", fact="scatter_alone"),
     Finding("study.beyond_run_chart", Weight.CAUTION, Effect.NONE,
             "Beyond the limits of the run chart: {names}; look for what changed there."),
     # Type-1 study
@@ -42,7 +43,8 @@ ROWS = (
             "{n} distinct categories: with fewer than {least} the gauge hardly tells these parts apart."),
     # Series of parts
     Finding("study.series_doubted", Weight.GRAVE, Effect.NO_PROOF,
-            "By their own results {names} prove nothing, and so the series does not: read their notes."),
+            "By their own results {names} prove nothing, and so the series does not: read their notes.",
+            fact="results_doubted"),
     Finding("study.series_without_u", Weight.CAUTION, Effect.NONE,
             "No uncertainty is stated: what moves all values alike (calibration) is not in the intervals of the "
             "indices."),
@@ -70,5 +72,5 @@ ROWS = (
     Finding("study.few_positions", Weight.CAUTION, Effect.NONE,
             "{what}: {n} of the {all} positions the guideline asks for."),
     Finding("study.artefact_without_u", Weight.GRAVE, Effect.NO_PROOF,
-            "{what}: no uncertainty of the artefact was stated, so it proves nothing."),
+            "{what}: no uncertainty of the artefact was stated, so it proves nothing.", fact="artefact_without_u"),
 )  # fmt: skip

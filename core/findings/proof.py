@@ -1,25 +1,92 @@
 """What decides whether anything measured in a scan can prove conformity, however small its uncertainty.
 
-Facts are fields: steps fill them, files keep them, and verdicts are made of them alone; no note is read back. A fact
-that a file does not hold is not known, and what is not known proves nothing.
+Facts are fields: steps fill them, files keep them by their names, and verdicts are made of them alone; no note is read
+back. A fact that a file does not hold is not known, and what is not known proves nothing.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import TypeAlias
 
 from core.findings import of_proof
-from core.findings.table import note_of
+from core.findings.table import fact_of, note_of
 from core.messages import Field, Message
 
-OF_SCAN: Mapping[str, Message] = {row.fact: row.note() for row in of_proof.SCAN}
+
+@dataclass(frozen=True, slots=True)
+class Doubt:
+    """A fact by which nothing is proven, by its name in files, and the note that tells it."""
+
+    fact: str
+    note: Message
+
+    @classmethod
+    def of(cls, note: Message) -> Doubt:
+        """The doubt that a note on a finding tells.
+
+        Raises
+        ------
+        ValueError
+            If the finding takes away no proof.
+
+        Examples
+        --------
+        >>> Doubt.of(note_of("inspection.planes_collapsed")).fact
+        'collapsed'
+        """
+        fact = fact_of(note)
+        if not fact:
+            raise ValueError(f"this takes away no proof: {note}")
+        return cls(fact, note)
+
+    @classmethod
+    def named(cls, fact: str) -> Doubt:
+        """The doubt of that name in a file, told in short; of another version's name, by the name itself.
+
+        Examples
+        --------
+        >>> str(Doubt.named("moved").note), str(Doubt.named("melted").note)
+        ('something moved during the scan', 'melted')
+        """
+        known = of_proof.REASONS.get(fact)
+        return cls(fact, Message("doubt.of_other_version", "{fact}", fact=fact) if known is None else known)
+
+
+Doubts: TypeAlias = tuple[Doubt, ...]
+"""Why nothing is proven, each fact once; () where nothing speaks against it."""
+
+
+def notes_of(doubts: Iterable[Doubt]) -> tuple[Message, ...]:
+    """The notes that tell of doubts."""
+    return tuple(doubt.note for doubt in doubts)
+
+
+def doubts_named(facts: Sequence[str], *, complete: bool) -> Doubts:
+    """The doubts of a file that keeps their names, or, of an earlier version, whether there are none alone."""
+    return tuple(map(Doubt.named, facts or (() if complete else (of_proof.UNNAMED,))))
+
+
+def check_doubted(notes: Iterable[Message], doubts: Doubts) -> None:
+    """ValueError if a note of a result tells a finding by which nothing is proven, and the result has no doubts."""
+    if not doubts and (told := list(filter(None, map(fact_of, notes)))):
+        raise ValueError(f"notes of a result tell {told}, by which nothing is proven, and it has no doubts")
+
+
+def notes_beside(doubts: Doubts, notes: Iterable[Message]) -> tuple[Message, ...]:
+    """Those of a file's notes that a result with these doubts may have: facts decide, whatever the notes say."""
+    return tuple(note for note in notes if doubts or not fact_of(note))
+
+
+OF_SCAN: Mapping[str, Doubt] = {row.fact: Doubt.of(row.note()) for row in of_proof.SCAN}
 """Why nothing is proven where a fact of the scan holds, by its name, in the order in which they are said."""
-OF_PLANES: Mapping[str, Message] = {row.fact: row.note() for row in of_proof.PLANES}
+OF_PLANES: Mapping[str, Doubt] = {row.fact: Doubt.of(row.note()) for row in of_proof.PLANES}
 """The same of the planes' calibration."""
-SCAN_UNKNOWN, PLANES_UNKNOWN = note_of("validity.scan_unknown"), note_of("validity.planes_unknown")
+SCAN_UNKNOWN = Doubt.of(note_of("validity.scan_unknown"))
+PLANES_UNKNOWN = Doubt.of(note_of("validity.planes_unknown"))
 """Why nothing is proven where one of these facts is not known."""
-SIZE_UNCONFIRMED = note_of("target.size_unconfirmed", field=Field("plane_target.scale_sd", whole=True))
+SIZE_UNCONFIRMED = Doubt.of(note_of("target.size_unconfirmed", field=Field("plane_target.scale_sd", whole=True)))
 """Why only what is compared with a master is proven."""
 
 
@@ -46,7 +113,7 @@ class ScanFacts:
     size_unconfirmed
         Whether the plane target's size is neither stated nor confirmed; it cancels in the comparison with a master.
     of_the_day
-        Why calibration or check did not hold on the day of the scan.
+        By what facts calibration or check did not hold on the day of the scan.
 
     Each but the last is None where it is not known.
     """
@@ -61,28 +128,27 @@ class ScanFacts:
     planes_unsettled: bool | None = None
     points_off_alike: bool | None = None
     size_unconfirmed: bool | None = None
-    of_the_day: tuple[Message, ...] = ()
+    of_the_day: Doubts = ()
 
     @property
-    def doubts(self) -> tuple[Message, ...]:
-        """Why nothing measured proves conformity, but for the target's size; () where nothing speaks against it.
+    def doubts(self) -> Doubts:
+        """Why nothing measured proves conformity; () where nothing speaks against it.
+
+        That of the target's size, which is unconfirmed where it is not known, is the last.
 
         Examples
         --------
-        >>> nothing = dict.fromkeys([*OF_SCAN, *OF_PLANES], False)
+        >>> nothing = dict.fromkeys([*OF_SCAN, *OF_PLANES, "size_unconfirmed"], False)
         >>> ScanFacts(**nothing).doubts, ScanFacts(**{**nothing, "moved": True}).doubts == (OF_SCAN["moved"],)
         ((), True)
-        >>> ScanFacts().doubts == (SCAN_UNKNOWN, PLANES_UNKNOWN)
+        >>> ScanFacts().doubts == (SCAN_UNKNOWN, PLANES_UNKNOWN, SIZE_UNCONFIRMED)
         True
         """
-        return (*self._held(OF_SCAN, SCAN_UNKNOWN), *self.of_the_day, *self._held(OF_PLANES, PLANES_UNKNOWN))
+        size = () if self.size_unconfirmed is False else (SIZE_UNCONFIRMED,)
+        of_planes = self._held(OF_PLANES, PLANES_UNKNOWN)
+        return (*self._held(OF_SCAN, SCAN_UNKNOWN), *self.of_the_day, *of_planes, *size)
 
-    @property
-    def all_doubts(self) -> tuple[Message, ...]:
-        """The same with that of the size, which is unconfirmed where it is not known."""
-        return self.doubts if self.size_unconfirmed is False else (*self.doubts, SIZE_UNCONFIRMED)
-
-    def _held(self, rows: Mapping[str, Message], unknown: Message) -> tuple[Message, ...]:
+    def _held(self, rows: Mapping[str, Doubt], unknown: Doubt) -> Doubts:
         """The doubts of those facts that hold, and `unknown` where one of them is not known."""
         facts = {name: getattr(self, name) for name in rows}
         holding = tuple(doubt for name, doubt in rows.items() if facts[name])

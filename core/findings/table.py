@@ -56,6 +56,12 @@ def is_fault_of_pictures(note: Message) -> bool:
     return row is not None and row.of_pictures
 
 
+def fact_of(note: Message) -> str:
+    """The fact by which nothing is proven that a note tells; "" where it tells none."""
+    row = FINDINGS.get(note.code)
+    return "" if row is None else row.fact
+
+
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:
     """Each note once, the gravest first, those of one weight in their order."""
     return tuple(sorted(dict.fromkeys(notes), key=lambda note: -weight_of(note)))

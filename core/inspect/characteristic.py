@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal, TypeAlias
 
+from core.findings.proof import Doubts, check_doubted
 from core.inspect.causes import Cause
 from core.inspect.conformity import Limits, Verdict, decide
 from core.inspect.results import Contribution, GaugeResult
@@ -38,12 +39,15 @@ class Characteristic:
         What exactly was measured; None: nobody said.
     notes
         What is to be known of it.
-    complete
-        Whether u holds all that is known to act on the value; if not, it is a lower bound and proves nothing.
     doubts
-        Why nothing is proven by its own points, whatever is known of the scan; `complete` holds it.
+        By what facts of its scan, its own points and its uncertainty it proves nothing.
     at_20
         Whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
+
+    Raises
+    ------
+    ValueError
+        If a note says that nothing is proven, and there are no doubts.
     """
 
     name: str
@@ -56,9 +60,11 @@ class Characteristic:
     budget: tuple[Contribution, ...] = ()
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
-    complete: bool = True
     at_20: bool | None = False
-    doubts: tuple[Message, ...] = ()
+    doubts: Doubts = field(kw_only=True)
+
+    def __post_init__(self) -> None:
+        check_doubted(self.notes, self.doubts)
 
     @property
     def by_master(self) -> bool:
@@ -78,7 +84,7 @@ class Characteristic:
     @property
     def verdict(self) -> Verdict:
         """Decision by ISO 14253-1; none without limits."""
-        return decide(self.value, self.limits, self.U, complete=self.complete)
+        return decide(self.value, self.limits, self.U, self.doubts)
 
     @property
     def room(self) -> float:
@@ -108,6 +114,6 @@ def thickness_characteristic(gauge: GaugeResult) -> Characteristic:
         budget=gauge.budget,
         rule=gauge.rule,
         notes=gauge.notes,
-        complete=gauge.complete,
         at_20=gauge.at_20,
+        doubts=gauge.doubts,
     )

@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from enum import StrEnum
 
+from core.findings.proof import Doubts
+
 
 class Verdict(StrEnum):
     """What a measurement proves about a tolerance; its values stand in files."""
@@ -54,7 +56,7 @@ class Limits:
         return None if nominal is None or tolerance is None else cls(nominal, -tolerance, tolerance)
 
 
-def decide(value: float, limits: Limits | None, U: float, *, complete: bool = True, r: float = 1.0) -> Verdict:
+def decide(value: float, limits: Limits | None, U: float, doubts: Doubts, *, r: float = 1.0) -> Verdict:
     """Conformity with limits by ISO 14253-1, for the maker of a part: the only place where a verdict is made.
 
     The expanded uncertainty U narrows the tolerance for the proof of conformity and widens it for the proof of
@@ -68,8 +70,9 @@ def decide(value: float, limits: Limits | None, U: float, *, complete: bool = Tr
         What is asked of it; None: no verdict.
     U
         Expanded uncertainty of the value.
-    complete
-        Whether U holds all that is known to act on the value, and nothing speaks against it: else nothing is proven.
+    doubts
+        By what facts nothing is proven, whatever U; () where nothing speaks against the value. Whoever asks for a
+        verdict has to say it.
     r
         Guard band over U, see :class:`Zones`.
 
@@ -84,16 +87,17 @@ def decide(value: float, limits: Limits | None, U: float, *, complete: bool = Tr
 
     Examples
     --------
+    >>> from core.findings.proof import Doubt
     >>> limits = Limits(50.0, -0.2, 0.2)
-    >>> [str(decide(value, limits, 0.1)) for value in (50.05, 50.15, 49.65)]
+    >>> [str(decide(value, limits, 0.1, ())) for value in (50.05, 50.15, 49.65)]
     ['conforming', 'not proven', 'not conforming']
-    >>> str(decide(50.05, limits, 0.1, complete=False)), str(decide(50.05, None, 0.1))
+    >>> str(decide(50.05, limits, 0.1, (Doubt.named("moved"),))), str(decide(50.05, None, 0.1, ()))
     ('not proven', '')
     """
     if limits is None:
         return Verdict.NONE
     deviation = value - limits.nominal
-    if not complete or math.isnan(deviation) or math.isnan(U):
+    if doubts or math.isnan(deviation) or math.isnan(U):
         return Verdict.NOT_PROVEN
     zones = Zones(limits.lower, limits.upper, U, r)
     if zones.conformance is not None and zones.conformance[0] <= deviation <= zones.conformance[1]:

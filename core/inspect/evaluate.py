@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.findings.proof import SIZE_UNCONFIRMED, notes_of
 from core.findings.table import note_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
@@ -27,7 +28,7 @@ from core.inspect.plan.temperature import at_reference, compared, temperature_of
 from core.inspect.result_list import ResultList
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import doubt_of_light
+from core.inspect.uncertainty.skewed_light import doubts_of_light
 from core.messages import Message, plain
 from core.model import Pose
 from core.progress import Progress, silent
@@ -150,7 +151,7 @@ def evaluate(
         scene.pose_camera_part, frame_problem = _frame(plan.frame, scene)
     progress("features", len(ordered), len(ordered))
     results = tuple(scene.found[spec.name] for spec in plan.features)
-    notes = (*scene.errors.all_doubts, *([frame_problem] if frame_problem else []))
+    notes = (*notes_of(scene.errors.doubts), *([frame_problem] if frame_problem else []))
     notes += _of_part(plan, scene.errors.part)
     inspection = Inspection(plan, results, scene.pose_camera_part, notes, scan_key, scene.found_planes)
     return replace(inspection, notes=(*notes, *_of_plugins(inspection)))
@@ -180,7 +181,7 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     if scene.temperature is not None:
         rows = tuple(at_reference(row, scene.temperature) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
-        rows = tuple(_by_master(row, plan.master, scene.errors) for row in rows)
+        rows = tuple(_by_master(row, plan.master) for row in rows)
     return replace(result, characteristics=rows)
 
 
@@ -204,14 +205,20 @@ def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
     return tuple(said)
 
 
-def _by_master(length: Characteristic, master: Master, errors: PointErrors) -> Characteristic:
-    """A length by comparison with a master: the size of the plane target, if that is all the doubt, cancels in it."""
+def _by_master(length: Characteristic, master: Master) -> Characteristic:
+    """A length by comparison with a master, in which the size of the plane target cancels, and so a doubt of it.
+
+    Skewed light may make up much of what is left of its uncertainty.
+    """
     found = compared(length, master)
-    if not errors.size_unconfirmed or not master.same_calibration or not found.by_master:
+    if not master.same_calibration or not found.by_master:
         return found
-    proves = replace(errors, size_unconfirmed=False).complete and not found.doubts
-    proves = proves and doubt_of_light(found.budget) is None
-    return replace(found, complete=proves)
+    of_light = tuple(doubt for doubt in doubts_of_light(found.budget) if doubt not in found.doubts)
+    return replace(
+        found,
+        notes=(*notes_of(of_light), *(note for note in found.notes if note != SIZE_UNCONFIRMED.note)),
+        doubts=(*(doubt for doubt in found.doubts if doubt.fact != SIZE_UNCONFIRMED.fact), *of_light),
+    )
 
 
 def _with_limits_of(result: FeatureResult, spec: FeatureSpec) -> FeatureResult:
@@ -266,7 +273,7 @@ def _digest(cloud: Cloud, mesh: Mesh | None, errors: PointErrors | None) -> str:
     if errors is not None:
         lengths = [getattr(errors, one.name) for one in fields(errors)]
         arrays += [np.array([length for length in lengths if isinstance(length, float)])]
-        arrays += [np.frombuffer(str(doubt).encode(), np.uint8) for doubt in errors.all_doubts]
+        arrays += [np.frombuffer(repr(doubt).encode(), np.uint8) for doubt in errors.doubts]
         arrays += [] if errors.part is None else [np.frombuffer(repr(errors.part).encode(), np.uint8)]
         arrays += [] if errors.speckle is None else [errors.speckle.covariance, errors.speckle.shares]
         arrays += [] if errors.sweep_covariance is None else [errors.sweep_covariance]

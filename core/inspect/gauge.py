@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from core.errors import InputError
+from core.findings.proof import Doubt, Doubts, notes_of
 from core.findings.table import note_of
 from core.inspect.faces import FacePair, faces_in_polygons, find_faces, region_field
 from core.inspect.fit.judged_form import LOWER_FACE, UPPER_FACE, notes_on_form
@@ -30,7 +31,7 @@ from core.inspect.results import Contribution, Face, GaugeResult, PairCandidate
 from core.inspect.uncertainty.budget import budget, combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import doubt_of_light
+from core.inspect.uncertainty.skewed_light import doubts_of_light
 from core.messages import Field, Message
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
@@ -173,23 +174,20 @@ def measure_gauge(
         normal=fit.planes.normal,
         rule=RULE if fit.planes.tilt_determined else RULE_LINE,
         notes=_notes_on_form(cloud, fit, errors),
-        doubts=_doubts(fit),
+        doubts=(),
         candidates=fit.pair.candidates,
     )
     if errors.part is not None:
         gauge = adjusted(gauge, errors.part.thicker_mm, errors.part.surface_rows, errors.part.surface_notes, k=k)
-    of_light = doubt_of_light(fit.budget)
-    for doubt in (*([of_light] if of_light else []), *reversed(gauge.doubts), *reversed(errors.all_doubts)):
-        gauge = doubted(gauge, doubt)
-    return gauge
+    return doubted(gauge, (*errors.doubts, *_doubts(fit), *doubts_of_light(fit.budget)))
 
 
-def _doubts(fit: GaugeFit) -> tuple[Message, ...]:
+def _doubts(fit: GaugeFit) -> Doubts:
     """Why the thickness proves nothing, by its faces themselves."""
     names = [name for name, face in ((UPPER_FACE, fit.upper), (LOWER_FACE, fit.lower)) if not face.spanned]
     return (
-        *([_several(fit.pair.candidates)] if fit.pair.candidates else []),
-        *([faces_not_spanned(names)] if names else []),
+        *([Doubt.of(_several(fit.pair.candidates))] if fit.pair.candidates else []),
+        *([Doubt.of(faces_not_spanned(names))] if names else []),
     )
 
 
@@ -220,9 +218,9 @@ def _notes_on_form(cloud: Cloud, fit: GaugeFit, errors: PointErrors) -> tuple[Me
     return notes_on_form(cloud, indices, shape, errors, (UPPER_FACE, LOWER_FACE), part)
 
 
-def doubted(gauge: GaugeResult, doubt: Message) -> GaugeResult:
-    """The same thickness, which proves nothing because of the `doubt`."""
-    return replace(gauge, notes=(doubt, *gauge.notes), complete=False)
+def doubted(gauge: GaugeResult, doubts: Doubts) -> GaugeResult:
+    """The same thickness, which by these `doubts`, if there are any, proves nothing; its notes tell of them first."""
+    return replace(gauge, notes=(*notes_of(doubts), *gauge.notes), doubts=doubts)
 
 
 def adjusted(

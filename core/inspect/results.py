@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.proof import Doubts, check_doubted
 from core.inspect.causes import Source, message_of
 from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message
@@ -111,15 +112,15 @@ class GaugeResult:
 
     `normal` (3,) is the unit normal common to both faces, away from the camera; `parallelism` (rad) the angle between
     the faces when each is fitted freely, None where a face is not spanned by its points. `rule` says what the thickness
-    is. `points_used` on the upper and the lower face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. What is
-    not `complete` proves nothing, whatever u: `notes` say why, and `doubts` are those of them that its faces themselves
-    give. `at_20` tells whether it is stated at 20 °C, by a temperature that was stated of the part; None: not known.
-    `candidates` are the pairs of faces that could be meant, the measured one first; () where there was no choice.
+    is. `points_used` on the upper and the lower face. `nominal_mm` ± `tolerance_mm` (above 0) is what is asked. By its
+    `doubts` it proves nothing, whatever u; `notes` tell of them. `at_20` tells whether it is stated at 20 °C, by a
+    temperature that was stated of the part; None: not known. `candidates` are the pairs of faces that could be meant,
+    the measured one first; () where there was no choice.
 
     Raises
     ------
     ValueError
-        If the tolerance is not above 0.
+        If the tolerance is not above 0, or a note says that nothing is proven and there are no doubts.
     """
 
     thickness_mm: float
@@ -134,14 +135,14 @@ class GaugeResult:
     normal: Array | None = None
     rule: Message | None = None
     notes: tuple[Message, ...] = ()
-    complete: bool = True
     at_20: bool | None = False
-    doubts: tuple[Message, ...] = ()
     candidates: tuple[PairCandidate, ...] = ()
+    doubts: Doubts = field(kw_only=True)
 
     def __post_init__(self) -> None:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:
             raise ValueError(f"no decision from a tolerance of {self.tolerance_mm}")
+        check_doubted(self.notes, self.doubts)
 
     @property
     def points_used(self) -> tuple[int, int]:
@@ -161,7 +162,7 @@ class GaugeResult:
     @property
     def verdict(self) -> Verdict:
         """Decision by ISO 14253-1; none without limits."""
-        return decide(self.thickness_mm, self.limits, self.U_mm, complete=self.complete)
+        return decide(self.thickness_mm, self.limits, self.U_mm, self.doubts)
 
     @property
     def deviation_mm(self) -> float | None:

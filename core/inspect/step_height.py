@@ -23,11 +23,13 @@ from core.inspect.fit.judged_profiles import FacesInPicture, notes_on_profiles
 from core.inspect.fit.plane_fit import FittedFaces, ParallelPlaneFit, fit_faces, fit_parallel_planes
 from core.inspect.fit.plane_search import FEWEST_POINTS
 from core.inspect.free_faces import angle_of, free_faces
+from core.inspect.gauge import doubted
 from core.inspect.profile_faces import faces_of, level_limit, stretches
 from core.inspect.results import Contribution, GaugeResult
 from core.inspect.uncertainty.budget import Effect, budget_of, combined, effects
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
+from core.inspect.uncertainty.skewed_light import doubts_of_light
 from core.messages import Message
 from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
@@ -250,7 +252,7 @@ def measure_steps(
     u, factor = combined(budget), student_factor(k, budget)
     shown = steps[int(np.argmin(np.abs(values - thickness)))]
     upper, lower = free_faces(shown.cloud, shown.pair, shown.faces.planes, shown.errors)
-    return GaugeResult(
+    gauge = GaugeResult(
         thickness_mm=thickness,
         u_mm=u,
         k=factor,
@@ -263,7 +265,9 @@ def measure_steps(
         normal=shown.faces.planes.normal,
         rule=RULE_ONE_LINE if one_line else RULE,
         notes=(*_notes(len(steps), alike), *_notes_on_form(steps if alike < _STOOD_STILL else [shown])),
+        doubts=(),
     )
+    return doubted(gauge, (*shown.errors.doubts, *doubts_of_light(budget)))
 
 
 def _halves(effect: Effect, alike: float) -> tuple[Effect, ...]:

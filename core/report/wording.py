@@ -221,7 +221,7 @@ def decision_sentence(one: Characteristic, words: Words = ENGLISH) -> str:
     """Why the decision on a characteristic is what it is (ISO 14253-1), with the numbers that decide."""
     if one.limits is None or one.deviation is None:
         return words("No nominal value with a tolerance was given, so the result is stated without a verdict.")
-    if not one.complete:
+    if one.doubts:
         return words(PROVES_NOTHING)
     unit, factor = shown_unit(one)
     deviation = factor * one.deviation

@@ -27,6 +27,7 @@ from typing import Literal, TypeAlias, get_args
 import numpy as np
 
 from core.errors import WrongValue
+from core.findings.proof import Doubt, Doubts, notes_of
 from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message, label
@@ -206,7 +207,15 @@ class CheckedQuantity:
 
     def verdict_of(self, reading: Reading) -> Verdict:
         """Decision on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
-        return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, complete=reading.u > 0)
+        doubts = self.doubts if reading.u <= 0 else ()
+        return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, doubts)
+
+    @property
+    def doubts(self) -> Doubts:
+        """That readings prove nothing whose artefact has no uncertainty; () where all have one."""
+        if all(reading.u > 0 for reading in self.readings):
+            return ()
+        return (Doubt.of(note_of("study.artefact_without_u", what=self.title)),)
 
     @property
     def verdict(self) -> Verdict:
@@ -244,8 +253,8 @@ class AcceptanceCheck:
                 said.append(
                     note_of("study.few_positions", what=one.title, n=one.positions, all=POSITIONS[one.quantity])
                 )
-            if one.limit is not None and not any(reading.u for reading in one.readings):
-                said.append(note_of("study.artefact_without_u", what=one.title))
+            if one.limit is not None:
+                said += notes_of(one.doubts)
         return tuple(said)
 
 

@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import WrongValue
+from core.findings.proof import Doubt, Doubts, notes_of
 from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, Zones, decide
 from core.messages import Message
@@ -157,21 +158,27 @@ class RepeatStudy:
         """
         if self.zones is None or self.nominal is None:
             return Verdict.NONE
-        zones, complete = self.zones, self.complete and not self.doubted
-        limits = Limits(self.nominal, zones.lower, zones.upper)
-        return decide(self.statistics.mean_mm, limits, zones.U, complete=complete, r=zones.r)
+        limits = Limits(self.nominal, self.zones.lower, self.zones.upper)
+        return decide(self.statistics.mean_mm, limits, self.zones.U, self.doubts, r=self.zones.r)
 
     @property
-    def notes(self) -> tuple[Message, ...]:
-        """What to know about the figures."""
+    def doubts(self) -> Doubts:
+        """By what facts the mean proves nothing."""
         said = []
         if self.doubted:
             said.append(note_of("study.doubted", names=self.doubted))
         if not self.complete:
             said.append(note_of("study.scatter_alone"))
+        return tuple(map(Doubt.of, said))
+
+    @property
+    def notes(self) -> tuple[Message, ...]:
+        """What to know about the figures."""
+        said = notes_of(self.doubts)
         if self.run is not None and self.run.outside:
-            said.append(note_of("study.beyond_run_chart", names=[self.labels[place] for place in self.run.outside]))
-        return tuple(said)
+            names = [self.labels[place] for place in self.run.outside]
+            said += (note_of("study.beyond_run_chart", names=names),)
+        return said
 
 
 @dataclass(frozen=True, slots=True)

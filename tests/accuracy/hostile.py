@@ -114,7 +114,7 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         "error": gauge.thickness_mm - scenario.height_mm,
         "U": gauge.U_mm,
         "verdict": str(gauge.verdict),
-        "complete": gauge.complete,
+        "complete": not gauge.doubts,
         "told": sorted(first),
         "first": first,
         "budget": {row.words.code: row.u_mm for row in gauge.budget},

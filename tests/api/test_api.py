@@ -147,7 +147,7 @@ def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
     )
     assert fan.scale_assumed and scan.facts.size_unconfirmed
     gauge = trisect.measure_thickness(scan, nominal_mm=50.0, tolerance_mm=5.0)
-    assert str(gauge.verdict) == "not proven" and SIZE_UNCONFIRMED in gauge.notes
+    assert str(gauge.verdict) == "not proven" and SIZE_UNCONFIRMED.note in gauge.notes
 
 
 def test_points_alone_prove_nothing(solved):
@@ -155,7 +155,7 @@ def test_points_alone_prove_nothing(solved):
     assert str(gauge.verdict) == "not proven"
     assert gauge.notes[0].code == "inspection.missing_in_u"
     inspection = trisect.measure_features(solved.cloud, [trisect.Feature("block", "thickness")])
-    assert not any(one.complete for one in inspection.characteristics)
+    assert not any(not one.doubts for one in inspection.characteristics)
 
 
 def test_surface_and_features_come_from_the_same_scan(solved):

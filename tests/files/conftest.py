@@ -73,4 +73,5 @@ def gauge(cloud):
         49.987, 0.012, 2.0, face(np.arange(20), 650.0), face(np.arange(25, 50), 700.0), 1e-4,
         (Contribution(cause_named("camera"), 0.01),), 50.0, 0.2,
         np.array([0, 0, 1.0]), plain("the rule"), (plain("a note"),),
+        doubts=(),
     )  # fmt: skip

@@ -4,10 +4,11 @@ import json
 from dataclasses import replace
 from unittest.mock import patch
 
+import numpy as np
 import pytest
 
 from core.files.results.scan_file import read_scan, write_scan
-from core.findings.proof import OF_SCAN
+from core.findings.proof import OF_SCAN, Doubt
 from core.messages import plain
 from tests.simulated import CUT, contents, copy_of, trisect
 
@@ -108,6 +109,8 @@ def test_a_fact_of_the_scan_takes_away_the_proof_and_so_does_its_lack(fact, hold
     scan = read_scan(out / "scan.npz")
     write_scan(out / "scan.npz", replace(scan, facts=replace(scan.facts, **{fact: holds})))
     assert again(wide[0], out, "gauge") == "not proven"
+    doubts = json.loads((out / "gauge.json").read_text(encoding="utf-8"))["doubts"]
+    assert doubts == [fact if holds else "scan_unknown"]
 
 
 def test_a_scan_whose_light_planes_have_collapsed_writes_nothing(wide, out):
@@ -119,7 +122,15 @@ def test_a_scan_whose_light_planes_have_collapsed_writes_nothing(wide, out):
     assert contents(out) == before
 
 
-def test_what_speaks_against_the_day_takes_away_the_proof_whatever_its_words(wide, out):
-    scan = read_scan(out / "scan.npz")
-    write_scan(out / "scan.npz", replace(scan, facts=replace(scan.facts, of_the_day=(plain("It was too warm."),))))
+@pytest.mark.parametrize("stripped", ["", "of_the_day", "of_the_day_facts"])
+def test_a_fact_of_the_day_takes_away_the_proof_whatever_its_words(stripped, wide, out):
+    """Without its note; and, as an earlier version wrote it, without its name."""
+    scan, path = read_scan(out / "scan.npz"), out / "scan.npz"
+    lapsed = Doubt("check_lapsed", plain("It was too long ago."))
+    write_scan(path, replace(scan, facts=replace(scan.facts, of_the_day=(lapsed,))))
+    if stripped:
+        with np.load(path) as arrays:
+            np.savez(path, **{name: array for name, array in arrays.items() if name != stripped})
     assert again(wide[0], out, "gauge") == "not proven"
+    (fact,) = json.loads((out / "gauge.json").read_text(encoding="utf-8"))["doubts"]
+    assert fact == ("of_the_day" if stripped == "of_the_day_facts" else "check_lapsed")

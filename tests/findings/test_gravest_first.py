@@ -7,7 +7,7 @@ from core.findings.proof import OF_SCAN
 from core.findings.table import gravest_first, is_grave
 from core.messages import Message, plain
 
-CHANGED, MOVED_WITHIN = OF_SCAN["rig_changed"], OF_SCAN["moved"]
+CHANGED, MOVED_WITHIN = OF_SCAN["rig_changed"].note, OF_SCAN["moved"].note
 ASSUMED, POINTLESS = plain("Assumed is a plate."), plain("5 frames gave no points.")
 
 

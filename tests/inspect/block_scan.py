@@ -12,6 +12,7 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.common_errors import CommonErrors
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.surface.cloud import FAN, Cloud
+from tests.scan_facts import NOTHING_WRONG
 
 FOCAL = 2495.0
 CENTRE = np.array([960.0, 687.0])
@@ -88,7 +89,7 @@ class BlockScan:
         common = self.common_errors(camera=1.0, fan=1.0) if common is None else common
         empty = np.zeros(0, dtype=np.int64)
         speckle = FanSpeckle(np.zeros((0, 2)), empty, empty, empty, np.zeros((0, 1)), np.zeros((len(covariance), 0)))
-        return PointErrors(covariance, common, stretch_px, stretch_px, speckle)
+        return PointErrors(covariance, common, stretch_px, stretch_px, speckle, facts=NOTHING_WRONG)
 
     def common_errors(self, **scales):
         """Calibrations that are one standard uncertainty off once they have scaled all of space by that much."""

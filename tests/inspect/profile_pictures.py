@@ -4,6 +4,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from core.calibrate.deviations import FANS, Deviation
 from core.image.stripes.centreline import Centreline
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera, Fan
@@ -12,6 +13,7 @@ from core.scan.common_errors import CommonErrors
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.triangulate import join, triangulate
 from core.simulate.rig import paper_rig
+from tests.scan_facts import NOTHING_WRONG
 
 RIG = paper_rig(0.25)
 NORMAL = np.array([0.03, 0.05, 1.0]) / np.linalg.norm([0.03, 0.05, 1.0])
@@ -53,7 +55,9 @@ def picture(
 
 def errors(fan: Fan = RIG.fan, camera: Camera = RIG.camera) -> PointErrors:
     """Of these points: noise alone, no calibration is wrong."""
-    return PointErrors(common=CommonErrors.of_fan(camera, fan, ()), speckle_px=CORRELATION_PX)
+    known = tuple(Deviation(source, camera, fan) for source in ("camera", FANS[0]))  # each known for sure
+    common = CommonErrors.of_fan(camera, fan, known)
+    return PointErrors(common=common, speckle_px=CORRELATION_PX, swept=False, facts=NOTHING_WRONG)
 
 
 def _noisy(uv: Array, noise_px: float, rng: np.random.Generator) -> Centreline:

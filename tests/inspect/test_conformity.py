@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 from scipy.special import ndtr
 
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits, Zones, decide
@@ -27,29 +28,29 @@ from core.model import LightPlane
     ],
 )
 def test_decision_rule(deviation, U, verdict):
-    assert decide(deviation, Limits(0, -0.2, 0.2), U) == verdict
+    assert decide(deviation, Limits(0, -0.2, 0.2), U, ()) == verdict
 
 
 @pytest.mark.parametrize(
-    ("value", "U", "complete"), [(math.nan, 0.1, True), (50.0, math.nan, True), (50.0, 0.1, False)]
+    ("value", "U", "doubts"), [(math.nan, 0.1, ()), (50.0, math.nan, ()), (50.0, 0.1, (Doubt.named("moved"),))]
 )
-def test_what_is_not_known_or_doubted_proves_nothing_whatever_the_numbers(value, U, complete):
-    assert decide(value, Limits(50, -0.2, 0.2), U, complete=complete) == "not proven"
-    assert decide(value, None, U, complete=complete) == ""
+def test_what_is_not_known_or_doubted_proves_nothing_whatever_the_numbers(value, U, doubts):
+    assert decide(value, Limits(50, -0.2, 0.2), U, doubts) == "not proven"
+    assert decide(value, None, U, doubts) == ""
 
 
 @pytest.mark.parametrize("tolerance", [0.0, -1.0])
 def test_a_thickness_has_no_tolerance_that_is_not_above_zero(tolerance):
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), np.arange(0), np.empty(0), 0.01, 0.01)
     with pytest.raises(ValueError, match="no decision"):
-        GaugeResult(50.0, 0.01, 2.0, face, face, 0.0, (), 50.0, tolerance)
+        GaugeResult(50.0, 0.01, 2.0, face, face, 0.0, (), 50.0, tolerance, doubts=())
 
 
 @pytest.mark.parametrize(("r", "risk"), [(1.0, 0.023), (0.83, 0.05), (0.0, 0.5)])
 def test_at_the_edge_of_the_conformance_zone_the_risk_is_that_of_ilac_g8(r, risk):
     zones = Zones(-math.inf, 0.2, 0.1, r)  # U = 0.1 of k = 2
     edge = zones.conformance[1]
-    assert decide(edge, Limits(0, -math.inf, 0.2), 0.1, r=r) == "conforming"
+    assert decide(edge, Limits(0, -math.inf, 0.2), 0.1, (), r=r) == "conforming"
     assert ndtr((edge - 0.2) / 0.05) == pytest.approx(risk, abs=0.002)  # u = U/2; JCGM 106:2012, clause 7
 
 
@@ -60,7 +61,7 @@ def test_the_zones_join_without_gap_and_decide_as_the_verdict_does():
     assert zones.nonconformance == pytest.approx((-0.24, 0.34))
     assert np.ravel(zones.uncertainty) == pytest.approx([-0.24, -0.16, 0.26, 0.34])
     for value, verdict in [(0.26, "conforming"), (0.27, "not proven"), (0.35, "not conforming"), (-0.17, "not proven")]:
-        assert decide(value, Limits(0, -0.2, 0.3), 0.05, r=0.8) == verdict
+        assert decide(value, Limits(0, -0.2, 0.3), 0.05, (), r=0.8) == verdict
 
 
 def test_one_limit_has_one_zone_of_uncertainty():
@@ -72,7 +73,7 @@ def test_an_uncertainty_wider_than_the_tolerance_proves_no_conformity_at_all():
     zones = Zones(-0.1, 0.1, 0.15)
     assert zones.conformance is None
     assert zones.uncertainty == (pytest.approx((-0.25, 0.25)),)
-    assert [decide(value, Limits(0, -0.1, 0.1), 0.15) for value in (0.0, 0.2, 0.3)] == [
+    assert [decide(value, Limits(0, -0.1, 0.1), 0.15, ()) for value in (0.0, 0.2, 0.3)] == [
         "not proven",
         "not proven",
         "not conforming",
@@ -124,4 +125,4 @@ def test_freedom_of_known_contributions_is_infinite_and_of_one_its_own():
     ],
 )
 def test_the_room_that_is_left_to_a_limit_tells_which_result_is_the_worst(value, limits, room):
-    assert Characteristic("one", "thickness", value, 0.01, limits=limits).room == pytest.approx(room)
+    assert Characteristic("one", "thickness", value, 0.01, limits=limits, doubts=()).room == pytest.approx(room)

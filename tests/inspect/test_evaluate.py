@@ -23,9 +23,11 @@ from core.inspect.plan.feature_spec import (
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.scan.surface.triangles import Triangles
 from tests.inspect.block_scan import NORMAL, TABLE_MM, BlockScan, axes
+from tests.scan_facts import NOTHING_WRONG
 
 BLOCK = BlockScan(sweeps=24)
 ERRORS = BLOCK.errors(12.0)
+UNCONFIRMED = replace(NOTHING_WRONG, size_unconfirmed=True)
 TOP, TABLE = (Polygon(tuple((float(u), float(v)) for u, v in polygon)) for polygon in BLOCK.polygons)
 PLANES = (FeatureSpec("top", "plane", (TOP,)), FeatureSpec("table", "plane", (Auto(1),)))
 DERIVED = (
@@ -177,7 +179,7 @@ def test_flatness_scatters_as_much_as_its_uncertainty_says():
 
 
 def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_the_target_is_assumed(cloud):
-    doubted = replace(ERRORS, size_unconfirmed=True)
+    doubted = replace(ERRORS, facts=UNCONFIRMED)
     master = Master("M", 40.0, 1e-3, 40.001, ((Cause.POINT_NOISE, 1e-3),), ("height",))
     plan = InspectionPlan(
         (
@@ -189,7 +191,7 @@ def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_th
     )
     sure, found = rows(evaluate(plan, cloud, errors=ERRORS)), rows(evaluate(plan, cloud, errors=doubted))
     assert found["height distance"].verdict == sure["height distance"].verdict == Verdict.CONFORMING
-    assert not found["block thickness"].complete
+    assert found["block thickness"].doubts
     for other in (replace(master, measured_mm=60.0), replace(master, same_calibration=False)):
         of_other = rows(evaluate(replace(plan, master=other), cloud, errors=doubted))
         assert of_other["height distance"].verdict == Verdict.NOT_PROVEN
@@ -198,6 +200,6 @@ def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_th
 def test_a_doubt_that_comes_or_goes_has_all_measured_again(cloud):
     plan = InspectionPlan(PLANES)
     before = evaluate(plan, cloud, errors=ERRORS)
-    after = evaluate(plan, cloud, errors=replace(ERRORS, size_unconfirmed=True), previous=before)
-    assert [row.complete for row in before.characteristics] == [True] * len(after.characteristics)
-    assert [row.complete for row in after.characteristics] == [False] * len(after.characteristics)
+    after = evaluate(plan, cloud, errors=replace(ERRORS, facts=UNCONFIRMED), previous=before)
+    assert [not row.doubts for row in before.characteristics] == [True] * len(after.characteristics)
+    assert [not row.doubts for row in after.characteristics] == [False] * len(after.characteristics)

@@ -165,7 +165,7 @@ def test_the_datums_are_in_its_uncertainty_and_only_an_upper_limit_counts():
     found = inspection.characteristics[-1]
     assert found.value == pytest.approx(1.0, abs=1e-6)
     assert found.verdict == Verdict.NOT_PROVEN, "these points know nothing of camera and fan"
-    assert replace(found, complete=True).verdict == Verdict.CONFORMING
+    assert replace(found, notes=(), doubts=()).verdict == Verdict.CONFORMING
     ball = inspection.result("ball").element
     across = inspection.pose_camera_part.rotation[:, 1]
     assert found.u > 1.2 * combined(budget_of([(2 * across @ ball.position_gradient, ball.effects)]))

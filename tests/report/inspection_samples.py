@@ -46,14 +46,14 @@ def characteristics():
     rule = RULE
     rows = [
         Characteristic("block thickness", "thickness", 50.0123, u, k=2.05, limits=Limits(50, -0.2, 0.2), budget=budget,
-                       rule=rule, notes=(STATED,), at_20=True),
-        Characteristic("top flatness", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05)),
+                       rule=rule, notes=(STATED,), at_20=True, doubts=()),
+        Characteristic("top flatness", "flatness", 0.031, 0.004, limits=Limits(0, -INF, 0.05), doubts=()),
         Characteristic("top to side", "angle", math.radians(89.95), math.radians(0.02), "angle",
                        limits=Limits(math.radians(90), math.radians(-0.06), math.radians(0.06)),
-                       budget=(Contribution(cause_named("camera calibration"), math.radians(0.02)),)),
-        Characteristic("step 2 height", "height", 10.2, 0.01, limits=Limits(10, -0.05, 0.05)),
-        Characteristic("ball diameter", "diameter", 24.98, 0.02),
-        Characteristic("unknown", "distance", math.nan, math.nan, limits=Limits(3, -INF, 0.03)),
+                       budget=(Contribution(cause_named("camera calibration"), math.radians(0.02)),), doubts=()),
+        Characteristic("step 2 height", "height", 10.2, 0.01, limits=Limits(10, -0.05, 0.05), doubts=()),
+        Characteristic("ball diameter", "diameter", 24.98, 0.02, doubts=()),
+        Characteristic("unknown", "distance", math.nan, math.nan, limits=Limits(3, -INF, 0.03), doubts=()),
     ]  # fmt: skip
     return tuple(rows)
 

@@ -83,6 +83,7 @@ def gauge(cloud, block, **changes):
         "budget": budget,
         "nominal_mm": 50.0,
         "tolerance_mm": 0.2,
+        "doubts": (),
     }
     return GaugeResult(**(given | changes))
 

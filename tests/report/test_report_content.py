@@ -64,13 +64,13 @@ def test_notes_of_gauge_and_calibrations_are_printed_once(content):
 
 
 def test_a_change_of_the_rig_is_printed_first_and_in_red(content):
-    changed = replace(content, notes=(*content.notes, OF_SCAN["rig_changed"]))
-    assert changed.all_notes[0] == OF_SCAN["rig_changed"]
+    changed = replace(content, notes=(*content.notes, OF_SCAN["rig_changed"].note))
+    assert changed.all_notes[0] == OF_SCAN["rig_changed"].note
     prepare_reportlab()
     (section,) = warnings(ReportLook(Words(ENGLISH), ACCENT), changed, LIMITS[0])
     told = [one for one in section._content if isinstance(one, Paragraph) and one.style.name in ("alarm", "bullet")]
     assert [one.style.textColor == color(ALARM) for one in told] == [True] + [False] * (len(changed.all_notes) - 1)
-    assert told[0].getPlainText() == str(OF_SCAN["rig_changed"])
+    assert told[0].getPlainText() == str(OF_SCAN["rig_changed"].note)
 
 
 def test_overlay_refuses_what_does_not_fit_together():

@@ -148,7 +148,7 @@ def test_the_worst_of_each_feature_is_called_out_on_the_surface_with_value_U_and
     assert len(dimensions) == 2 and len(boxes) == 3
     assert not any(box.overlaps(text.get_window_extent()) for box in boxes for text in dimensions)
     many = {f"f{n}": np.arange(n, n + 5) for n in range(30)}
-    rows = tuple(Characteristic(f"f{n} flatness", "flatness", 0.1, 0.01) for n in range(30))
+    rows = tuple(Characteristic(f"f{n} flatness", "flatness", 0.1, 0.01, doubts=()) for n in range(30))
     crowded = replace(content, inspected=rows, points=many, features={f"f{n} flatness": f"f{n}" for n in range(30)})
     assert len(callouts(look, crowded)) == MOST_CALLOUTS
 
@@ -336,7 +336,9 @@ def test_no_cell_is_cut_whatever_stands_in_it(quick, name, paper):
     limits = Limits(50.123456, -0.123456, 123.456789)
     budget = (Contribution(name, 0.004, 12.5, "rectangular", 7.5, 123456.789, "°C"),)
     rows = tuple(
-        Characteristic(f"{name} {n}", "thickness", 50.1, 0.004, limits=limits, budget=budget, rule=plain(name))
+        Characteristic(
+            f"{name} {n}", "thickness", 50.1, 0.004, limits=limits, budget=budget, rule=plain(name), doubts=()
+        )
         for n in range(3)
     )
     template = ReportTemplate(name=name, address=(name,), footer=name, text=name, signatures=(name, name, name, name))
@@ -368,7 +370,7 @@ def test_one_result_alone_fills_the_box_whatever_is_asked_of_it(quick):
         (Limits(0.0, -0.1, math.inf), "Tolerance at least −0.1"),
         (None, "without a verdict"),
     ):
-        one = Characteristic("top flatness", "flatness", 0.031, 0.004, limits=limits)
+        one = Characteristic("top flatness", "flatness", 0.031, 0.004, limits=limits, doubts=())
         text = words(build_report(replace(quick, gauge=None, inspected=(one,)))).replace("\u00a0", " ")
         assert "top flatness 0.0310 mm ± 0.0080 mm (k = 2)" in text
         assert expected in " ".join(text.split()) or expected.replace("Tolerance ", "") in text

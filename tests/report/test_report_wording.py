@@ -30,7 +30,7 @@ from core.translations import PSEUDO
 
 def gauge(thickness, u, k=2.0, **more):
     face = Face(LightPlane([0, 0, 0.002]), np.zeros(0, np.int64), np.zeros(0), 0.0, 0.0)
-    return GaugeResult(thickness, u, k, face, face, 0.0, (), **more)
+    return GaugeResult(thickness, u, k, face, face, 0.0, (), **({"doubts": ()} | more))
 
 
 @pytest.mark.parametrize(
@@ -111,7 +111,7 @@ INF = math.inf
     ],
 )
 def test_permitted_deviations_are_said_as_they_are_asked(limits, english, german):
-    one = Characteristic("a", "thickness", 50.0, 0.01, limits=limits)
+    one = Characteristic("a", "thickness", 50.0, 0.01, limits=limits, doubts=())
     assert (tolerance_words(one), tolerance_words(one, Words.of("de"))) == (english, german)
 
 
@@ -125,14 +125,14 @@ def test_permitted_deviations_are_said_as_they_are_asked(limits, english, german
     ],
 )
 def test_under_its_feature_a_result_is_called_by_its_kind_or_by_its_users_name(name, kind, english, chinese, pseudo):
-    one = Characteristic(name, kind, 50.0, 0.01)
+    one = Characteristic(name, kind, 50.0, 0.01, doubts=())
     said = [name_within(one, "block", Words.of(language)) for language in ("en", "zh_CN", PSEUDO)]
     assert said == [english, chinese, pseudo]
 
 
 def test_an_angle_is_said_in_degrees():
     limits = Limits(math.radians(90), math.radians(-0.2), math.radians(0.2))
-    one = Characteristic("a", "angle", math.radians(89.95), math.radians(0.02), "angle", limits=limits)
+    one = Characteristic("a", "angle", math.radians(89.95), math.radians(0.02), "angle", limits=limits, doubts=())
     assert value_line(one) == "89.950° ± 0.040° (k = 2)"
     assert tolerance_words(one) == "±0.2°"
     assert "deviation of 0.050° from the nominal value, enlarged by U = 0.040°" in decision_sentence(one)
@@ -165,9 +165,9 @@ def test_very_small_values_are_said_with_a_power_of_ten():
     ],
 )
 def test_what_a_result_is_stands_in_the_reports_language_and_names_that_people_gave_stay(name, kind, german):
-    assert shown_name(Characteristic(name, kind, 1.0, 0.1), Words.of("de")) == german
+    assert shown_name(Characteristic(name, kind, 1.0, 0.1, doubts=()), Words.of("de")) == german
 
 
 def test_a_name_that_begins_a_line_is_a_title_but_not_one_that_somebody_typed():
-    assert headed_name(Characteristic("thickness", "thickness", 50.0, 0.1)) == "Thickness"
-    assert headed_name(Characteristic("top flatness", "flatness", 0.1, 0.1)) == "top flatness"
+    assert headed_name(Characteristic("thickness", "thickness", 50.0, 0.1, doubts=())) == "Thickness"
+    assert headed_name(Characteristic("top flatness", "flatness", 0.1, 0.1, doubts=())) == "top flatness"

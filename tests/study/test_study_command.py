@@ -8,6 +8,7 @@ import pytest
 
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import LightPlane
@@ -29,12 +30,12 @@ def of_values(folder, values, head="value"):
     return table(folder, "\n".join([head, *map(str, values)]))
 
 
-def results(folder, thickness, u=0.01, budget=None, complete=True):
+def results(folder, thickness, u=0.01, budget=None, doubts=()):
     """A folder as `trisect run` leaves it, as far as a study reads it."""
     folder.mkdir()
     face = Face(LightPlane.from_normal([0, 0, 1.0], 600.0), NO_POINTS, np.empty(0), 0.01, 0.01)
     rows = (Contribution(Cause.CAMERA, u),) if budget is None else budget
-    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, complete=complete)
+    gauge = GaugeResult(thickness, u, 2.0, face, face, 0.0, rows, 50.0, 0.2, doubts=doubts)
     write_gauge(folder / "gauge.json", gauge, "abc")
     return folder
 
@@ -78,7 +79,7 @@ def test_the_exit_code_of_repeats_is_that_of_their_verdict(tmp_path, u, verdict,
 
 
 def test_a_repeat_of_a_rig_that_surely_changed_takes_its_proof_from_the_mean(tmp_path):
-    sure, doubted = results(tmp_path / "a", 50.001), results(tmp_path / "b", 50.002, complete=False)
+    sure, doubted = results(tmp_path / "a", 50.001), results(tmp_path / "b", 50.002, doubts=(Doubt.named("moved"),))
     said = json.loads(trisect("study", "repeats", sure, doubted, "--json").out)
     assert (said["verdict"], said["doubted"]) == ("not proven", ["b"])
     assert any("b prove" in note["text"] for note in said["notes"])

@@ -30,6 +30,7 @@ from core.files.tables import (
     kept,
     row_tables,
 )
+from core.findings.proof import doubts_named, notes_beside
 from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.results import Contribution, Corners, Face, GaugeResult, PairCandidate
 from core.messages import Command, Message
@@ -106,6 +107,7 @@ class _GaugeFile(ResultFile):
     nominal_mm: Finite | None = None
     tolerance_mm: Finite | None = Field(default=None, gt=0, description="a length in mm above 0")
     complete: bool = False
+    doubts: list[str] = Field(default_factory=list)
     at_20: bool | None = None
     rule: OptionalMessage = None
     normal: Row3 | None = None
@@ -140,7 +142,8 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
         to_json(
             {
                 **gauge_summary(gauge),
-                "complete": gauge.complete,
+                "complete": not gauge.doubts,
+                "doubts": [doubt.fact for doubt in gauge.doubts],
                 "at_20": gauge.at_20,
                 "rule": kept(gauge.rule),
                 "notes": [kept(note) for note in gauge.notes],
@@ -159,8 +162,9 @@ def write_gauge(path: Path, gauge: GaugeResult, calibration_id: str) -> None:
 def read_gauge(path: Path, cloud: Cloud) -> GaugeResult:
     """Read gauge.json with the faces' points among those of `cloud`.
 
-    The file's `verdict` is for other programs and is not read: it follows anew from the numbers and `complete`, so that
-    no file, of an earlier version or changed by hand, says more than they prove; one without `complete` proves nothing.
+    The file's `verdict` is for other programs and is not read: it follows anew from the numbers and `doubts`, so that
+    no file, of an earlier version or changed by hand, says more than they prove; one that does not say that it is
+    `complete` proves nothing.
 
     Raises
     ------
@@ -179,6 +183,7 @@ def read_thickness(path: Path) -> Characteristic:
 
 def _gauge(file: _GaugeFile, members: dict[str, NDArray[np.int64]], points: Array) -> GaugeResult:
     """What a file says, its faces with the `members` among `points` (N, 3)."""
+    doubts = doubts_named(file.doubts, complete=file.complete)
     return GaugeResult(
         thickness_mm=file.thickness_mm,
         u_mm=file.u_mm,
@@ -189,11 +194,11 @@ def _gauge(file: _GaugeFile, members: dict[str, NDArray[np.int64]], points: Arra
         budget=tuple(row.row() for row in file.budget),
         nominal_mm=file.nominal_mm,
         tolerance_mm=file.tolerance_mm,
-        complete=file.complete,
+        doubts=doubts,
         at_20=file.at_20,
         normal=None if file.normal is None else np.array(file.normal),
         rule=file.rule,
-        notes=tuple(file.notes),
+        notes=notes_beside(doubts, file.notes),
         candidates=tuple(one.candidate() for one in file.candidates),
     )
 

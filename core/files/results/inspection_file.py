@@ -20,6 +20,7 @@ from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, KeptMessage, OptionalMessage, ResultFile, kept, row_tables
+from core.findings.proof import doubts_named, notes_beside
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.evaluate import Inspection
@@ -119,6 +120,7 @@ class _Characteristic(ResultFile):
     limits: _Limits | None = None
     control_frame: _ControlFrame | None = None
     complete: bool = False
+    doubts: list[str] = Field(default_factory=list)
     at_20: bool | None = None
     rule: OptionalMessage = None
     notes: list[KeptMessage] = Field(default_factory=list)
@@ -239,7 +241,8 @@ def _row(row: Characteristic, feature: str, frame: ControlFrame | None) -> dict[
         "control_frame": None if frame is None else asdict(frame),
         "deviation": row.deviation,
         "verdict": row.verdict,
-        "complete": row.complete,
+        "complete": not row.doubts,
+        "doubts": [doubt.fact for doubt in row.doubts],
         "at_20": row.at_20,
         "rule": kept(row.rule),
         "notes": [kept(note) for note in row.notes],
@@ -281,6 +284,7 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
                 todo=AGAIN,
             )
         limits = Limits(row.limits.nominal, lower, upper)
+    doubts = doubts_named(row.doubts, complete=row.complete)
     return Characteristic(
         name=row.name,
         kind=row.kind,
@@ -291,7 +295,7 @@ def _characteristic(row: _Characteristic, path: Path) -> Characteristic:
         limits=limits,
         budget=tuple(one.row() for one in row.budget),
         rule=row.rule,
-        notes=tuple(row.notes),
-        complete=row.complete,
+        notes=notes_beside(doubts, row.notes),
         at_20=row.at_20,
+        doubts=doubts,
     )

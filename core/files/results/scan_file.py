@@ -7,6 +7,7 @@ thickness, without its pictures.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
+from itertools import zip_longest
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,8 @@ from core.files.arrays_file import (
     wrong_shape,
 )
 from core.files.results.scan_features import FEATURES_MEMBERS, pack_features, unpack_features
-from core.findings.proof import ScanFacts
+from core.findings.of_proof import DAY
+from core.findings.proof import Doubt, Doubts, ScanFacts, notes_of
 from core.inspect.causes import CALIBRATIONS
 from core.messages import Command, Message
 from core.model.arrays import Array
@@ -59,6 +61,7 @@ _MEMBERS = {
     "crossings_used": real(None, 2),
     **{f"fact_{name}": truth(optional=True) for name in _FACTS},
     "of_the_day": texts(None, optional=True),
+    "of_the_day_facts": texts(None, optional=True),
     "unsure_share": real(optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "common_sources": texts(None, optional=True),
@@ -141,7 +144,8 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "shown": np.array(_NO_FRAME if scan.shown is None else scan.shown),
         "crossings_used": scan.crossings_used,
         **{f"fact_{name}": np.array(getattr(scan.facts, name)) for name in _known(scan.facts)},
-        "of_the_day": pack_messages(scan.facts.of_the_day),
+        "of_the_day": pack_messages(notes_of(scan.facts.of_the_day)),
+        "of_the_day_facts": pack_texts([doubt.fact for doubt in scan.facts.of_the_day]),
         "unsure_share": np.array(scan.unsure_share),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
@@ -198,8 +202,20 @@ def _known(facts: ScanFacts) -> list[str]:
 
 def _facts(arrays: Arrays) -> ScanFacts:
     known = {name: bool(arrays[f"fact_{name}"]) for name in _FACTS if f"fact_{name}" in arrays}
-    of_the_day = unpack_messages(arrays["of_the_day"]) if "of_the_day" in arrays else []
-    return ScanFacts(**known, of_the_day=tuple(filter(None, of_the_day)))
+    return ScanFacts(**known, of_the_day=_of_the_day(arrays))
+
+
+def _of_the_day(arrays: Arrays) -> Doubts:
+    """The facts of the day, each with its note if there is one; of an earlier version's file notes alone."""
+    notes = unpack_messages(arrays["of_the_day"]) if "of_the_day" in arrays else []
+    if "of_the_day_facts" not in arrays:
+        return tuple(Doubt(DAY, note) for note in notes if note is not None)
+    named = map(Doubt.named, unpack_texts(arrays["of_the_day_facts"]))
+    return tuple(
+        doubt if note is None else Doubt(doubt.fact, note)
+        for doubt, note in zip_longest(named, notes)
+        if doubt is not None
+    )
 
 
 def _common(arrays: Arrays, image_size: tuple[int, int]) -> CommonErrors | None:

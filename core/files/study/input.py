@@ -258,7 +258,7 @@ def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> 
         tuple(one.budget for one in found) if all(one.budget for one in found) else (),
         units.pop(),
         found[0].limits if all(one.limits == found[0].limits for one in found) else None,
-        tuple(label for label, one in zip(labels, found, strict=True) if not one.complete),
+        tuple(label for label, one in zip(labels, found, strict=True) if one.doubts),
     )
 
 

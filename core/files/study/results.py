@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 from core.errors import InputError
 from core.files.results.folder_results import read_results
+from core.findings.proof import Doubts
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.results import Contribution
@@ -28,8 +29,8 @@ class Measured:
         What u is made of.
     limits
         What was asked of it, in `unit`; None for nothing.
-    complete
-        Whether u holds all that is known to act on it; else it proves nothing.
+    doubts
+        By what facts it proves nothing.
     """
 
     value: float
@@ -38,7 +39,7 @@ class Measured:
     budget: tuple[Contribution, ...]
     unit: str
     limits: Limits | None = None
-    complete: bool = True
+    doubts: Doubts = field(kw_only=True)
 
 
 def measured_in(folder: Path, name: str) -> Measured:
@@ -53,12 +54,12 @@ def measured_in(folder: Path, name: str) -> Measured:
     if not math.isfinite(found.value) or not math.isfinite(found.u):
         raise InputError(Message("study.unknown_quantity", "the {name} is not known", name=name), where=folder)
     if found.quantity == "length":
-        return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits, found.complete)
+        return Measured(found.value, found.u, found.k, found.budget, "mm", found.limits, doubts=found.doubts)
     degree = math.degrees(1.0)
     rows = tuple(replace(row, u_mm=row.u_mm * degree) for row in found.budget)
     asked = found.limits
     limits = None if asked is None else Limits(asked.nominal * degree, asked.lower * degree, asked.upper * degree)
-    return Measured(found.value * degree, found.u * degree, found.k, rows, "deg", limits, found.complete)
+    return Measured(found.value * degree, found.u * degree, found.k, rows, "deg", limits, doubts=found.doubts)
 
 
 def _find(folder: Path, name: str) -> Characteristic:

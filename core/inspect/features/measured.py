@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.proof import Doubts, notes_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.fit.elements import Element
 from core.inspect.fit.plane_search import FoundPlane, find_planes
@@ -22,7 +23,7 @@ from core.inspect.shown.deviation_map import DeviationMap
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.point_errors import PointErrors
-from core.inspect.uncertainty.skewed_light import doubt_of_light
+from core.inspect.uncertainty.skewed_light import doubts_of_light
 from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
@@ -145,13 +146,14 @@ class Scene:
         result: str = "",
         rule: Message | None,
         notes: tuple[Message, ...] = (),
-        doubts: tuple[Message, ...] = (),
+        doubts: Doubts = (),
     ) -> Characteristic:
         """A row for `result` (its kind if nothing else is said) of a feature: "ball diameter".
 
-        It proves nothing because of the `doubts` of its points; a doubt of their light is seen in its budget.
+        It proves nothing by the doubts of the scan, nor by the `doubts` of its points; one of their light is seen in
+        its budget. Its notes tell of all but those of the scan.
         """
-        result, of_light = result or kind, doubt_of_light(budget)
+        result, own = result or kind, (*doubts, *doubts_of_light(budget))
         return Characteristic(
             name=f"{spec.name} {result}",
             kind=kind,
@@ -162,9 +164,8 @@ class Scene:
             limits=spec.limits_of(result),
             budget=budget,
             rule=rule,
-            notes=(*doubts, *([of_light] if of_light else []), *notes),
-            complete=self.errors.complete and of_light is None and not doubts,
-            doubts=doubts,
+            notes=(*notes_of(own), *notes),
+            doubts=(*self.errors.doubts, *own),
         )
 
 

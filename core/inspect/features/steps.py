@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from core.errors import InputError
+from core.findings.proof import Doubt
 from core.inspect.faces import PARALLEL, SMALLEST_MM2
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import Indices, face_in
@@ -40,7 +41,7 @@ def measure_steps(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     names = [level(number + 1) for number in range(len(faces))]
     notes = notes_on_form(scene.cloud, indices, fit.shape, scene.errors, names, part)
     alone = [name for name, spans in zip(names, fit.faces_spanned, strict=True) if not spans]
-    doubts = (faces_not_spanned(alone),) if alone else ()
+    doubts = (Doubt.of(faces_not_spanned(alone)),) if alone else ()
     rows = []
     for upper in range(1, len(faces)):
         lower = 0 if spec.over == "lowest" else upper - 1

@@ -21,10 +21,8 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     gauge = measure_gauge(
         scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress
     )
-    row = scene.characteristic(
-        spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule, doubts=gauge.doubts
-    )
-    row = replace(row, notes=gauge.notes)  # these hold the doubts
+    row = scene.characteristic(spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule)
+    row = replace(row, notes=gauge.notes, doubts=gauge.doubts)
     faces = (gauge.upper, gauge.lower)
     indices = np.concatenate([face.indices for face in faces])
     part = np.repeat([0, 1], [len(face.indices) for face in faces])

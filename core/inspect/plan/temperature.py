@@ -49,7 +49,7 @@ def at_reference(length: Characteristic, temperature: Temperature) -> Characteri
     Examples
     --------
     >>> hot = Temperature(part_celsius=30.0, u_part_celsius=0.5, alpha=11.5e-6, u_alpha=1e-6)
-    >>> cold = at_reference(Characteristic("bar", "thickness", 100.0, 0.001), hot)
+    >>> cold = at_reference(Characteristic("bar", "thickness", 100.0, 0.001, doubts=()), hot)
     >>> round(cold.value, 6), [round(row.u_mm, 6) for row in cold.budget]
     (99.9885, [0.000575, 0.001])
     """

@@ -11,13 +11,13 @@ Every point lies on the known ray r of its pixel, so noise can only move its dep
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.deviations import FANS, UNEXPLAINED, Source
-from core.findings.proof import SIZE_UNCONFIRMED, ScanFacts
+from core.findings.proof import SCAN_UNKNOWN, Doubt, Doubts, ScanFacts
 from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.inspect.causes import CALIBRATIONS, Cause
@@ -53,11 +53,9 @@ class PointErrors:
         What the fan's points and the sweeps have in common; None: taken for independent of each other.
     stripe_px
         σ of the light's sections in the picture; 0: not known. On a curved surface they are uneven.
-    doubts
-        Why nothing measured proves conformity, however small its uncertainty; (): nothing speaks against it.
-    size_unconfirmed
-        Whether the target's size is neither stated nor confirmed: nothing proves conformity but a comparison with a
-        master, in which it cancels.
+    facts
+        Of the scan: what decides whether anything measured in it can prove conformity. None: not known, which proves
+        nothing.
     """
 
     sweep_covariance: Array | None = None
@@ -66,8 +64,7 @@ class PointErrors:
     speckle_px: float = 12.0
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
-    doubts: tuple[Message, ...] = ()
-    size_unconfirmed: bool = False
+    facts: ScanFacts | None = None
     part: Part | None = None
     """What is stated of the part; None: it is as opaque and as cold as it need be."""
     sweep_size: int = 3
@@ -78,20 +75,13 @@ class PointErrors:
     """Whether any points lie on the light planes of sweeps; False: all are the fan's."""
 
     @property
-    def complete(self) -> bool:
-        """Whether uncertainties hold all that is known to act on the points; else they prove nothing."""
-        return not self.all_doubts
-
-    @property
-    def all_doubts(self) -> tuple[Message, ...]:
-        """The doubts, with that of the target's size and of what uncertainties do not hold."""
+    def doubts(self) -> Doubts:
+        """Why nothing measured in the scan proves anything: by its facts, and by what uncertainties do not hold."""
         missing = self.missing()
-        size = (SIZE_UNCONFIRMED,) if self.size_unconfirmed else ()
-        return (*self.doubts, *size, *([note_of("inspection.missing_in_u", missing=missing)] if missing else []))
-
-    def doubted_by(self, facts: ScanFacts) -> PointErrors:
-        """The same errors with the doubts of their scan; a size that is not known is unconfirmed."""
-        return replace(self, doubts=facts.doubts, size_unconfirmed=facts.size_unconfirmed is not False)
+        of_u = (Doubt.of(note_of("inspection.missing_in_u", missing=missing)),) if missing else ()
+        if self.facts is None:
+            return of_u or (SCAN_UNKNOWN,)
+        return (*self.facts.doubts, *of_u)
 
     @classmethod
     def of_scan(

@@ -30,12 +30,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from core.findings.proof import Doubt, Doubts
 from core.findings.table import note_of
 from core.inspect.causes import FROM_BELOW, Cause
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.coverage import COVERAGE
 from core.inspect.uncertainty.part import Part
-from core.messages import Message
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
 
@@ -177,10 +177,10 @@ def light_below(cloud: Cloud, part: NDArray[np.int64], direction: Array, stated:
     return LightBelow(farthest, unseen)
 
 
-def doubt_of_light(budget: Sequence[Contribution]) -> Message | None:
-    """Why a value with this budget proves nothing, if skewed light makes up much of it."""
+def doubts_of_light(budget: Sequence[Contribution]) -> Doubts:
+    """Why a value with this budget proves nothing, if skewed light makes up much of it; else ()."""
     skewed = [row.u_mm for row in budget if row.source is Cause.SKEWED_LIGHT]
     rest = [row.u_mm for row in budget if row.source not in {Cause.SKEWED_LIGHT, *FROM_BELOW}]
     if not skewed or max(skewed) <= SHARE_THAT_MATTERS * math.hypot(*rest):
-        return None
-    return note_of("inspection.light_is_skewed")
+        return ()
+    return (Doubt.of(note_of("inspection.light_is_skewed")),)

@@ -167,7 +167,7 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    return errors.doubted_by(scan.facts)
+    return replace(errors, facts=scan.facts)
 
 
 class Thickness(NamedTuple):

@@ -21,7 +21,7 @@ from core.files.step_graph import resting_on
 from core.findings.table import note_of
 from core.image.exclusion import Reason, message_of
 from core.inspect.face_region import inside_polygon
-from core.inspect.gauge import adjusted, doubted
+from core.inspect.gauge import adjusted
 from core.inspect.results import GaugeResult
 from core.inspect.step_height import KnownTilt, Step, measure_steps, profile_axes, step_of
 from core.inspect.uncertainty.point_errors import PointErrors
@@ -117,10 +117,10 @@ def profile_step(
             if not seen:  # pictures of one place have one speckle: together they tell no more than the first
                 section = section_change(work, calibration, profiles.pieces)
                 common = CommonErrors.of_fan(camera, fan, (*change.deviations, *section.deviations))
+                facts = facts_of(facts_of_the_day(work, calibration), change, section)
             seen.append(profiles)
-            step = step_of(
-                _within(profiles.cloud, spec), replace(PointErrors.of_fan(profiles.pieces, common), part=part), known
-            )
+            errors = replace(PointErrors.of_fan(profiles.pieces, common), part=part, facts=facts)
+            step = step_of(_within(profiles.cloud, spec), errors, known)
             pictures.append(_row(index, name, step))
             steps += [] if isinstance(step, Message) else [step]
         progress("profiles", len(paths), len(paths))
@@ -134,11 +134,8 @@ def profile_step(
         )
         shown = next(one for one in steps if one.faces.planes.normal is gauge.normal)
         cloud = _cloud(seen, shown.frame, common)
-        facts = facts_of(facts_of_the_day(work, calibration), change, section)
         gauge = adjusted(gauge, part.thicker_mm, part.surface_rows, part.surface_notes)
         gauge = of_part(gauge, part)
-        for doubt in reversed(steps[0].errors.doubted_by(facts).all_doubts):
-            gauge = doubted(gauge, doubt)
         notes = (
             *channel.notes("scan"),
             *change.notes,

@@ -15,7 +15,7 @@ from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
 from core.files.results.rig_history import PastCheck, RigHistory, read_history
 from core.files.results.run_file import RunRecord
-from core.findings.proof import ScanFacts
+from core.findings.proof import Doubt, ScanFacts
 from core.findings.table import note_of
 from core.messages import Message
 from core.pipeline.steps.target_sizes import with_known_size
@@ -49,13 +49,13 @@ def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
         checks = history_of(recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError as error:
         unreadable = note_of("validity.history_unreadable", reason=error.message)
-        return replace(facts, of_the_day=(unreadable,))
+        return replace(facts, of_the_day=(Doubt.of(unreadable),))
     if fan.readjusted is not None:
         checks = (*checks, _as_check(fan.readjusted, calibration.id))
     nearest = _nearest(checks, when)
     if nearest is not None and nearest.verdict == "failed":
         failed = note_of("validity.check_failed", date=nearest.taken_at.astimezone())
-        return replace(facts, of_the_day=(failed,))
+        return replace(facts, of_the_day=(Doubt.of(failed),))
     lapsed = (
         _calibration_lapsed(recording_set, work.record(), when),
         _check_lapsed(recording_set.rig, nearest, when),
@@ -63,7 +63,7 @@ def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
     artefact = _passed_artefact(recording_set.rig, checks, when)
     if artefact is not None and _left_possible(artefact) <= fan.scale_sd:
         facts = replace(facts, points_off_alike=False)
-    return replace(facts, of_the_day=tuple(why for why in lapsed if why is not None))
+    return replace(facts, of_the_day=tuple(Doubt.of(why) for why in lapsed if why is not None))
 
 
 def facts_of_planes(fan: FanCalibration) -> ScanFacts:

@@ -85,8 +85,8 @@ def test_a_measurement_leads_to_what_was_asked(document):
     ],
 )
 def test_a_tolerance_zone_has_qifs_own_kind_in_the_order_of_its_schema(tmp_path, content, kind, called, sign, shape):
-    asked = Characteristic(f"top {kind}", kind, 0.03, 0.004, limits=Limits(0.0, -math.inf, 0.1))
-    free = Characteristic(f"side {kind}", kind, 0.03, 0.004)
+    asked = Characteristic(f"top {kind}", kind, 0.03, 0.004, limits=Limits(0.0, -math.inf, 0.1), doubts=())
+    free = Characteristic(f"side {kind}", kind, 0.03, 0.004, doubts=())
     frames = {asked.name: ControlFrame(kind, 0.1, sign)}
     write_qif(tmp_path / "r.qif", replace(content, gauge=None, inspected=(asked, free), control_frames=frames))
     document = etree.parse(tmp_path / "r.qif").getroot()

@@ -16,6 +16,7 @@ from core.model.arrays import Array
 from core.scan.surface.cloud import FAN, Cloud
 from tests.inspect.block_scan import BlockScan
 from tests.inspect.shape_scan import BALL, PIN, ShapeScan
+from tests.scan_facts import NOTHING_WRONG
 
 BLOCK = BlockScan(height=30.0, sweeps=24)
 ERRORS = BLOCK.errors()
@@ -68,7 +69,7 @@ def test_a_thickness_of_a_plan_proves_nothing_either_even_by_a_master(monkeypatc
     limits = (("thickness", Limits(30.0, -1.0, 1.0)),)
     master = Master("gauge block", 30.0, 0.001, 30.0, (), ("thick",))
     plan = InspectionPlan((FeatureSpec("thick", "thickness", limits=limits),), master=master)
-    errors = replace(ERRORS, size_unconfirmed=True)
+    errors = replace(ERRORS, facts=replace(NOTHING_WRONG, size_unconfirmed=True))
     assert evaluate(plan, scan(), errors=errors).verdict == Verdict.CONFORMING
     monkeypatch.setattr("core.inspect.features.thickness._faces", lambda spec, scene: pair)
     (row,) = evaluate(plan, cloud, errors=errors).characteristics

@@ -12,7 +12,7 @@ from core.inspect.gauge import measure_gauge
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.skewed_light import (
     MeanSkewness,
-    doubt_of_light,
+    doubts_of_light,
     farthest_mean_mm,
     mean_skewness,
     unseen_mean_mm,
@@ -71,8 +71,8 @@ def test_light_that_may_come_from_below_the_other_face_hides_no_doubt(scan):
     (row,) = (row for row in sure.budget if row.source == Cause.SKEWED_LIGHT)
     small = replace(row, u_mm=0.3 * np.sqrt(sure.u_mm**2 - row.u_mm**2))
     others = [one for one in sure.budget if one.source != Cause.SKEWED_LIGHT]
-    assert doubt_of_light([*others, small]) is not None
-    assert doubt_of_light([*others, small, Contribution(Cause.LIGHT_FROM_BELOW_ASSUMED, 1.0)]) is not None
+    assert doubts_of_light([*others, small]) is not None
+    assert doubts_of_light([*others, small, Contribution(Cause.LIGHT_FROM_BELOW_ASSUMED, 1.0)]) is not None
 
 
 def test_light_that_is_skewed_alike_on_both_faces_moves_no_distance_between_them(scan):

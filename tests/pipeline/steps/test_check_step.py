@@ -558,7 +558,7 @@ def test_an_artefact_is_held_to_its_certificate_and_kept_in_the_same_history(mea
     assert trisect("artefact", made, "--out", out, "--id", "GB 9").code == 2
     work = Workspace.open(open_set(made), out)
     (told,) = facts_of_the_day(work, work.calibration()).of_the_day
-    assert told.code == "validity.check_failed", "what was measured then proves nothing"
+    assert told.fact == "check_failed", "what was measured then proves nothing"
 
 
 STEP = """[[artefact]]
@@ -592,7 +592,7 @@ def test_a_step_is_compared_by_its_height_in_the_inspection(measured, simulated,
 
 def inspected(names, budget=()):
     """Results whose inspection has these heights of steps."""
-    rows = [Characteristic(name, "height", 20.0, 0.01, budget=budget) for name in names]
+    rows = [Characteristic(name, "height", 20.0, 0.01, budget=budget, doubts=()) for name in names]
     features = dict.fromkeys(names, "stairs")
     return InspectionFile(tuple(rows), {"stairs": "steps"}, (), (), {}, features, {}, {}, {}, "", unmeasured=False)
 

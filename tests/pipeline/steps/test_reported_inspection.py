@@ -89,7 +89,7 @@ def test_a_section_brings_its_profile_and_a_distance_is_seen_where_its_first_fea
 def test_feature_control_frames_and_datums_are_those_the_plan_asked_for(tmp_path, content):
     limits = (("flatness", Limits(0.0, -math.inf, 0.05)),)
     features = (FeatureSpec("top", "plane", limits=limits), FeatureSpec("side", "plane"))
-    row = Characteristic("top flatness", "flatness", 0.03, 0.004, limits=limits[0][1])
+    row = Characteristic("top flatness", "flatness", 0.03, 0.004, limits=limits[0][1], doubts=())
     results = (FeatureResult(features[0], characteristics=(row,)), FeatureResult(features[1]))
     plan = InspectionPlan(features, PartFrame("top", "side"))
     write_inspection(tmp_path / "inspection.json", Inspection(plan, results), "aaa-bbb")

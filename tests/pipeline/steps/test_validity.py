@@ -49,7 +49,7 @@ def checked(days, p=0.4):
 def doubts(work, calibration):
     """Codes of all doubts of a scan in which nothing moved or changed."""
     facts = replace(facts_of_the_day(work, calibration), **dict.fromkeys(OF_SCAN, False))
-    return [doubt.code for doubt in facts.all_doubts]
+    return [doubt.note.code for doubt in facts.doubts]
 
 
 def doubt(work, readjusted=None):

@@ -51,7 +51,7 @@ def gauge(thickness_mm: float = 50.012, **more: Any) -> GaugeResult:
     )
     return GaugeResult(
         thickness_mm, 0.012, 2.0, over, below, 0.0005, (Contribution(Cause.CAMERA, 0.002),), 50.0, 0.2,
-        np.array([0.0, 0.0, 1.0]), plain("distance of two parallel planes"), **more,
+        np.array([0.0, 0.0, 1.0]), plain("distance of two parallel planes"), **({"doubts": ()} | more),
     )  # fmt: skip
 
 

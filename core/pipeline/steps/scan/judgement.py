@@ -10,7 +10,7 @@ from core.calibrate.deviations import Deviation
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
 from core.files.results.planes_file import planes_id
-from core.findings.proof import ScanFacts
+from core.findings.proof import ScanFacts, notes_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.pipeline.steps.workspace import Calibration, Workspace
@@ -75,7 +75,7 @@ class Judgement:
     @property
     def notes(self) -> tuple[Message, ...]:
         """What changed, and why nothing measured is proof."""
-        return (*self.change.notes, *self.section.notes, *self.facts.all_doubts)
+        return (*self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
 
 
 def solved_scan(

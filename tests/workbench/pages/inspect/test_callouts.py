@@ -33,7 +33,7 @@ def shown_of(plan):
     for spec in plan.features:
         places = TOP if not spec.of else TOP[:0]
         kind = "distance" if spec.of else "flatness"
-        row = Characteristic(f"{spec.name} {kind}", kind, 0.05, 0.005, limits=spec.limits_of(kind))
+        row = Characteristic(f"{spec.name} {kind}", kind, 0.05, 0.005, limits=spec.limits_of(kind), doubts=())
         features.append(ShownFeature(spec.name, spec.kind, (row,), len(places), places, places[:, :2]))
     return ShownInspection(tuple(features), False, (), "cal-1")
 

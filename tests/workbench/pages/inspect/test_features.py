@@ -51,7 +51,7 @@ def shown_of(project):
     features = []
     for spec in project.inspection.features:
         rows = tuple(
-            Characteristic(f"{spec.name} {result}", result, 50.012, 0.012, limits=spec.limits_of(result))
+            Characteristic(f"{spec.name} {result}", result, 50.012, 0.012, limits=spec.limits_of(result), doubts=())
             for result in results_of(spec)
         )
         lost = plain("no points there") if spec.name == "lost" else None

@@ -263,11 +263,11 @@ def test_the_measured_scan_shows_its_quality_with_units_and_the_reasons_counted(
 
 
 def test_a_change_of_the_rig_is_said_first_in_red_and_once(recorded, measuring, qtbot, monkeypatch):
-    told = replace(cases.look(), notes=(*cases.look().notes, OF_SCAN["rig_changed"], OF_SCAN["rig_changed"]))
+    told = replace(cases.look(), notes=(*cases.look().notes, OF_SCAN["rig_changed"].note, OF_SCAN["rig_changed"].note))
     monkeypatch.setattr(recorded.presenter.work, "look", told)
     recorded.result.refresh()
     shown = recorded.result
-    assert shown.alarm.text() == str(OF_SCAN["rig_changed"]) and not shown.alarm.isHidden()
+    assert shown.alarm.text() == str(OF_SCAN["rig_changed"].note) and not shown.alarm.isHidden()
     assert f"QLabel#{shown.alarm.objectName()} {{ color: palette(bright-text); }}" in STYLE.read_text()
     assert shown.notes.text() == "The relief fixes the scale well."
     assert shown.layout().indexOf(shown.alarm) == 0

@@ -23,7 +23,7 @@ from workbench.pages.scan.profiles import ProfilesPanel
 
 def gauge() -> GaugeResult:
     face = Face(LightPlane(np.array([0, 0, 0.002])), np.arange(3), np.zeros(3), 0.01, 0.01)
-    return GaugeResult(20.004, 0.01, 2.0, face, face, 0.0, (), notes=(plain("The part was at rest."),))
+    return GaugeResult(20.004, 0.01, 2.0, face, face, 0.0, (), notes=(plain("The part was at rest."),), doubts=())
 
 
 @pytest.fixture
