@@ -73,6 +73,9 @@ ROWS = (
             "Corrected by {change_um:+.2f} µm for a calibration target at {celsius:g} °C."),
     Finding("feature.compared_with_master", Weight.INFORMATION, Effect.NONE,
             "Compared with master {master}: {correction_um:+.2f} µm."),
+    Finding("feature.master_doubted", Weight.GRAVE, Effect.NO_PROOF,
+            "By its own results master {master} proves nothing ({why:;}), and so nothing that is compared with it "
+            "does. Measure the master again.", fact="master_doubted"),
     Finding("feature.master_too_different", Weight.CAUTION, Effect.NONE,
             "Not compared with master {master}, whose length of {certified_mm:g} mm is too different."),
     Finding("plugin.measured_by", Weight.INFORMATION, Effect.NONE,

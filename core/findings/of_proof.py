@@ -86,6 +86,7 @@ REASONS: Mapping[str, Message] = {
     "light_skewed": Message("doubt.light_skewed", "the light on the part is skewed in depth"),
     "faces_not_spanned": Message("doubt.faces_not_spanned", "the points do not span a face"),
     "several_faces": Message("doubt.several_faces", "several pairs of faces could be meant"),
+    "master_doubted": Message("doubt.master_doubted", "the master that it is compared with proves nothing"),
     "results_doubted": Message("doubt.results_doubted", "results that it rests on prove nothing"),
     "scatter_alone": Message("doubt.scatter_alone", "U holds the scatter of the repeats alone"),
     "artefact_without_u": Message("doubt.artefact_without_u", "no uncertainty of the artefact is stated"),

@@ -11,9 +11,12 @@ ROWS = (
     Finding("artefact.lapsed", Weight.CAUTION, Effect.NONE,
             "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), but its certificate holds only until {due}: "
             "have it calibrated."),
-    Finding("artefact.failed", Weight.GRAVE, Effect.NONE,
+    Finding("artefact.doubted", Weight.CAUTION, Effect.NONE,
+            "{id} is measured to {error_mm:+.3f} mm (E_n = {e_n:.2f}), but by its own result that proves nothing "
+            "({why:;}): measure it again."),
+    Finding("artefact.failed", Weight.GRAVE, Effect.NO_PROOF,
             "{id} is measured wrong by {error_mm:+.3f} mm (E_n = {e_n:.2f}, above 1): look for what changed, and "
-            "calibrate again."),
+            "calibrate again.", fact="check_failed"),
     # Repeats
     Finding("study.doubted", Weight.GRAVE, Effect.NO_PROOF,
             "By their own results {names} prove nothing, and so their mean does not: read their notes.",

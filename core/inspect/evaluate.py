@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
-from core.findings.proof import SIZE_UNCONFIRMED, notes_of
+from core.findings.proof import SIZE_UNCONFIRMED, Doubt, notes_of
 from core.findings.table import note_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
@@ -206,18 +206,23 @@ def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
 
 
 def _by_master(length: Characteristic, master: Master) -> Characteristic:
-    """A length by comparison with a master, in which the size of the plane target cancels, and so a doubt of it.
+    """A length by comparison with a master: with one calibration a doubt of the plane target's size cancels in it.
 
-    Skewed light may make up much of what is left of its uncertainty.
+    Doubts of the master's own results count, and skewed light may make up much of the uncertainty that is left.
     """
     found = compared(length, master)
-    if not master.same_calibration or not found.by_master:
+    if not found.by_master:
         return found
-    of_light = tuple(doubt for doubt in doubts_of_light(found.budget) if doubt not in found.doubts)
+    added = doubts_of_light(found.budget)
+    if master.remaining_doubts:
+        why = notes_of(master.remaining_doubts)
+        added += (Doubt.of(note_of("feature.master_doubted", master=master.name, why=why)),)
+    added = tuple(doubt for doubt in added if doubt not in found.doubts)
+    gone = SIZE_UNCONFIRMED if master.same_calibration else None
     return replace(
         found,
-        notes=(*notes_of(of_light), *(note for note in found.notes if note != SIZE_UNCONFIRMED.note)),
-        doubts=(*(doubt for doubt in found.doubts if doubt.fact != SIZE_UNCONFIRMED.fact), *of_light),
+        notes=(*notes_of(added), *(note for note in found.notes if gone is None or note != gone.note)),
+        doubts=(*(doubt for doubt in found.doubts if doubt != gone), *added),
     )
 
 

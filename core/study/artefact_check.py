@@ -13,8 +13,15 @@ from dataclasses import dataclass
 from datetime import date
 from typing import Literal, TypeAlias
 
+from core.findings.proof import Doubts, notes_of
 from core.findings.table import note_of
 from core.messages import Message, label
+
+CHECKED = frozenset((
+    "size_unconfirmed", "points_off_alike", "planes_unknown", "rig_seems_changed", "of_the_day", "calibration_undated",
+    "calibration_lapsed", "never_checked", "check_lapsed", "check_failed", "history_unreadable",
+))  # fmt: skip
+"""Facts that an artefact is measured to clear up: its own check is not in doubt by them."""
 
 ArtefactKind: TypeAlias = Literal["block", "sphere", "step"]
 KINDS: Mapping[ArtefactKind, str] = {
@@ -57,7 +64,8 @@ class ArtefactCheck:
     """An artefact as it was measured on a `day`: in mm, with the standard uncertainty of that.
 
     `characteristic` is the name of what was measured, as "ball diameter"; "" is the thickness of the part as a whole.
-    `outside` says of one that lies outside the limits of the rig's own history that it does.
+    `outside` says of one that lies outside the limits of the rig's own history that it does. By its `doubts` what was
+    measured proves nothing.
     """
 
     artefact: Artefact
@@ -66,6 +74,7 @@ class ArtefactCheck:
     day: date
     characteristic: str = ""
     outside: Message | None = None
+    doubts: Doubts = ()
 
     @property
     def error_mm(self) -> float:
@@ -93,17 +102,25 @@ class ArtefactCheck:
         return self.artefact.due is not None and self.day > self.artefact.due
 
     @property
+    def own_doubts(self) -> Doubts:
+        """The doubts but those that it is measured to clear up."""
+        return tuple(doubt for doubt in self.doubts if doubt.fact not in CHECKED)
+
+    @property
     def verdict(self) -> Literal["passed", "doubtful", "failed"]:
-        """Failed where |E_n| is above 1; else doubtful if the certificate has lapsed, or by the rig's history."""
+        """Failed where |E_n| is above 1; else doubtful by its doubts, a lapsed certificate or the rig's history."""
         if abs(self.e_n) > 1:
             return "failed"
-        return "doubtful" if self.lapsed or self.outside is not None else "passed"
+        return "doubtful" if self.own_doubts or self.lapsed or self.outside is not None else "passed"
 
     @property
     def sentence(self) -> Message:
         """What came of it, and what to do."""
         if self.verdict == "failed":
             return note_of("artefact.failed", id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n)
+        if self.own_doubts:
+            why = notes_of(self.own_doubts)
+            return note_of("artefact.doubted", id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n, why=why)
         if self.lapsed:
             return note_of(
                 "artefact.lapsed", due=str(self.artefact.due), id=self.artefact.id, error_mm=self.error_mm, e_n=self.e_n

@@ -23,8 +23,8 @@ LIVE = ("core/calibrate/camera/capture.py", "core/calibrate/camera/missing.py", 
 ANSWERS = {"readjust.undone"}
 """What a command answers."""
 OF_ONE_RESULT = {
-    "artefact_without_u", "faces_not_spanned", "light_skewed", "results_doubted", "scatter_alone", "several_faces",
-    "u_incomplete",
+    "artefact_without_u", "faces_not_spanned", "light_skewed", "master_doubted", "results_doubted",
+    "scatter_alone", "several_faces", "u_incomplete",
 }  # fmt: skip
 """Facts that take away the proof of one result, or of a study."""
 OF_THE_DAY = {

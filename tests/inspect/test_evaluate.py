@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.conformity import Limits, Verdict
 from core.inspect.evaluate import evaluate
@@ -195,6 +196,23 @@ def test_only_lengths_compared_with_a_master_prove_anything_where_the_size_of_th
     for other in (replace(master, measured_mm=60.0), replace(master, same_calibration=False)):
         of_other = rows(evaluate(replace(plan, master=other), cloud, errors=doubted))
         assert of_other["height distance"].verdict == Verdict.NOT_PROVEN
+
+
+@pytest.mark.parametrize(
+    ("fact", "same", "verdict"),
+    [
+        ("moved", True, "not proven"),
+        ("size_unconfirmed", True, "conforming"),
+        ("size_unconfirmed", False, "not proven"),
+    ],
+)
+def test_what_a_master_does_not_prove_nothing_that_is_compared_with_it_does(fact, same, verdict, cloud):
+    budget = ((Cause.POINT_NOISE, 1e-3),)
+    master = Master("M", 40.0, 1e-3, 40.001, budget, ("height",), same, (Doubt.named(fact),))
+    limited = replace(DERIVED[0], limits=(("distance", Limits(40.0, -0.5, 0.5)),))
+    row = rows(evaluate(InspectionPlan((*PLANES, limited), master=master), cloud, errors=ERRORS))["height distance"]
+    assert row.verdict == verdict
+    assert ("By its own results master M proves nothing" in str(row.notes[0])) is (verdict == "not proven")
 
 
 def test_a_doubt_that_comes_or_goes_has_all_measured_again(cloud):

@@ -5,7 +5,9 @@ from datetime import date
 
 import pytest
 
-from core.study.artefact_check import Artefact, ArtefactCheck
+from core.findings.of_proof import REASONS
+from core.findings.proof import Doubt
+from core.study.artefact_check import CHECKED, Artefact, ArtefactCheck
 
 BLOCK = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070", date(2028, 3, 1))
 MEASURED = ArtefactCheck(BLOCK, 50.0203, 0.015, date(2026, 5, 4))
@@ -27,6 +29,19 @@ def test_an_error_beyond_both_uncertainties_fails(error, verdict):
 
 def test_the_probability_is_that_of_k_2_at_the_limit():
     assert replace(MEASURED, measured_mm=BLOCK.value_mm + 2 * MEASURED.u_error_mm).p == pytest.approx(0.0455, abs=1e-4)
+
+
+@pytest.mark.parametrize(("fact", "verdict"), [("moved", "doubtful"), ("size_unconfirmed", "passed")])
+def test_an_artefact_in_a_scan_that_proves_nothing_clears_up_nothing(fact, verdict):
+    """But for the doubts that it is measured to clear up; and an error too large is one whatever moved."""
+    check = replace(MEASURED, measured_mm=50.0003, doubts=(Doubt.named(fact),))
+    assert check.verdict == verdict
+    assert ("something moved during the scan" in str(check.sentence)) is (verdict == "doubtful")
+    assert replace(check, measured_mm=51.0).verdict == "failed"
+
+
+def test_every_fact_that_an_artefact_clears_up_is_a_known_one():
+    assert set(REASONS) > CHECKED
 
 
 def test_a_lapsed_certificate_is_no_passed_check():

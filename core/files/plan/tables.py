@@ -243,6 +243,7 @@ class MasterTable(Table):
     measured_mm: _Above | None = Field(None, description=_A_LENGTH)
     budget: list[CauseTable] = Field(default_factory=list, description="a list of { source, u_mm }")
     same_calibration: bool = Field(True, description="true or false")
+    doubts: list[_Name] = Field(default_factory=list, description="a list of names of facts, as moved")
     result: str | None = Field(None, description="an inspection.json in which the master was measured")
     characteristic: str | None = Field(None, description="the name of a characteristic in it")
 

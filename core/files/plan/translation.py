@@ -19,6 +19,7 @@ from core.files.plan.tables import (
     SectionTable,
     TemperatureTable,
 )
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause, cause_named
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
@@ -248,6 +249,7 @@ def master_of(table: MasterTable, path: Path) -> Master:
     InputError
         If its result is missing, or has no such characteristic.
     """
+    doubts = tuple(map(Doubt.named, table.doubts))
     measured, budget = table.measured_mm, tuple((cause_named(row.source), row.u_mm) for row in table.budget)
     if table.result is not None:
         from core.files.results.inspection_file import read_inspection  # the whole of inspecting: only now
@@ -268,6 +270,7 @@ def master_of(table: MasterTable, path: Path) -> Master:
             )
         row = rows[table.characteristic]
         rows_of = tuple((one.source, one.u_mm) for one in row.budget)
+        doubts += row.doubts
         measured, budget = row.value, rows_of or ((Cause.MASTER_MEASURED, row.u),)
     assert measured is not None  # one of the two, says the table
     return Master(
@@ -278,6 +281,7 @@ def master_of(table: MasterTable, path: Path) -> Master:
         budget=budget,
         features=tuple(table.features),
         same_calibration=table.same_calibration,
+        doubts=doubts,
     )
 
 
@@ -291,4 +295,5 @@ def master_table(master: Master) -> dict[str, Any]:
         "measured_mm": master.measured_mm,
         "budget": [{"source": str(source), "u_mm": u} for source, u in master.budget],
         "same_calibration": master.same_calibration,
+        **({"doubts": [doubt.fact for doubt in master.doubts]} if master.doubts else {}),
     }

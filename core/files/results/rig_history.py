@@ -30,6 +30,7 @@ from core.files.json_text import write_json
 from core.files.reading import read_json
 from core.files.results.check_file import CheckVerdict, InterimCheck
 from core.files.tables import RESULT, Finite, LengthAbove0, OptionalDay, OrNan, Probability, ResultFile, Time
+from core.findings.proof import Doubt
 from core.inspect.uncertainty.coverage import coverage_factor
 from core.messages import Message
 from core.study.artefact_check import Artefact, ArtefactCheck, ArtefactKind
@@ -54,7 +55,8 @@ class PastCheck:
     `celsius` is the temperature of the air; None where nobody took it. Of a check by an artefact `artefact` is its id
     and `e_n` its normalised error, the step is its certified length, and there are no stripes; else there is none.
     `certified_u_mm`, `certified_k`, `certificate` and `due` are what its certificate says; no u of checks before that
-    was kept. `kind` and `characteristic` are what it is and what was measured of it.
+    was kept. `kind` and `characteristic` are what it is and what was measured of it, `doubts` the
+    facts by which that proves nothing; none of checks before these were kept.
     `likelihoods` are those of `core.calibrate.rig_spread`; None of an artefact, or where no stripe was found.
     `stated_mm` is what change does to a step by the stability in rig.toml, or without one by the default, `default_mm`
     what it does by the default.
@@ -85,6 +87,7 @@ class PastCheck:
     default_mm: OrNan = math.nan
     kind: Annotated[ArtefactKind, Field(description='"block", "sphere" or "step"')] = "block"
     characteristic: str = ""
+    doubts: tuple[str, ...] = ()
     __pydantic_config__ = RESULT
 
     @property
@@ -120,7 +123,8 @@ class PastCheck:
         square = (self.unseen_mm / 2) ** 2 - self.certified_u_mm**2
         day = self.taken_at.astimezone().date()
         u_mm = math.sqrt(max(square, 0.0))
-        return ArtefactCheck(known, self.step_mm + self.error_mm, u_mm, day, self.characteristic)
+        doubts = tuple(map(Doubt.named, self.doubts))
+        return ArtefactCheck(known, self.step_mm + self.error_mm, u_mm, day, self.characteristic, doubts=doubts)
 
     @classmethod
     def of_measured(
@@ -146,6 +150,7 @@ class PastCheck:
             due=known.due,
             kind=known.kind,
             characteristic=measured.characteristic,
+            doubts=tuple(doubt.fact for doubt in measured.doubts),
         )
 
     @classmethod

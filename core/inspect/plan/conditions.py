@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from core.findings.proof import SIZE_UNCONFIRMED, Doubts
 from core.inspect.causes import Source
 
 REFERENCE_C = 20.0
@@ -51,6 +52,8 @@ class Master:
         Names of the features that are compared with it.
     same_calibration
         Whether both were measured with one calibration of camera and fan.
+    doubts
+        By what facts its measurement proves nothing; () where it was stated by hand.
     """
 
     name: str
@@ -60,3 +63,10 @@ class Master:
     budget: tuple[tuple[Source, float], ...]
     features: tuple[str, ...] = ()
     same_calibration: bool = True
+    doubts: Doubts = ()
+
+    @property
+    def remaining_doubts(self) -> Doubts:
+        """Those that do not cancel in a comparison: with one calibration the size of the plane target does."""
+        cancelling = SIZE_UNCONFIRMED.fact if self.same_calibration else ""
+        return tuple(doubt for doubt in self.doubts if doubt.fact != cancelling)

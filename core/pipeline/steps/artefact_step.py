@@ -15,6 +15,7 @@ from core.files.results.inspection_file import AGAIN, InspectionFile, read_inspe
 from core.files.results.rig_history import PastCheck, keep_check
 from core.files.results.run_file import RunRecord
 from core.files.results.scan_file import read_scan
+from core.findings.proof import Doubt
 from core.inspect.characteristic import Characteristic
 from core.messages import Message
 from core.pipeline.steps.validity import history_name, history_of
@@ -57,7 +58,8 @@ def artefact_step(
         length = _chosen(lengths_of(file, artefact.kind), artefact, characteristic, path)
         characteristic = length.name
     when = taken_at(recording_set.frames)
-    check = ArtefactCheck(artefact, length.value, length.u, when.astimezone().date(), characteristic)
+    day, doubts = when.astimezone().date(), tuple(Doubt.named(doubt.fact) for doubt in length.doubts)
+    check = ArtefactCheck(artefact, length.value, length.u, day, characteristic, doubts=doubts)
     celsius = recording_set.rig.air.scanned if celsius is None else celsius
     ids = (calibration.id, frames_id(recording_set, work.record()))
     outside = history_of(recording_set.rig, calibration.id).beyond(PastCheck.of_measured(check, when, ids, celsius))

@@ -18,7 +18,7 @@ from core.progress import Progress, silent
 def measured_master(
     folder: Path, certified_mm: float | None, project: Path | None = None, progress: Progress = silent
 ) -> Master:
-    """What was measured of a master, as the length nearest to its certified one, with what its uncertainty is made of.
+    """What was measured of a master, as the length nearest to its certified one, with its budget and its doubts.
 
     Parameters
     ----------
@@ -55,4 +55,5 @@ def measured_master(
         name = " ".join(part for part in (info.part or info.name, info.serial) if part) or name
     same = project is None or read_calibration(results).id == read_calibration(results_folder(project)).id
     budget = tuple((one.source, one.u_mm) for one in row.budget)
-    return Master(name, certified, 0.0, row.value, budget or ((Cause.MASTER_MEASURED, row.u),), (), same)
+    known = budget or ((Cause.MASTER_MEASURED, row.u),)
+    return Master(name, certified, 0.0, row.value, known, (), same, row.doubts)

@@ -6,6 +6,7 @@ import pytest
 
 from core.errors import InputError
 from core.files.plan.plan_file import read_plan, write_plan
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.conformity import Limits
 from core.inspect.plan.conditions import Master, Temperature
@@ -55,7 +56,7 @@ EVERYTHING = InspectionPlan(
     ),
     frame=PartFrame("top", "side", "ball"),
     temperature=Temperature(22.0, 0.5, 11.5e-6, 1e-6),
-    master=Master("M50", 50.0001, 0.0001, 50.02, ((Cause.CAMERA, 0.01),), ("block",)),
+    master=Master("M50", 50.0001, 0.0001, 50.02, ((Cause.CAMERA, 0.01),), ("block",), True, (Doubt.named("moved"),)),
     k=2.5,
 )
 

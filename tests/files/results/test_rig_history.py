@@ -10,6 +10,7 @@ from core.calibrate.rig_spread import FACTORS
 from core.cli.output import history_rows
 from core.errors import InputError
 from core.files.results.rig_history import QUIET_DAYS, PastCheck, RigHistory, history_file, keep_check, read_history
+from core.findings.proof import Doubt
 from core.study.artefact_check import Artefact, ArtefactCheck
 from core.study.control_chart import FEWEST
 from tests.check_cases import check, nowhere
@@ -142,6 +143,9 @@ def test_a_check_by_which_no_step_is_assumed_wrong_says_nothing_of_the_rig(state
 BLOCK = Artefact("GB 50-7", 50.0003, 0.0004, 2.0, "D-K-15070 2026-03", date(2028, 3, 1))
 
 
+MOVED = (Doubt.named("moved"),)
+
+
 def measured_block(days: float, measured_mm: float, block: Artefact = BLOCK) -> PastCheck:
     taken_at = FIRST.taken_at + timedelta(days=days)
     check = ArtefactCheck(block, measured_mm, 0.009, taken_at.astimezone().date())
@@ -161,11 +165,12 @@ def test_an_artefact_is_kept_with_what_its_certificate_says():
 
 def test_a_step_is_kept_with_its_kind_and_what_was_measured_of_it():
     step = replace(BLOCK, id="S 20", value_mm=20.0, kind="step")
-    measured = ArtefactCheck(step, 20.003, 0.009, FIRST.taken_at.astimezone().date(), "stairs height 2")
+    measured = ArtefactCheck(step, 20.003, 0.009, FIRST.taken_at.astimezone().date(), "stairs height 2", doubts=MOVED)
     keep_check("bench", PastCheck.of_measured(measured, FIRST.taken_at, (FIRST.calibration_id, "frames"), None))
     (kept,) = read_history("bench").checks
     assert kept.of_artefact is not None
     assert (kept.of_artefact.artefact, kept.of_artefact.characteristic) == (step, "stairs height 2")
+    assert (kept.verdict, kept.doubts, kept.of_artefact.doubts) == ("doubtful", ("moved",), MOVED)
     assert len(RigHistory("bench", (kept,)).added(replace(kept, characteristic="stairs height 1")).checks) == 2
     assert len(RigHistory("bench", (kept,)).added(replace(kept, artefact="S 21")).checks) == 1, "corrected"
 

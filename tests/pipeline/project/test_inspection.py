@@ -180,6 +180,7 @@ def test_a_master_is_taken_from_a_project_as_it_was_measured(done, folder):
     master = measured_master(folder, 50.0, folder)
     assert (master.name, master.measured_mm) == ("Block 50 no. 7", thickness.thickness_mm)
     assert [u for _, u in master.budget] == [row.u_mm for row in thickness.budget] and master.same_calibration
+    assert [one.fact for one in master.doubts] == [one.fact for one in thickness.doubts]
     assert measured_master(results_folder(folder), None).measured_mm == master.measured_mm
     with pytest.raises(InputError, match="no length was measured"):
         measured_master(folder.parent, 50.0)

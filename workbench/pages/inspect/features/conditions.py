@@ -30,7 +30,7 @@ PER_KELVIN = 1e6
 """Expansion coefficients are shown in 10⁻⁶/K."""
 COEFFICIENTS = ("alpha", "u_alpha", "scale_alpha", "u_scale_alpha")
 TEMPERATURES = ("part_celsius", "u_part_celsius", "scale_celsius", "u_scale_celsius")
-MASTER = ("name", "certified_mm", "u_certified_mm", "measured_mm", "budget", "same_calibration")
+MASTER = ("name", "certified_mm", "u_certified_mm", "measured_mm", "budget", "same_calibration", "doubts")
 U_MEASURED = "u_measured_mm"
 """Stands for the whole budget in the form."""
 
@@ -100,6 +100,8 @@ class InspectConditions:
         if key == "primary" and not value:
             self._take(group, {key: value, "secondary": "", "tertiary": ""})
             return
+        if key in ("measured_mm", U_MEASURED):  # stated by hand: no result's any more
+            self._pending["doubts"] = ()
         if key == U_MEASURED:
             key, value = "budget", () if value is None else ((Cause.MASTER_MEASURED, float(value)),)
         self._take(group, {key: value})
@@ -110,7 +112,7 @@ class InspectConditions:
 
         def done(master: Any) -> None:
             if project == self._model.folder:
-                found = {key: getattr(master, key) for key in ("measured_mm", "budget", "same_calibration")}
+                found = {key: getattr(master, key) for key in ("measured_mm", "budget", "same_calibration", "doubts")}
                 name = self.values()["name"] or master.name
                 self._take("master", found | {WITH_MASTER: True, "name": name})
 
@@ -242,6 +244,7 @@ def with_master(plan: InspectionPlan, values: Mapping[str, Any]) -> InspectionPl
             budget=tuple(values["budget"]),
             features=features,
             same_calibration=bool(values["same_calibration"]),
+            doubts=tuple(values["doubts"]),
         ),
     )
 
@@ -253,6 +256,6 @@ def combined(budget: Sequence[tuple[str, float]]) -> float | None:
 
 def _master_values(master: Master | None) -> dict[str, Any]:
     if master is None:
-        first = {"name": "", "budget": (), "same_calibration": True}  # nothing unstated is zero
+        first = {"name": "", "budget": (), "same_calibration": True, "doubts": ()}  # nothing unstated is zero
         return dict.fromkeys(MASTER) | first
     return {key: getattr(master, key) for key in MASTER}
