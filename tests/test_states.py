@@ -11,7 +11,7 @@ from core.files.results.check_file import CheckVerdict
 from core.inspect.conformity import Verdict
 from core.scan.preview.preflight import State as Condition
 from core.study.grr import Fitness
-from core.study.type1 import CAPABLE, NOT_CAPABLE
+from core.study.type1 import Capability
 from tests.code import ROOT, modules, nodes
 from tests.translations import all_texts, catalogue
 from workbench.step_state import State
@@ -79,7 +79,7 @@ def test_every_state_has_a_word():
     assert set(states.CHECKS) == set(get_args(CheckVerdict))
     assert set(states.CONDITIONS) == set(get_args(Condition))
     assert set(states.STEP_STATES) == set(State)
-    assert set(states.DECISIONS) == {*Verdict, *get_args(Fitness), CAPABLE, NOT_CAPABLE}
+    assert set(states.DECISIONS) == {*Verdict, *get_args(Fitness), *get_args(Capability)}
 
 
 def test_no_state_has_two_words_and_no_word_has_two_states():

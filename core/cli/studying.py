@@ -95,7 +95,9 @@ def type1(
             where="--resolution",
             todo=Message("advice.give_value_above_zero", "give a value above 0"),
         )
-    return type1_study(found.values, nominal, limits[1] - limits[0], resolution=resolution, unit=found.unit)
+    return type1_study(
+        found.values, nominal, limits[1] - limits[0], found.doubted, resolution=resolution, unit=found.unit
+    )
 
 
 def series(
@@ -142,6 +144,7 @@ def grr(file: Path, name: str, tolerance: float | None) -> GrrStudy:
         operators=found.operators,
         tolerance=None if limits is None else limits[1] - limits[0],
         unit=found.unit,
+        doubted=found.doubted,
     )
 
 

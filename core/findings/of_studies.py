@@ -17,10 +17,10 @@ ROWS = (
     Finding("artefact.failed", Weight.GRAVE, Effect.NO_PROOF,
             "{id} is measured wrong by {error_mm:+.3f} mm (E_n = {e_n:.2f}, above 1): look for what changed, and "
             "calibrate again.", fact="check_failed"),
-    # Repeats
+    # All studies
     Finding("study.doubted", Weight.GRAVE, Effect.NO_PROOF,
-            "By their own results {names} prove nothing, and so their mean does not: read their notes.",
-            fact="results_doubted"),
+            "By their own results {names} prove nothing, and so the study does not.", fact="results_doubted"),
+    # Repeats
     Finding("study.scatter_alone", Weight.GRAVE, Effect.NO_PROOF,
             "U of the mean holds the scatter of the repeats alone: no scan states its own uncertainty, so what is "
             "common to all of them (calibration) is not in it, and nothing is proven.", fact="scatter_alone"),
@@ -45,9 +45,6 @@ ROWS = (
     Finding("study.few_categories", Weight.CAUTION, Effect.NONE,
             "{n} distinct categories: with fewer than {least} the gauge hardly tells these parts apart."),
     # Series of parts
-    Finding("study.series_doubted", Weight.GRAVE, Effect.NO_PROOF,
-            "By their own results {names} prove nothing, and so the series does not: read their notes.",
-            fact="results_doubted"),
     Finding("study.series_without_u", Weight.CAUTION, Effect.NONE,
             "No uncertainty is stated: what moves all values alike (calibration) is not in the intervals of the "
             "indices."),

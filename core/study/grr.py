@@ -37,13 +37,15 @@ import numpy as np
 from scipy.special import fdtrc
 
 from core.errors import WrongValue
+from core.findings.proof import notes_of
 from core.findings.table import note_of
 from core.messages import Message
 from core.model.arrays import Array
+from core.study.doubted import Doubted, doubts_of_study
 
 Interval: TypeAlias = tuple[float, float]
-Fitness: TypeAlias = Literal["acceptable", "acceptable with reservations", "not acceptable"]
-ACCEPTABLE, CONDITIONAL, NOT_ACCEPTABLE = get_args(Fitness)
+Fitness: TypeAlias = Literal["acceptable", "acceptable with reservations", "not acceptable", "not proven"]
+ACCEPTABLE, CONDITIONAL, NOT_ACCEPTABLE = get_args(Fitness)[:3]
 
 DRAWS = 40_000
 """Of the pivotal quantities: a bound's share of the draws is then known to 0.0008."""
@@ -204,6 +206,8 @@ class GrrStudy:
         95 % confidence interval of it.
     unit
         Of the values.
+    doubted
+        Measurements whose results prove nothing, by their names: nor does the study.
     """
 
     values: Array
@@ -218,6 +222,7 @@ class GrrStudy:
     ndc: float
     ndc_interval: Interval
     unit: str = "mm"
+    doubted: Doubted = ()
 
     def component(self, source: str) -> Component:
         """The component of that name."""
@@ -241,7 +246,12 @@ class GrrStudy:
 
     @property
     def verdict(self) -> Fitness:
-        """By %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D)."""
+        """By %GRR: acceptable up to 10 %, with reservations up to 30 % (AIAG, chapter II-D).
+
+        Not proven where results of measurements prove nothing.
+        """
+        if self.doubted:
+            return "not proven"
         limits = ((GOOD, ACCEPTABLE), (USABLE, CONDITIONAL))
         return next((fitness for most, fitness in limits if self.grr <= most), NOT_ACCEPTABLE)
 
@@ -249,7 +259,7 @@ class GrrStudy:
     def notes(self) -> tuple[Message, ...]:
         """What to know about the figures."""
         p, o, r = self.values.shape
-        said = []
+        said = [*notes_of(doubts_of_study(self.doubted))]
         if self.pooled:
             said.append(note_of("study.interaction_pooled", limit=POOLED_ABOVE))
         if o == 1:
@@ -268,6 +278,7 @@ def grr_study(
     operators: Sequence[str] = (),
     tolerance: float | None = None,
     unit: str = "mm",
+    doubted: Doubted = (),
 ) -> GrrStudy:
     """Study of every part measured by every operator, each as often.
 
@@ -281,6 +292,8 @@ def grr_study(
         T, the full width of the tolerance, if %GRR shall be told of it.
     unit
         Of values and tolerance.
+    doubted
+        See `GrrStudy`.
 
     Raises
     ------
@@ -339,6 +352,7 @@ def grr_study(
         found.ndc,
         found.categories,
         unit,
+        doubted,
     )
 
 

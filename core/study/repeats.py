@@ -23,6 +23,7 @@ from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, Zones, decide
 from core.messages import Message
 from core.model.arrays import Array
+from core.study.doubted import Doubted, doubts_of_study
 
 if TYPE_CHECKING:  # a window shows statistics long before it shows a budget
     from core.study.budget import UncertaintyBudget
@@ -133,7 +134,7 @@ class RepeatStudy:
     unit
         "mm" or "deg".
     doubted
-        Labels of repeats that prove nothing, whatever their uncertainty: nor does their mean.
+        Repeats that prove nothing, whatever their uncertainty: nor does their mean.
     """
 
     name: str
@@ -148,7 +149,7 @@ class RepeatStudy:
     nominal: float | None = None
     zones: Zones | None = None
     unit: str = "mm"
-    doubted: tuple[str, ...] = ()
+    doubted: Doubted = ()
 
     @property
     def verdict(self) -> Verdict:
@@ -164,12 +165,8 @@ class RepeatStudy:
     @property
     def doubts(self) -> Doubts:
         """By what facts the mean proves nothing."""
-        said = []
-        if self.doubted:
-            said.append(note_of("study.doubted", names=self.doubted))
-        if not self.complete:
-            said.append(note_of("study.scatter_alone"))
-        return tuple(map(Doubt.of, said))
+        of_u = () if self.complete else (Doubt.of(note_of("study.scatter_alone")),)
+        return (*doubts_of_study(self.doubted), *of_u)
 
     @property
     def notes(self) -> tuple[Message, ...]:
@@ -209,7 +206,7 @@ def repeat_study(
     labels: Sequence[str] = (),
     U: Sequence[float] = (),
     asked: Requirement = Requirement(),
-    doubted: Sequence[str] = (),
+    doubted: Doubted = (),
 ) -> RepeatStudy:
     """Study of n ≥ 1 repeats, in the unit of the budget of their mean.
 
@@ -237,7 +234,7 @@ def repeat_study(
     zones = None if limits is None or nominal is None else Zones(*limits, budget.U, asked.r)
     return RepeatStudy(
         name, names, measured, stated, statistics, run_chart(measured), histogram(measured), budget, complete, nominal,
-        zones, budget.unit, tuple(doubted),
+        zones, budget.unit, doubted,
     )  # fmt: skip
 
 

@@ -14,12 +14,14 @@ from typing import Literal, TypeAlias
 import numpy as np
 
 from core.errors import WrongValue
+from core.findings.proof import notes_of
 from core.findings.table import note_of
 from core.inspect.results import Contribution
 from core.messages import Message
 from core.model.arrays import Array
 from core.study.budget import OF_EACH_SCAN
 from core.study.capability import LIMIT, Index, Indices, Scatter, indices, looks_normal
+from core.study.doubted import Doubted, doubts_of_study
 from core.study.repeats import THICKNESS
 from core.study.series_chart import FEWEST_POINTS, POINTS_A_BREAK, RULE_WORDS, SeriesCharts, single_values, subgroups
 
@@ -72,7 +74,7 @@ class SeriesStudy:
     unit
         "mm" or "deg".
     doubted
-        Labels of the parts whose results prove nothing.
+        Parts whose results prove nothing.
     """
 
     name: str
@@ -86,7 +88,7 @@ class SeriesStudy:
     short: Indices | None
     overall: Indices | None
     unit: str = "mm"
-    doubted: tuple[str, ...] = ()
+    doubted: Doubted = ()
 
     @property
     def n(self) -> int:
@@ -199,9 +201,7 @@ class SeriesStudy:
             said.append(note_of("study.not_normal"))
         if self.stated is None and self.overall is not None:
             said.append(note_of("study.series_without_u"))
-        if self.doubted:
-            said.append(note_of("study.series_doubted", names=self.doubted))
-        return said
+        return [*said, *notes_of(doubts_of_study(self.doubted))]
 
 
 def stated_uncertainty(u: Sequence[float], budgets: Sequence[Sequence[Contribution]]) -> StatedUncertainty:
@@ -221,7 +221,7 @@ def series_study(
     name: str = THICKNESS,
     labels: Sequence[str] = (),
     unit: str = "mm",
-    doubted: Sequence[str] = (),
+    doubted: Doubted = (),
 ) -> SeriesStudy:
     """Study of n ≥ 2 values in the order of measuring; the parameters are those of `SeriesStudy`.
 
@@ -265,7 +265,7 @@ def series_study(
             whole = Scatter(float(measured.mean()), float(measured.std(ddof=1)), n - 1, n, common)
             overall = indices(whole, lower, upper)
     names = tuple(labels) or tuple(str(number) for number in range(1, n + 1))
-    return SeriesStudy(name, names, measured, size, lower, upper, stated, charts, short, overall, unit, tuple(doubted))
+    return SeriesStudy(name, names, measured, size, lower, upper, stated, charts, short, overall, unit, doubted)
 
 
 def _charts(values: Array, size: int) -> SeriesCharts | None:

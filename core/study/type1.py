@@ -17,12 +17,14 @@ import numpy as np
 from scipy.special import chdtri, stdtr, stdtrit
 
 from core.errors import WrongValue
+from core.findings.proof import notes_of
 from core.findings.table import note_of
 from core.messages import Message
 from core.model.arrays import Array
+from core.study.doubted import Doubted, doubts_of_study
 
-Capability: TypeAlias = Literal["capable", "not capable"]
-CAPABLE, NOT_CAPABLE = get_args(Capability)
+Capability: TypeAlias = Literal["capable", "not capable", "not proven"]
+CAPABLE, NOT_CAPABLE = get_args(Capability)[:2]
 LIMIT = 1.33
 """What Cg and Cgk must reach."""
 RESOLUTION_SHARE = 0.05
@@ -61,6 +63,8 @@ class Type1Study:
         Of the gauge; None if it is not stated.
     unit
         Of all values.
+    doubted
+        Repeats whose results prove nothing: nor does the study.
     """
 
     values: Array
@@ -77,6 +81,7 @@ class Type1Study:
     bias_interval: tuple[float, float]
     resolution: float | None = None
     unit: str = "mm"
+    doubted: Doubted = ()
 
     @property
     def n(self) -> int:
@@ -110,7 +115,12 @@ class Type1Study:
 
     @property
     def verdict(self) -> Capability:
-        """CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE."""
+        """CAPABLE if Cg and Cgk reach the limit and the resolution, if stated, suffices; else NOT_CAPABLE.
+
+        Not proven where results of repeats prove nothing.
+        """
+        if self.doubted:
+            return "not proven"
         suffices = min(self.cg, self.cgk) >= LIMIT and self.resolution_suffices is not False
         found: Capability = CAPABLE if suffices else NOT_CAPABLE
         return found
@@ -118,7 +128,7 @@ class Type1Study:
     @property
     def notes(self) -> tuple[Message, ...]:
         """What to know about the figures."""
-        said = []
+        said = [*notes_of(doubts_of_study(self.doubted))]
         if self.n < FEW_MEASUREMENTS:
             said.append(note_of("study.few_repeats", n=self.n, least=FEW_MEASUREMENTS))
         if self.cgk < LIMIT <= self.cg:
@@ -131,8 +141,9 @@ class Type1Study:
 
 
 def type1_study(
-    values: Sequence[float], reference: float, tolerance: float, *, resolution: float | None = None, unit: str = "mm"
-) -> Type1Study:
+    values: Sequence[float], reference: float, tolerance: float, doubted: Doubted = (), *,
+    resolution: float | None = None, unit: str = "mm",
+) -> Type1Study:  # fmt: skip
     """Study of n ≥ 2 repeats of a reference part.
 
     Parameters
@@ -143,6 +154,8 @@ def type1_study(
         The part's calibrated value.
     tolerance
         T, the full width of the tolerance to be measured against, above 0.
+    doubted
+        See `Type1Study`.
     resolution
         Of the gauge, if known.
     unit
@@ -183,7 +196,7 @@ def type1_study(
     t, p, half = _t_test(bias, s, n)
     return Type1Study(
         measured, reference, tolerance, mean, s, bias, cg, cgk, (cg * low, cg * high), t, p, (bias - half, bias + half),
-        resolution, unit,
+        resolution, unit, doubted,
     )  # fmt: skip
 
 

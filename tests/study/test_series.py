@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from core.errors import WrongValue
+from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.results import Contribution
+from core.study.doubted import DoubtedResult
 from core.study.series import StatedUncertainty, series_study, stated_uncertainty
 from core.study.series_chart import FEWEST_POINTS
 from tests.study.spc_tables import FLOW_RATES, PISTON_RINGS
@@ -92,8 +94,8 @@ def test_values_that_are_not_normal_are_told():
 
 
 def test_doubted_parts_prove_nothing():
-    study = series_study(steady(), (49.9, 50.1), doubted=["7"])
-    assert study.verdict == "not proven" and "study.series_doubted" in codes(study)
+    study = series_study(steady(), (49.9, 50.1), doubted=(DoubtedResult("7", (Doubt.named("moved"),)),))
+    assert study.verdict == "not proven" and "study.doubted" in codes(study)
 
 
 @pytest.mark.parametrize(

@@ -8,10 +8,13 @@ import pytest
 
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
+from core.files.study.study_file import read_study
 from core.findings.proof import Doubt
 from core.inspect.causes import Cause
 from core.inspect.results import Contribution, Face, GaugeResult
 from core.model import LightPlane
+from core.study.grr import GrrStudy
+from core.study.type1 import Type1Study
 from tests.inspect.fit.test_round import RADIUS, scan
 from tests.simulated import trisect
 from tests.study.grr_tables import AIAG
@@ -82,7 +85,24 @@ def test_a_repeat_of_a_rig_that_surely_changed_takes_its_proof_from_the_mean(tmp
     sure, doubted = results(tmp_path / "a", 50.001), results(tmp_path / "b", 50.002, doubts=(Doubt.named("moved"),))
     said = json.loads(trisect("study", "repeats", sure, doubted, "--json").out)
     assert (said["verdict"], said["doubted"]) == ("not proven", ["b"])
-    assert any("b prove" in note["text"] for note in said["notes"])
+    assert any("b (something moved during the scan) prove" in note["text"] for note in said["notes"])
+
+
+def test_a_type_1_study_and_a_gauge_rr_of_a_result_that_proves_nothing_prove_nothing(tmp_path):
+    moved = (Doubt.named("moved"),)
+    parts = [("a", 50.0), ("a", 50.001), ("b", 50.05), ("b", 50.052)]
+    folders = [results(tmp_path / f"{n}", value, doubts=moved if n == 2 else ()) for n, (_, value) in enumerate(parts)]
+    table = tmp_path / "table.csv"
+    rows = [f"{part},me,{n}" for n, (part, _) in enumerate(parts)]
+    table.write_text("\n".join(["part,operator,result", *rows]))
+    for asked in (("type1", *folders), ("grr", table, "--tolerance", 5)):
+        said = trisect("study", *asked, "--out", tmp_path / "out", "--json")
+        found = json.loads(said.out)
+        assert (said.code, found["verdict"], found["doubts"]) == (1, "not proven", {"2": ["moved"]})
+        assert any("2 (something moved during the scan) prove" in note["text"] for note in found["notes"])
+        again = read_study(tmp_path / "out" / "study.json")
+        assert isinstance(again, Type1Study | GrrStudy)
+        assert (again.verdict, [one.label for one in again.doubted]) == ("not proven", ["2"])
 
 
 def test_folders_of_results_bring_their_values_their_limits_and_their_budgets(tmp_path):

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import asdict, dataclass, field, replace
 from datetime import datetime
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
@@ -72,7 +72,10 @@ class Accepted:
 
 @dataclass(frozen=True, slots=True)
 class Repeat:
-    """The thickness of one scan in a series of the same part: in mm, with the expanded uncertainty U = k·u."""
+    """The thickness of one scan in a series of the same part: in mm, with the expanded uncertainty U = k·u.
+
+    `doubts` are the facts by which it proves nothing; none of repeats that were added before these were kept.
+    """
 
     scan: str
     thickness_mm: Annotated[Finite, Field(description="a length in mm")]
@@ -80,7 +83,14 @@ class Repeat:
     k: Annotated[Finite, Field(gt=0, description="a number above 0")]
     calibration_id: str
     measured_at: Time
+    doubts: tuple[str, ...] = ()
     __pydantic_config__ = _CHECKED
+
+    @property
+    def values(self) -> dict[str, Any]:
+        """By their names in files; without doubts as files of earlier versions have it."""
+        values = asdict(self)
+        return values if self.doubts else {name: value for name, value in values.items() if name != "doubts"}
 
 
 @dataclass(frozen=True, slots=True)

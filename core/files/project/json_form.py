@@ -159,7 +159,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
         "options": _options_table(project.options),
         "accepted": asdict(project.accepted),
         "rejected": sorted(project.rejected),
-        "repeats": [{**asdict(repeat), "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
+        "repeats": [{**repeat.values, "measured_at": _stamp(repeat.measured_at)} for repeat in project.repeats],
         "report": {**asdict(project.report), "hidden": sorted(project.report.hidden)},
         "inspection": plan_tables(project.inspection),
         "studies": [{**asdict(study), "title": kept(study.title)} for study in project.studies],

@@ -271,7 +271,7 @@ def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
         **inspected,
         **({label("studies"): _digest(studies)} if studies else {}),
         label("project fields"): _digest(asdict(project.info)),
-        label("repeats"): _digest([[*asdict(repeat).values()] for repeat in project.repeats]),
+        label("repeats"): _digest([[*repeat.values.values()] for repeat in project.repeats]),
         label("sections of the report"): _digest([sorted(project.report.hidden), *_printing(project.report)]),
     }
 

@@ -27,6 +27,7 @@ from core.inspect.results import Contribution
 from core.messages import Message
 from core.model.arrays import Array
 from core.study.acceptance import QUANTITIES, Quantity, Reading
+from core.study.doubted import Doubted, doubted_among
 from core.study.repeats import THICKNESS
 
 VALUE = ("value", "value_mm", "thickness_mm", "value_deg")
@@ -55,7 +56,7 @@ class Repeats:
     limits
         Asked of the quantity by all scans alike, in `unit`; else None.
     doubted
-        Labels of those whose results say that they prove nothing.
+        Those whose results prove nothing.
     """
 
     name: str
@@ -66,17 +67,18 @@ class Repeats:
     budgets: tuple[tuple[Contribution, ...], ...]
     unit: str
     limits: Limits | None = None
-    doubted: tuple[str, ...] = ()
+    doubted: Doubted = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Crossed:
-    """A crossed study: `values` (p, o, r) in `unit`, and the names of parts and operators."""
+    """A crossed study: `values` (p, o, r) in `unit`, the names of parts and operators, results that prove nothing."""
 
     values: Array
     parts: tuple[str, ...]
     operators: tuple[str, ...]
     unit: str
+    doubted: Doubted = ()
 
 
 def read_repeats(paths: Sequence[Path], name: str = THICKNESS) -> Repeats:
@@ -129,9 +131,12 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
     path = table.path
     parts, operators = table.texts("part"), table.texts("operator")
     unit = "mm"
+    doubted: Doubted = ()
     if "result" in table.columns:
-        measured = [measured_in(path.parent / folder, name) for folder in table.texts("result")]
+        folders = table.texts("result")
+        measured = [measured_in(path.parent / folder, name) for folder in folders]
         values, unit = [one.value for one in measured], measured[0].unit
+        doubted = doubted_among((folder, one.doubts) for folder, one in zip(folders, measured, strict=True))
     else:
         values = list(table.numbers(*VALUE))
     names = tuple(dict.fromkeys(parts)), tuple(dict.fromkeys(operators))
@@ -167,7 +172,7 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
             todo=Message("advice.measure_two_of_each", "measure 2 or more of each"),
         )
     shaped = np.array([[cells[part, operator] for operator in names[1]] for part in names[0]])
-    return Crossed(shaped, *names, unit)
+    return Crossed(shaped, *names, unit, doubted)
 
 
 def read_readings(path: Path) -> tuple[Reading, ...]:
@@ -258,7 +263,7 @@ def _of_results(paths: Sequence[Path], found: Sequence[Measured], name: str) -> 
         tuple(one.budget for one in found) if all(one.budget for one in found) else (),
         units.pop(),
         found[0].limits if all(one.limits == found[0].limits for one in found) else None,
-        tuple(label for label, one in zip(labels, found, strict=True) if one.doubts),
+        doubted_among((label, one.doubts) for label, one in zip(labels, found, strict=True)),
     )
 
 

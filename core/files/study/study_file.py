@@ -16,11 +16,13 @@ from core.files.complaints import checked, fitting
 from core.files.json_text import to_json
 from core.files.reading import read_json
 from core.files.tables import BudgetRow, Finite, ResultFile, kept
+from core.findings.proof import doubts_named
 from core.inspect.conformity import Zones
 from core.inspect.results import Contribution
 from core.messages import Command, Message
 from core.study.acceptance import AcceptanceCheck, CheckedQuantity, Quantity, Reading, acceptance_check
 from core.study.budget import UncertaintyBudget, add_up
+from core.study.doubted import Doubted, DoubtedResult
 from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import RepeatStudy, Requirement, repeat_study
 from core.study.series import SeriesStudy, StatedUncertainty, series_study
@@ -83,9 +85,15 @@ def _repeats(study: RepeatStudy) -> dict[str, Any]:
         "histogram": {"edges": study.histogram.edges, "counts": study.histogram.counts},
         "budget_of_mean": budget_values(study.budget),
         "budget_is_complete": study.complete,
-        "doubted": list(study.doubted),
+        **_doubted(study.doubted),
         "decision": None if study.zones is None else zones_values(study.zones),
     }
+
+
+def _doubted(doubted: Doubted) -> dict[str, Any]:
+    """Labels of the results that prove nothing, and the facts by which each does not."""
+    doubts = {one.label: [doubt.fact for doubt in one.doubts] for one in doubted}
+    return {"doubted": list(doubts), "doubts": doubts}
 
 
 def budget_values(budget: UncertaintyBudget) -> dict[str, Any]:
@@ -153,6 +161,7 @@ def _type1(study: Type1Study) -> dict[str, Any]:
         "resolution": study.resolution,
         "resolution_share": study.resolution_share,
         "resolution_suffices": study.resolution_suffices,
+        **_doubted(study.doubted),
     }
 
 
@@ -171,6 +180,7 @@ def _grr(study: GrrStudy) -> dict[str, Any]:
             "value": study.component("gauge R&R").of_tolerance,
             "interval": study.tolerance_interval,
         },
+        **_doubted(study.doubted),
         "ndc": {"value": study.ndc, "categories": study.categories, "interval": study.ndc_interval},
     }
 
@@ -212,7 +222,7 @@ def _series(study: SeriesStudy) -> dict[str, Any]:
         "upper_limit": study.upper,
         "u": None if stated is None else {"own": stated.own, "whole": stated.whole},
         "share_of_u": study.share_of_u,
-        "doubted": list(study.doubted),
+        **_doubted(study.doubted),
         "n": study.n,
         "mean": study.mean,
         "s": study.s,
@@ -237,6 +247,20 @@ def _chart(chart: Chart) -> dict[str, Any]:
 _TODO = Message(
     "advice.make_study_again", "make the study again{command}", command=Command("trisect study … --out DIR")
 )
+
+
+class _OfResults(ResultFile):
+    """A study of results, of which some may prove nothing; an earlier version does not say why."""
+
+    doubted: list[str] = Field(default_factory=list)
+    doubts: dict[str, list[str]] = Field(default_factory=dict)
+
+    @property
+    def doubted_results(self) -> Doubted:
+        """Each with its doubts."""
+        return tuple(
+            DoubtedResult(label, doubts_named(self.doubts.get(label, ()), complete=False)) for label in self.doubted
+        )
 
 
 class _Row(BudgetRow):
@@ -269,7 +293,7 @@ class _Decision(ResultFile):
     r: Finite
 
 
-class _Repeats(ResultFile):
+class _Repeats(_OfResults):
     kind: Literal["repeats"]
     characteristic: str
     unit: str
@@ -277,7 +301,6 @@ class _Repeats(ResultFile):
     nominal: Finite | None = None
     budget_of_mean: _Budget
     budget_is_complete: bool
-    doubted: list[str] = Field(default_factory=list)
     decision: _Decision | None = None
 
     def study(self) -> RepeatStudy:
@@ -295,11 +318,11 @@ class _Repeats(ResultFile):
             labels=[one.scan for one in self.scans],
             U=[math.nan if one.U is None else one.U for one in self.scans],
             asked=Requirement(self.nominal, limits, 1.0 if asked is None else asked.r),
-            doubted=self.doubted,
+            doubted=self.doubted_results,
         )
 
 
-class _Type1(ResultFile):
+class _Type1(_OfResults):
     kind: Literal["type1"]
     unit: str
     values: list[Finite]
@@ -309,11 +332,12 @@ class _Type1(ResultFile):
 
     def study(self) -> Type1Study:
         return type1_study(
-            self.values, self.reference, self.tolerance_width, resolution=self.resolution, unit=self.unit
-        )
+            self.values, self.reference, self.tolerance_width, self.doubted_results, resolution=self.resolution,
+            unit=self.unit,
+        )  # fmt: skip
 
 
-class _Grr(ResultFile):
+class _Grr(_OfResults):
     kind: Literal["grr"]
     unit: str
     parts: list[str]
@@ -328,6 +352,7 @@ class _Grr(ResultFile):
             operators=self.operators,
             tolerance=self.tolerance_width,
             unit=self.unit,
+            doubted=self.doubted_results,
         )
 
 
@@ -369,7 +394,7 @@ class _StatedU(ResultFile):
     whole: Finite = Field(ge=0)
 
 
-class _Series(ResultFile):
+class _Series(_OfResults):
     kind: Literal["series"]
     characteristic: str
     unit: str
@@ -378,7 +403,6 @@ class _Series(ResultFile):
     lower_limit: Finite | None = None
     upper_limit: Finite | None = None
     u: _StatedU | None = None
-    doubted: list[str] = Field(default_factory=list)
 
     def study(self) -> SeriesStudy:
         limits = (
@@ -393,7 +417,7 @@ class _Series(ResultFile):
             name=self.characteristic,
             labels=[one.part for one in self.parts],
             unit=self.unit,
-            doubted=self.doubted,
+            doubted=self.doubted_results,
         )
 
 

@@ -23,6 +23,7 @@ from core.messages import Message, label
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
+from core.study.doubted import Doubted
 from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import THICKNESS
 from core.study.series import SeriesStudy, series_study, stated_uncertainty
@@ -78,7 +79,7 @@ def keep_study(
             found = crossed_of(table)
             study = grr_study(
                 found.values, parts=found.parts, operators=found.operators,
-                tolerance=limits.get("tolerance"), unit=found.unit,
+                tolerance=limits.get("tolerance"), unit=found.unit, doubted=found.doubted,
             )  # fmt: skip
         elif kind == "series":
             study = _series(repeats_of(table), limits, name)
@@ -91,8 +92,10 @@ def keep_study(
     return _kept(folder, study, text)
 
 
-def keep_type1(folder: Path, values: Sequence[float], nominal: float, tolerance: float) -> KeptStudy:
-    """Keep the type-1 study of repeats against T = `tolerance`, the full width; all in mm.
+def keep_type1(
+    folder: Path, values: Sequence[float], nominal: float, tolerance: float, doubted: Doubted = ()
+) -> KeptStudy:
+    """Keep the type-1 study of repeats, some of them `doubted`, against T = `tolerance`, the full width; all in mm.
 
     Raises
     ------
@@ -100,7 +103,7 @@ def keep_type1(folder: Path, values: Sequence[float], nominal: float, tolerance:
         If there are too few values, or nothing can be written.
     """
     try:
-        study = type1_study(values, nominal, tolerance)
+        study = type1_study(values, nominal, tolerance, doubted)
     except WrongValue as error:
         raise InputError(error.what, where="repeats") from error
     return _kept(folder, study, "\n".join(["value_mm", *(repr(float(value)) for value in values)]) + "\n")

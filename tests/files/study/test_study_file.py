@@ -8,10 +8,12 @@ import pytest
 
 from core.errors import InputError
 from core.files.study.study_file import read_study, study_values, write_study
+from core.findings.proof import Doubt
 from core.inspect.causes import cause_named
 from core.inspect.results import Contribution
 from core.study.acceptance import Reading, acceptance_check
 from core.study.budget import from_budgets
+from core.study.doubted import DoubtedResult
 from core.study.grr import grr_study
 from core.study.repeats import Requirement, repeat_study
 from core.study.series import StatedUncertainty, series_study
@@ -43,7 +45,7 @@ STUDIES = {
         (49.9, math.inf),
         size=4,
         stated=StatedUncertainty(0.001, 0.003),
-        doubted=["7"],
+        doubted=(DoubtedResult("7", (Doubt.named("moved"),)),),
     ),
     "short series": series_study(VALUES, (49.9, 50.1), labels="abcd"),
 }

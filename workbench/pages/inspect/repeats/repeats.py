@@ -10,6 +10,8 @@ from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Repeat
 from core.files.recording.rig import GaugeSpec
+from core.findings.proof import Doubt
+from core.study.doubted import Doubted, doubted_among
 from core.study.repeats import RepeatStatistics, repeat_statistics
 from workbench.bench import Bench
 from workbench.language import tr
@@ -135,6 +137,7 @@ class InspectRepeats(QObject):
             k=gauge.k,
             calibration_id=view.calibration_id,
             measured_at=scan.at,
+            doubts=tuple(doubt.fact for doubt in gauge.doubts),
         )
         self._put((*self.all, repeat), tr("add a repeat"))
 
@@ -186,6 +189,7 @@ class InspectRepeats(QObject):
             [repeat.thickness_mm for repeat in self.all],
             spec.nominal_mm,
             2 * spec.tolerance_mm,
+            self.doubted,
             label=tr("Studying the repeats"),
             on_done=done,
             offers={},
@@ -194,7 +198,13 @@ class InspectRepeats(QObject):
 
     def _type1_wanted(self) -> object:
         spec = self.spec
-        return tuple(repeat.thickness_mm for repeat in self.all), spec.nominal_mm, spec.tolerance_mm
+        values = tuple((repeat.thickness_mm, repeat.doubts) for repeat in self.all)
+        return values, spec.nominal_mm, spec.tolerance_mm
+
+    @property
+    def doubted(self) -> Doubted:
+        """Repeats whose results prove nothing."""
+        return doubted_among((repeat.scan, tuple(map(Doubt.named, repeat.doubts))) for repeat in self.all)
 
     def calibrations(self) -> int:
         """With how many different calibrations they were measured."""

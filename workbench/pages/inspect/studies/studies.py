@@ -153,8 +153,8 @@ class InspectStudies(QObject):
             return
         values = [repeat.thickness_mm for repeat in repeats]
         self._run(
-            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm, label=tr("Studying the repeats"),
-            on_done=self._keep, offers={},
+            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm, self._repeats.doubted,
+            label=tr("Studying the repeats"), on_done=self._keep, offers={},
         )  # fmt: skip
 
     def export(self, id_: str, path: Path) -> None:

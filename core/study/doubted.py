@@ -1,0 +1,43 @@
+"""Results of a study that prove nothing by themselves, whatever their uncertainty: nor does the study."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import NamedTuple, TypeAlias
+
+from core.findings.proof import Doubt, Doubts, notes_of
+from core.findings.table import note_of
+from core.messages import Message
+
+
+class DoubtedResult(NamedTuple):
+    """A result that has doubts, by its label in the study."""
+
+    label: str
+    doubts: Doubts
+
+
+Doubted: TypeAlias = tuple[DoubtedResult, ...]
+
+
+def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
+    """Those of the results, each a label with its doubts, that have any."""
+    return tuple(DoubtedResult(label, doubts) for label, doubts in results if doubts)
+
+
+def doubts_of_study(doubted: Doubted) -> Doubts:
+    """The doubt of a study that rests on these results, with why each of them proves nothing; () without any.
+
+    Examples
+    --------
+    >>> (doubt,) = doubts_of_study((DoubtedResult("scan 2", (Doubt.named("moved"),)),))
+    >>> str(doubt.note)
+    'By their own results scan 2 (something moved during the scan) prove nothing, and so the study does not.'
+    """
+    if not doubted:
+        return ()
+    names = [
+        Message("study.doubted_result", "{label} ({why:;})", label=one.label, why=notes_of(one.doubts))
+        for one in doubted
+    ]
+    return (Doubt.of(note_of("study.doubted", names=names)),)
