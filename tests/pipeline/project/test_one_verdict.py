@@ -63,7 +63,7 @@ def case(request, done, tmp_path_factory):
     results = results_folder(folder)
     path = results / "gauge.json"
     gauge = read_gauge(path, results_content(results).cloud)
-    proven = replace(gauge, nominal_mm=gauge.thickness_mm, tolerance_mm=5.0, complete=True)
+    proven = replace(gauge, nominal_mm=gauge.thickness_mm, tolerance_mm=5.0, notes=(), doubts=())
     write_gauge(path, proven, json.loads(path.read_text())["calibration_id"])
     contents = {"project": project_content(folder, project), "results": results_content(results)}
     return Case(request.param, results, project, contents)
