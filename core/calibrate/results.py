@@ -189,7 +189,8 @@ class FanCalibration:
     straight. `readjusted` where camera and fan were moved since by the pictures of a check.
 
     Facts, None where they are not known: `converged`, whether planes and poses were solved to the end;
-    `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain;
+    `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain (nor is it
+    known where they seem to, in poses too few to tell);
     `flatness_assumed`, whether nobody has stated how flat the target is; `taken`, by which camera and when its pictures
     were taken, by their recording's log.
 

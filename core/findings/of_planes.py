@@ -53,6 +53,10 @@ ROWS = (
             "in all poses the target's points in the {place} of the picture lie too far {direction} by {px:.2f} px, "
             "which U need not contain: calibrate the camera anew, or look for a print that is not true",
             fact="points_off_alike"),
+    Finding("fan.points_not_judged", Weight.GRAVE, Effect.NO_PROOF,
+            "the target's points lie off alike in {n} poses, too few to tell whether by chance, or because the print "
+            "is not true or the camera not as it was calibrated, which U need not contain: record {least} or more at "
+            "different distances and tilts", fact="points_off_alike"),
     # The light
     Finding("fan.lines_bent", Weight.CAUTION, Effect.WIDENS_U,
             "the lines are no planes of light: in all poses their ends bend {where} the camera by {mm:.3f} mm "

@@ -53,8 +53,8 @@ OTHERS = (
             fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the laser planes' calibration, of another program or an earlier version, does not say "
-            "whether it had settled and fitted its target: nothing measured proves conformity. Calibrate the laser "
-            "planes again.", fact="planes_unknown"),
+            "whether it had settled and fitted its target, or its poses are too few to tell: nothing measured proves "
+            "conformity. Calibrate the laser planes again, with eight poses or more.", fact="planes_unknown"),
 )  # fmt: skip
 """That of the size, which a comparison with a master does not need, and of what a file does not say."""
 ROWS = (*SCAN, *PLANES, *OTHERS)

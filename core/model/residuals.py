@@ -21,6 +21,7 @@ Searle, S. R., Casella, G., McCulloch, C. E., Variance Components (1992), §7.4 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -32,6 +33,8 @@ from core.model.arrays import Array
 
 SIGNIFICANT = 0.01
 """A pattern that turned signs show more often than this is chance."""
+ENOUGH_GROUPS = 1 + math.ceil(-math.log2(SIGNIFICANT))
+"""So many have turns of signs enough to tell."""
 _FLIPS = 1999
 """Random turns of the groups' signs; with few groups there are no more than 2^(groups − 1)."""
 _INDEPENDENT_RUN = 2.0
@@ -87,6 +90,8 @@ class Judgement:
     systematic
         RMS of the pattern that groups have in common, less what chance adds to it, in the residuals' unit; 0 where
         chance explains it.
+    undecided
+        Whether groups too few to tell it from chance have a pattern in common: no turn of their signs shows a stronger.
     alone
         How many times as large as stated is what errs in each residual alone; NaN where shared errors are not known.
     freedom
@@ -105,6 +110,7 @@ class Judgement:
     count: NDArray[np.intp]
     p: float
     systematic: float
+    undecided: bool = False
     alone: float = np.nan
     freedom: int = 0
     whole: float = np.nan
@@ -137,7 +143,9 @@ def judge_residuals(residuals: Residuals) -> Judgement:
     count = np.bincount(residuals.cell, minlength=cells)
     scaled = sums / np.sqrt(np.maximum(count, 1))
     seen = float((scaled.sum(axis=0) ** 2).sum())
-    p = _chance(scaled, seen, np.random.default_rng(0))
+    p, few = _chance(scaled, seen, np.random.default_rng(0)), groups < ENOUGH_GROUPS
+    undecided = few and p <= 2.0 ** (1 - groups)
+    p = 1.0 if few else p
     by_chance = float((scaled**2).sum())
     square = (seen - by_chance) / len(values) / (1 - 1 / max(groups, 2))
     return Judgement(
@@ -148,6 +156,7 @@ def judge_residuals(residuals: Residuals) -> Judgement:
         count=count,
         p=p,
         systematic=float(np.sqrt(max(square, 0.0))) if p < SIGNIFICANT else 0.0,
+        undecided=undecided,
     )
 
 
@@ -326,8 +335,6 @@ def _cell(share: Array, cells: int) -> NDArray[np.intp]:
 def _chance(scaled: Array, seen: float, rng: np.random.Generator) -> float:
     """Share of turned signs of the groups (G, C) that show as strong a pattern as was seen."""
     groups = len(scaled)
-    if 2.0 ** (1 - groups) >= SIGNIFICANT:
-        return 1.0
     if 2 ** (groups - 1) <= _FLIPS:
         signs = 1.0 - 2.0 * ((np.arange(2 ** (groups - 1))[:, None] >> np.arange(groups)) & 1)
         extra = 0

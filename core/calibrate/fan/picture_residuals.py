@@ -23,7 +23,7 @@ from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array
-from core.model.residuals import Judgement, judge_residuals, of_vectors, over_picture
+from core.model.residuals import ENOUGH_GROUPS, Judgement, judge_residuals, of_vectors, over_picture
 
 TOLD_PX, TOLD_MM = 0.05, 0.05
 """What lies off by less at its strongest is not told: a camera's own uncertainty may be of this size."""
@@ -78,31 +78,50 @@ def judge_points(located: Sequence[LocatedPose], bundle: Bundle) -> PointResidua
     return PointResiduals(judge_residuals(of_picture), judge_residuals(of_target), places)
 
 
-def notes_on_points(found: PointResiduals) -> tuple[Message, ...]:
-    """What is wrong, where and in which direction: over the target, else over the picture, for the poses of a rig are
-    so alike that one often shows as the other.
+def points_off_alike(found: PointResiduals) -> bool | None:
+    """Whether points lie off in all poses, so far that U need not contain it; None where too few poses seem to say so.
+
+    Points that lie off by less than is told are not doubted, nor those that turned signs of the poses show as far off:
+    U holds their scatter.
     """
-    point, (dx, dy) = _strongest(found.over_target)
-    if np.hypot(dx, dy) > TOLD_MM:
+    judged = (found.over_target, TOLD_MM), (found.over_picture, TOLD_PX)
+    off = [one for one, told in judged if _size(one) > told]
+    if any(one.systematic for one in off):
+        return True
+    return None if any(one.undecided for one in off) else False
+
+
+def notes_on_points(found: PointResiduals, poses: int) -> tuple[Message, ...]:
+    """What is wrong, where and in which direction: over the target, else over the picture, for the poses of a rig are
+    so alike that one often shows as the other. Or that so many `poses` do not tell.
+    """
+    alike = points_off_alike(found)
+    if alike is None:
+        return (note_of("fan.points_not_judged", n=poses, least=ENOUGH_GROUPS),)
+    if not alike:
+        return ()
+    if found.over_target.systematic and _size(found.over_target) > TOLD_MM:
+        point, (dx, dy) = _strongest(found.over_target)
         x, y = found.places[point]
         return (note_of("fan.point_off_target", x=float(x), y=float(y), dx=dx, dy=dy),)
     region, (du, dv) = _strongest(found.over_picture)
-    if np.hypot(du, dv) > TOLD_PX:
-        return (
-            note_of(
-                "fan.points_off_in_region",
-                place=REGIONS[region],
-                direction=direction_of(du, dv),
-                px=float(np.hypot(du, dv)),
-            ),
-        )
-    return ()
+    return (
+        note_of(
+            "fan.points_off_in_region",
+            place=REGIONS[region],
+            direction=direction_of(du, dv),
+            px=float(np.hypot(du, dv)),
+        ),
+    )
+
+
+def _size(found: Judgement) -> float:
+    """How far the points of the strongest place lie off, in the residuals' unit; 0 where there are none."""
+    return float(np.hypot(*_strongest(found)[1])) if len(found.profile) else 0.0
 
 
 def _strongest(found: Judgement) -> tuple[int, tuple[float, float]]:
-    """The place where the mean vector is furthest from zero for its number, and it; zero where there is no pattern."""
-    if not found.systematic:
-        return 0, (0.0, 0.0)
+    """The place where the mean vector is furthest from zero for its number, and it."""
     both = found.profile.reshape(2, -1)
     place = found.strongest % both.shape[1]
     return place, (float(both[0, place]), float(both[1, place]))

@@ -12,7 +12,7 @@ from core.calibrate.board_shape import BoardShape
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.cross_validation import FEWEST, Predictions
 from core.calibrate.fan.left_out import note_on_left_out
-from core.calibrate.fan.picture_residuals import judge_points, notes_on_points
+from core.calibrate.fan.picture_residuals import judge_points, notes_on_points, points_off_alike
 from core.calibrate.fan.poses.located_pose import LocatedPose
 from core.calibrate.fan.poses.target_plane import on_target
 from core.calibrate.fan.straightness import bends_of, bow_or_bend, judge_lines, notes_on_lines, off_planes_mm
@@ -73,7 +73,8 @@ def summarise(
             bent_mm = off_planes_mm(_by_line([pose.points for pose in poses]), bends)
             of_lines = (*of_lines, bow_or_bend(on_flat))
     free_fan = fan_of(free.planes, free.covariance)
-    of_points = notes_on_points(judge_points(located, used))
+    residuals = judge_points(located, used)
+    alike = points_off_alike(residuals)
     return FanCalibration(
         fan=fan_of(used.planes, used.covariance),
         free=free_fan,
@@ -86,9 +87,9 @@ def summarise(
         poses=poses,
         notes=(
             *notes,
-            *_notes(located, poses),
+            *_notes(located, poses, few_told=alike is None),
             *of_lines,
-            *of_points,
+            *notes_on_points(residuals, sum(pose.used for pose in located)),
             *_notes_on_scatter(foretold.error_mm, max(used.expected_mm, bent_mm)),
             *_notes_on_predictions([pose.features.name for pose in located if pose.used], foretold),
             *_notes_on_bow(used.shape),
@@ -99,7 +100,7 @@ def summarise(
         cross_validation_mm=float(np.sqrt(np.mean(foretold.error_mm**2))),
         board=used.shape,
         bends=bends,
-        points_off_alike=bool(of_points),
+        points_off_alike=alike,
     )
 
 
@@ -160,12 +161,12 @@ def _rms(distances: Sequence[Array]) -> float:
     return float(np.sqrt((joined**2).mean())) if len(joined) else float("nan")
 
 
-def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose]) -> tuple[Message, ...]:
-    """On the poses that are left out, on too few that are used, and on saturated stripes."""
+def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose], *, few_told: bool) -> tuple[Message, ...]:
+    """On the poses that are left out, on too few that are used unless that is told, and on saturated stripes."""
     left_out = note_on_left_out(poses)
     notes = [] if left_out is None else [left_out]
     used = sum(pose.used for pose in poses)
-    if used < FEWEST:
+    if used < FEWEST and not few_told:
         notes.append(note_of("fan.few_poses", n=used, all=len(poses), least=FEWEST))
     stripes = [stripe for pose in located for stripe in pose.stripes.values()]
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))

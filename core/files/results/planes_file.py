@@ -193,7 +193,8 @@ def planes_id(fan: Fan) -> str:
     return hashlib.sha256(fan.pis.astype("<f8").tobytes()).hexdigest()[:12]
 
 
-_FACTS = ("converged", "points_off_alike", "flatness_assumed")
+_FACTS = ("converged", "flatness_assumed")
+"""Known of every calibration whose file tells facts: whether points lie off alike, few poses may leave open."""
 
 
 def tells_facts(path: Path) -> bool:

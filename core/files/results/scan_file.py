@@ -18,11 +18,13 @@ from core.errors import InputError
 from core.files.arrays_file import (
     Arrays,
     pack_messages,
+    pack_texts,
     read_arrays,
     real,
     texts,
     truth,
     unpack_messages,
+    unpack_texts,
     unpacking,
     whole,
     write_arrays,

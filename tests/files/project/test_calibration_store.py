@@ -117,10 +117,10 @@ def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(
     kept_id = keep_planes(tmp_path, fan, camera.camera, POSES)
     (entry,) = history(tmp_path)
     assert not entry.facts_known, "as of an earlier version"
-    known = replace(fan, converged=True, points_off_alike=False, flatness_assumed=False)
+    known = replace(fan, converged=True, points_off_alike=None, flatness_assumed=False)
     assert keep_planes(tmp_path, known, camera.camera, POSES) == kept_id
     (entry,) = history(tmp_path)
-    assert entry.facts_known
+    assert entry.facts_known, "and that its few poses leave one of them open"
     assert read_stored_planes(tmp_path, kept_id, camera.camera).converged is True
     (tmp_path / "calibrations" / f"planes-{kept_id}.json").write_text("{")
     assert not history(tmp_path)[0].facts_known, "a damaged one tells nothing, and does not hide the others"
