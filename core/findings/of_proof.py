@@ -48,9 +48,9 @@ OTHERS = (
             "is stated.", fact="size_unconfirmed"),
     Finding("validity.scan_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the scan, of another program or an earlier version, does not say whether anything moved or "
-            "changed, or the stripes of the laser planes' calibration are not kept or too short to show it: nothing "
-            "measured proves conformity. Measure the scan again, or first calibrate the laser planes again.",
-            fact="scan_unknown"),
+            "changed, its frames are too few to tell, or the stripes of the laser planes' calibration are not kept or "
+            "too short to show it: nothing measured proves conformity. Measure the scan again, with more frames, or "
+            "first calibrate the laser planes again.", fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the laser planes' calibration, of another program or an earlier version, does not say "
             "whether it had settled and fitted its target, or its poses are too few to tell: nothing measured proves "

@@ -17,6 +17,10 @@ ROWS = (
             "The rig drifts: from the first frame to the last the fan's light moves evenly, by {shift_px:.2g} px, "
             "which is {shift_mm:.2g} mm in depth. All frames are used. Let camera and lasers warm up before a scan, "
             "and scan faster.", fact="drifted"),
+    Finding("scan.rest_not_judged", Weight.GRAVE, Effect.NO_PROOF,
+            "Whether the rig drifted or anything moved during the scan cannot be told from {n} frames with {stretches} "
+            "stretches of the fan's light: scan again with {least} frames or more, and the fan's lines in view.",
+            fact="drifted"),
     # Where the light planes are
     Finding("scan.collapsed", Weight.GRAVE, Effect.NO_PROOF,
             "The sweeps' light planes have fallen together into one: no depth can be trusted. Move and tilt the "

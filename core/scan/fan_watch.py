@@ -18,7 +18,7 @@ doi:10.2307/2529204 (binary segmentation).
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -72,6 +72,8 @@ class FanRest:
     drifts
         Whether all of it lies evenly farther aside from frame to frame, from the first to the last: nothing moved at
         once, and all frames are used.
+    frames, stretches
+        In how many frames how many of its stretches are watched.
     """
 
     at_rest: NDArray[np.bool_]
@@ -80,6 +82,13 @@ class FanRest:
     shift_mm: float = 0.0
     share: float = 0.0
     drifts: bool = False
+    frames: int = 0
+    stretches: int = 0
+
+    @property
+    def known(self) -> bool:
+        """Whether enough of it is watched to tell a movement or a drift."""
+        return self.frames >= 2 * LEAST_FRAMES and self.stretches >= LEAST_STRETCHES
 
     @property
     def unsteady(self) -> bool:
@@ -87,7 +96,9 @@ class FanRest:
         return bool(self.first_after) or self.drifts
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
-        """Note for the technician if anything moved; `frames` frames are used."""
+        """Note for the technician if anything moved, or that is not known; `frames` frames are used."""
+        if not self.known:
+            return (note_of("scan.rest_not_judged", n=self.frames, stretches=self.stretches, least=2 * LEAST_FRAMES),)
         if self.drifts:
             return (note_of("scan.drifted", shift_px=self.shift_px, shift_mm=self.shift_mm),)
         if not self.first_after:
@@ -116,38 +127,41 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     """Find which frames of a scan saw the fan's light where it was in the reference."""
     count = len(features.frames)
     known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
-    if len(known) < 2 * LEAST_FRAMES:
-        return FanRest(np.ones(count, dtype=np.bool_))
+    stretches = len(features.frames[known[0]].fan_shifts_px) if len(known) else 0
+    at_rest = FanRest(np.ones(count, dtype=np.bool_), frames=len(known), stretches=stretches)
+    if not at_rest.known:
+        return at_rest
     shifts = np.array([features.frames[i].fan_shifts_px for i in known])
     noise = np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
     level = np.maximum(noise, LEAST_NOISE_PX)
     splits = sorted(_splits(shifts, level, 0))
     if not splits:
-        return FanRest(np.ones(count, dtype=np.bool_))
+        return at_rest
     parts, per_px = np.split(np.arange(len(known)), splits), _depth_per_px(features, lines, camera, fan)
     drift, left = _drift(shifts, known, level)
     if left < sum(_spread(shifts[part], level) for part in parts):
         aside_px, aside_mm = _median(np.abs(drift)), _median(np.abs(drift * per_px))
-        return FanRest(np.ones(count, dtype=np.bool_), (), aside_px, aside_mm, 1.0, drifts=True)
+        return replace(at_rest, shift_px=aside_px, shift_mm=aside_mm, share=1.0, drifts=True)
     middles = np.array([np.median(shifts[part], axis=0) for part in parts])
     off = np.sqrt(np.mean(middles**2, axis=1))
     rest = int(np.argmin(off))
     same = np.array(
         [not _moved(middles[rest], one, noise, len(part)) for one, part in zip(middles, parts, strict=True)]
     )
-    at_rest = np.ones(count, dtype=np.bool_)
+    resting = np.ones(count, dtype=np.bool_)
     for part, still in zip(parts, same, strict=True):
-        at_rest[known[part[0]] : known[part[-1]] + 1] = still
+        resting[known[part[0]] : known[part[-1]] + 1] = still
     farthest = int(np.argmax(off))
     change = middles[farthest] - middles[rest]
     moved = np.abs(change) > np.maximum(SURELY * noise / np.sqrt(len(parts[farthest])), MOVED_PX)
     in_depth = np.abs(change * per_px)[moved]
-    return FanRest(
+    return replace(
         at_rest,
-        tuple(int(known[split]) for split in splits),
-        _median(np.abs(change[moved])),
-        _median(in_depth),
-        float(np.mean(moved)),
+        at_rest=resting,
+        first_after=tuple(int(known[split]) for split in splits),
+        shift_px=_median(np.abs(change[moved])),
+        shift_mm=_median(in_depth),
+        share=float(np.mean(moved)),
     )
 
 

@@ -167,9 +167,9 @@ def reconstruct(
         speckle=_speckle(features, lines, sweeps, camera, fan) if _together(options) else None,
         crossing_reasons=reasons,
         read_out=solved.read_out,
-        moved=solved.moved or _left_out(features) >= LEAST_FRAMES,
+        moved=solved.moved or _left_out(features) >= LEAST_FRAMES or (None if solved.moved is None else False),
         second_bounces=bounces,
-        drifted=watched.drifts,
+        drifted=watched.drifts if watched.known else None,
         collapsed=sweeps.collapsed,
         fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
@@ -226,7 +226,7 @@ class _Solved:
     notes: tuple[Message, ...]
     datum: Datum | None = None
     read_out: ReadOut = AT_ONCE
-    moved: bool = False
+    moved: bool | None = None
     fan_disagrees: bool = False
     explanation: Explanation | None = None
 
@@ -244,11 +244,14 @@ def _solve(
     crossings, line = numbered_crossings
     kept = kept.copy()
     if not _together(options):
-        sweeps = locate_each(crossings, line, camera, fan, progress)
-        everywhere = np.ones(len(crossings), dtype=np.bool_)
+        sweeps = locate_each(crossings.select(kept), line[kept], camera, fan, progress)
+        weights = np.zeros(len(crossings))
+        weights[kept] = sweeps.weights
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
-        reasons = reasons_of(crossings.with_fan, sweeps.weights, everywhere, located)
-        return _Solved(sweeps, sweeps.weights, reasons, sweeps.notes)
+        reasons = reasons_of(crossings.with_fan, weights, kept, located)
+        notes = watched.note(names, len(sweeps.frames)) + sweeps.notes
+        moved = bool(watched.first_after) if watched.known else None
+        return _Solved(sweeps, weights, reasons, notes, moved=moved)
     among, of_among = crossings.select(kept), line[kept]
     read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
     explanation = None
@@ -278,7 +281,7 @@ def _solve(
         + (judged if explanation is None else (explanation.note,)),
         datum,
         read_out,
-        bool(watched.first_after or part.movements),
+        bool(watched.first_after or part.movements) if watched.known or part.known else None,
         explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
     )

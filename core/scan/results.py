@@ -54,9 +54,9 @@ class ScanResult:
     second_bounces
         The pieces of the sweeps' light that were left out as such.
     moved
-        Whether object, table or camera moved within the scan.
+        Whether object, table or camera moved within the scan; None where frames or crossings are too few to tell.
     drifted
-        Whether camera or fan moved evenly from its first frame to its last.
+        Whether camera or fan moved evenly from its first frame to its last; None where frames are too few to tell.
     read_out
         How planes change while the camera reads its rows out.
     collapsed
@@ -83,8 +83,8 @@ class ScanResult:
     speckle: FanSpeckle | None = None
     crossing_reasons: NDArray[np.int64] = field(default_factory=lambda: np.zeros(0, dtype=np.int64))
     read_out: ReadOut = AT_ONCE
-    moved: bool = False
-    drifted: bool = False
+    moved: bool | None = None
+    drifted: bool | None = None
     collapsed: bool = False
     fan_disagrees: bool = False
     rig_changed: bool = False

@@ -187,10 +187,11 @@ def _movements(rays: Array, inverse_depths: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StillPart:
-    """The crossings (M,) that are kept, and when something moved."""
+    """The crossings (M,) that are kept, when something moved, and whether there are sweeps enough to tell."""
 
     kept: NDArray[np.bool_]
     movements: tuple[Movement, ...]
+    known: bool
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Note for the technician if anything moved; `frames` frames are used."""
@@ -244,7 +245,7 @@ def still_part(
         solved.sort(key=lambda one: -one[0])
         worse = len(solved) > 1 and solved[0][1] > CLEARLY_WORSE * max(solved[1][1], 1.0)
         kept = solved[int(worse)][2]
-    return StillPart(kept, tuple(movements))
+    return StillPart(kept, tuple(movements), len(sweeping_frames(crossings)) >= 2 * SWEEPS_ASIDE)
 
 
 def _sweeps(crossings: CrossingTable, rows: NDArray[np.bool_]) -> int:

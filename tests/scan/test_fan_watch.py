@@ -3,10 +3,12 @@
 from dataclasses import replace
 from functools import cache
 
+import numpy as np
 import pytest
 
 from core.errors import InputError
 from core.scan.features.extraction import FeatureOptions, extract_features
+from core.scan.method import Method
 from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.records import MOVED_FRAME
 from core.simulate.effects.warming import Warming
@@ -30,16 +32,34 @@ def features_of(scenario):
     return extract_features(stage.reference(), pictures, len(sheets), options), stage.rig
 
 
-def measured(**changes):
+def measured(method=Method.NETWORK, **changes):
     features, rig = features_of(replace(BLOCK, **changes))
-    return reconstruct(features, rig.camera, rig.fan, ReconstructOptions(sigma_cut_mm=0.2))
+    return reconstruct(features, rig.camera, rig.fan, ReconstructOptions(method, sigma_cut_mm=0.2))
 
 
 @SEEDS
 def test_a_scan_at_rest_is_not_suspected(seed):
     result = measured(seed=seed)
-    assert not result.moved
-    assert "scan.fan_shifted" not in [note.code for note in result.notes]
+    assert (result.moved, result.drifted) == (False, False)
+    assert not {note.code for note in result.notes} & {"scan.fan_shifted", "scan.rest_not_judged"}
+
+
+@pytest.mark.parametrize(("method", "moved"), [(Method.NETWORK, False), (Method.THREE_CROSSINGS, None)])
+def test_of_light_watched_in_five_frames_only_crossings_tell_and_that_is_told(method, moved):
+    """Ten sweeps say by them whether anything moved, none whether the rig drifted."""
+    features, rig = features_of(replace(BLOCK, moved_frame=0))
+    unwatched = tuple(replace(one, fan_shifts_px=np.zeros(0)) for one in features.frames[5:])
+    few = replace(features, frames=(*features.frames[:5], *unwatched))
+    result = reconstruct(few, rig.camera, rig.fan, ReconstructOptions(method, sigma_cut_mm=0.2))
+    assert (result.moved, result.drifted) == (moved, None)
+    (told,) = (note for note in result.notes if note.code == "scan.rest_not_judged")
+    assert (told.values["n"], told.values["least"]) == (5, 6)
+
+
+def test_what_moved_is_told_and_left_out_by_three_crossings_too():
+    result = measured(Method.THREE_CROSSINGS, lifted_mm=0.4)
+    assert (result.moved, result.notes[0].code) == (True, "scan.fan_shifted")
+    assert {frame.reason for frame in result.frames[AT:]} == {MOVED_FRAME}
 
 
 @pytest.mark.parametrize(

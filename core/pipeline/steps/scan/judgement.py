@@ -138,8 +138,8 @@ def facts_of(
     """The facts of the planes and the day, with those that the pictures show; within one picture nothing moves."""
     return replace(
         of_the_day,
-        moved=scan is not None and scan.moved,
-        drifted=scan is not None and scan.drifted,
+        moved=False if scan is None else scan.moved,
+        drifted=False if scan is None else scan.drifted,
         collapsed=scan is not None and scan.collapsed,
         fan_disagrees=scan is not None and scan.fan_disagrees,
         rig_changed=change.surely or (scan is not None and scan.rig_changed),
