@@ -36,7 +36,7 @@ ROWS = (
     Finding("camera.too_few_to_compare", Weight.CAUTION, Effect.NONE,
             "With fewer than six views two halves of them cannot be checked against each other."),
     # The fit
-    Finding("camera.bad_fit", Weight.GRAVE, Effect.NONE,
+    Finding("camera.bad_fit", Weight.GRAVE, Effect.WIDENS_U,
             "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
             "Look for views with blur or a moved target, check the target's corners and how flat it is, or take the "
             "views again."),
@@ -58,9 +58,10 @@ ROWS = (
             "In all views corners in the {place} of the picture lie too far {direction} by {px:.2f} px ({mm:.3f} mm "
             "at a distance of {depth_mm:.0f} mm): the lens or the print is not fully described, or corners are "
             "drawn aside by blur. The standard deviations contain it."),
-    Finding("camera.imported", Weight.CAUTION, Effect.NONE,
+    Finding("camera.imported", Weight.GRAVE, Effect.NO_PROOF,
             "The camera was calibrated by another program and read from {name}: its standard deviations are not "
-            "known, so no uncertainty here holds the camera's share."),
+            "known, so no uncertainty here holds the camera's share, and nothing measured proves conformity.",
+            fact="u_incomplete"),
     # Targets: their size and form
     Finding("camera.bowed_target", Weight.CAUTION, Effect.WIDENS_U,
             "The target is bowed by {bow:.2f} mm from its lowest to its highest place, which is taken into account: "

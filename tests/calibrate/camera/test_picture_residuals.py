@@ -74,6 +74,8 @@ def test_corners_that_fit_to_most_of_a_pixel_are_a_bad_calibration():
     assert bad_fit(calibration) == note
     assert note.values["rms"] == pytest.approx(0.96, abs=0.1)
     assert note.values["times"] > 15
+    sure, unsure = calibrate_camera(views, TRUTH.image_size).sd, calibration.sd
+    assert min(unsure[name] / sure[name] for name in ("alpha", "beta", "u0", "v0")) > 10, "U is wider by as much"
 
 
 @pytest.mark.accuracy

@@ -8,10 +8,14 @@ import numpy as np
 import pytest
 import yaml
 
+from core.calibrate.deviations import calibration_deviations
+from core.calibrate.results import FanCalibration
 from core.errors import InputError
 from core.files.exchange.opencv_calibration import read_opencv, write_opencv
 from core.files.exchange.ros_camera_info import read_camera_info, write_camera_info
-from core.model import Camera
+from core.findings.finding import Effect
+from core.findings.table import FINDINGS
+from core.model import Camera, Fan, LightPlane
 from tests.report.report_samples import CAMERA, camera_calibration
 
 AT = datetime(2026, 3, 14, 15, 9, 26, tzinfo=UTC)
@@ -183,3 +187,15 @@ def test_a_hostile_calibration_is_refused_in_one_sentence(tmp_path, name, text, 
     with pytest.raises(InputError, match=complaint) as refused:
         read_opencv(tmp_path / name)
     assert len(refused.value.told().removeprefix(str(tmp_path))) < 300
+
+
+def test_a_camera_of_another_program_leaves_its_share_out_of_u_as_its_note_says(tmp_path, calibration):
+    """What it lacks takes away every proof: `core.inspect.uncertainty.point_errors.PointErrors.missing`."""
+    write_opencv(tmp_path / "c.yml", calibration, AT)
+    theirs = read_opencv(tmp_path / "c.yml")
+    (note,) = theirs.notes
+    plane = LightPlane(np.array([0.0, 0.001, 0.002]))
+    fan = FanCalibration(Fan((plane,)), Fan((plane,)), (0.0,), (), (), 0.0, None, None, ())
+    sources = [{one.source for one in calibration_deviations(camera, fan)} for camera in (calibration, theirs)]
+    assert FINDINGS[note.code].effect == Effect.NO_PROOF
+    assert ["camera" in own for own in sources] == [True, False]
