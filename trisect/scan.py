@@ -23,7 +23,7 @@ from core.messages import Message
 from core.model import Camera, LightPlane
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan
 from core.pipeline.steps.scan.notes import assumed_shutter
-from core.pipeline.steps.validity import facts_of_planes
+from core.pipeline.steps.validity import facts_of_calibration
 from core.pipeline.steps.workspace import Calibration
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
@@ -220,7 +220,7 @@ def solve_scan(
     calibration = Calibration(camera, fan)
     solved = solved_scan(features, calibration, solving, progress)
     change_by = partial(_change_by_scan, calibration, stability)
-    of_day, section = facts_of_planes(fan), section_since(calibration, fan.stripes, features.fan)
+    of_day, section = facts_of_calibration(calibration), section_since(calibration, fan.stripes, features.fan)
     judgement = judged_scan(solved, change_by, of_day, section, method=solving.method, progress=progress)
     cloud = with_normals(solved.scan.cloud, progress=progress)
     cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))

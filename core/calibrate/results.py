@@ -61,7 +61,8 @@ class CameraCalibration:
     distance between the points that cameras solved from odd and from even views give over the work volume, NaN when
     there are too few views for two cameras. `notes` are for the technician. `board` is the shape of the
     target as all views together tell it, which the residuals have taken into account. `hot_pixels` is the number of
-    pixels that shine by themselves in all pictures; None where it is not known.
+    pixels that shine by themselves in all pictures, `converged` whether it was solved to the end
+    (`core.calibrate.camera.settled`); None where that is not known.
     """
 
     camera: Camera
@@ -75,6 +76,7 @@ class CameraCalibration:
     notes: tuple[Message, ...] = ()
     board: BoardShape = field(default_factory=BoardShape)
     hot_pixels: int | None = None
+    converged: bool | None = None
 
     @property
     def sd(self) -> Mapping[str, float]:

@@ -36,6 +36,10 @@ ROWS = (
     Finding("camera.too_few_to_compare", Weight.CAUTION, Effect.NONE,
             "With fewer than six views two halves of them cannot be checked against each other."),
     # The fit
+    Finding("camera.not_converged", Weight.GRAVE, Effect.NO_PROOF,
+            "The camera was not solved to the end: a further step would still change it, and what is measured with it "
+            "may be off by more than U. Take more views, tilted by about 30° in different directions, and calibrate "
+            "again.", fact="camera_unsettled"),
     Finding("camera.bad_fit", Weight.GRAVE, Effect.WIDENS_U,
             "The calibration is bad: corners fit to {rms:.2f} px only, {times:.0f} times what they were found to. "
             "Look for views with blur or a moved target, check the target's corners and how flat it is, or take the "

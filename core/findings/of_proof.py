@@ -31,6 +31,9 @@ SCAN = (
 )  # fmt: skip
 """Why nothing is proven where a fact of the scan holds, in the order in which it is said."""
 PLANES = (
+    Finding("validity.camera_not_settled", Weight.GRAVE, Effect.NO_PROOF,
+            "The calibration of the camera had not settled: nothing measured proves conformity. Take more views of the "
+            "target, tilted in different directions, and calibrate again.", fact="camera_unsettled"),
     Finding("validity.planes_not_settled", Weight.GRAVE, Effect.NO_PROOF,
             "The calibration of the laser planes had not settled: nothing measured proves conformity. Record more "
             "poses of the target, at different distances and tilts, and calibrate again.", fact="planes_unsettled"),
@@ -39,7 +42,7 @@ PLANES = (
             "contain: nothing measured proves conformity. Calibrate again with a true target and camera, or measure "
             "a known artefact.", fact="points_off_alike"),
 )  # fmt: skip
-"""The same of the planes' calibration."""
+"""The same of the calibrations of camera and planes."""
 OTHERS = (
     Finding("target.size_unconfirmed", Weight.GRAVE, Effect.NO_PROOF,
             "The size of the plane target, on which every length rests, is neither stated ({field}) nor confirmed, "
@@ -52,9 +55,9 @@ OTHERS = (
             "too short to show it: nothing measured proves conformity. Measure the scan again, with more frames, or "
             "first calibrate the laser planes again.", fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
-            "The file of the laser planes' calibration, of another program or an earlier version, does not say "
-            "whether it had settled and fitted its target, or its poses are too few to tell: nothing measured proves "
-            "conformity. Calibrate the laser planes again, with eight poses or more.", fact="planes_unknown"),
+            "The file of the camera's or the laser planes' calibration, of another program or an earlier version, does "
+            "not say whether it had settled and fitted its target, or the planes' poses are too few to tell: nothing "
+            "measured proves conformity. Calibrate again, the laser planes with eight poses or more.", fact="planes_unknown"),
 )  # fmt: skip
 """That of the size, which a comparison with a master does not need, and of what a file does not say."""
 ROWS = (*SCAN, *PLANES, *OTHERS)

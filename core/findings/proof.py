@@ -82,7 +82,7 @@ def notes_beside(doubts: Doubts, notes: Iterable[Message]) -> tuple[Message, ...
 OF_SCAN: Mapping[str, Doubt] = {row.fact: Doubt.of(row.note()) for row in of_proof.SCAN}
 """Why nothing is proven where a fact of the scan holds, by its name, in the order in which they are said."""
 OF_PLANES: Mapping[str, Doubt] = {row.fact: Doubt.of(row.note()) for row in of_proof.PLANES}
-"""The same of the planes' calibration."""
+"""The same of the calibrations of camera and planes."""
 SCAN_UNKNOWN = Doubt.of(note_of("validity.scan_unknown"))
 PLANES_UNKNOWN = Doubt.of(note_of("validity.planes_unknown"))
 """Why nothing is proven where one of these facts is not known."""
@@ -107,9 +107,9 @@ class ScanFacts:
         in order.
     section_changed
         Whether the fan's light is skewed otherwise than in its calibration, whose stripes may not tell.
-    planes_unsettled, points_off_alike
-        Whether the planes' calibration was not solved to its end, and whether its target's points lie off alike in all
-        poses and no artefact holds what that may do.
+    camera_unsettled, planes_unsettled, points_off_alike
+        Whether the calibration of the camera, or of the planes, was not solved to its end, and whether the plane
+        target's points lie off alike in all poses and no artefact holds what that may do.
     size_unconfirmed
         Whether the plane target's size is neither stated nor confirmed; it cancels in the comparison with a master.
     of_the_day
@@ -125,6 +125,7 @@ class ScanFacts:
     rig_changed: bool | None = None
     rig_seems_changed: bool | None = None
     section_changed: bool | None = None
+    camera_unsettled: bool | None = None
     planes_unsettled: bool | None = None
     points_off_alike: bool | None = None
     size_unconfirmed: bool | None = None

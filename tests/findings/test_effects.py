@@ -90,6 +90,16 @@ def test_a_fact_of_the_planes_takes_away_the_proof_and_so_does_its_lack(facts, w
     assert again(wide[0], out, "scan", "gauge") == "not proven"
 
 
+@pytest.mark.parametrize(("facts", "proven"), [
+    ({"converged": False}, "not proven"),
+    ({"converged": None}, "conforming"),
+    ({"converged": None, "views": []}, "not proven"),
+])  # fmt: skip
+def test_a_camera_that_had_not_settled_proves_nothing_nor_one_whose_views_do_not_show_it(facts, proven, wide, out):
+    changed(out / "camera.json", **facts)
+    assert again(wide[0], out, "scan", "gauge") == proven
+
+
 def test_what_u_does_not_contain_takes_away_the_proof_in_every_file(wide, out):
     """A camera of another program without its covariance: U lacks what the camera adds."""
     changed(out / "camera.json", covariance=None)

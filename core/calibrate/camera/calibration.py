@@ -34,6 +34,7 @@ from core.calibrate.camera.covariance import SharedErrorFactors
 from core.calibrate.camera.coverage import coverage, tilt_range
 from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.camera.screening import screen
+from core.calibrate.camera.settled import has_settled
 from core.calibrate.camera.skew import SKEW, skew_helps
 from core.calibrate.camera.third_radial import third_radial
 from core.calibrate.camera.zhang import centred_matrix, intrinsic_matrix, pose_from_homography, radial_start
@@ -162,8 +163,10 @@ def _calibrated(
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
     qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
     calibration = replace(_summary(qualities, solved, fit.shaped(counted), covariance, options.free), board=shape)
+    calibration = replace(calibration, converged=has_settled(calibration))
     progress(_STEP, _STAGES, _STAGES)
-    return replace(calibration, notes=notes_on(calibration, widening))
+    of_fit = () if calibration.converged else (note_of("camera.not_converged"),)
+    return replace(calibration, notes=(*of_fit, *notes_on(calibration, widening)))
 
 
 def _observed(views: Sequence[TargetView]) -> list[Observed]:

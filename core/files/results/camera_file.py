@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -12,6 +13,7 @@ from pydantic import Field, model_validator
 
 from core import __version__
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardShape
+from core.calibrate.camera.settled import has_settled
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration, ViewQuality
 from core.files.complaints import Clash, checked, fitting
 from core.files.json_text import rounded, write_json
@@ -85,6 +87,7 @@ class _CameraFile(ResultFile):
     cross_validation_mm: OrNan = math.nan
     board: BoardTable | None = None
     hot_pixels: Annotated[int, Field(ge=0)] | None = None
+    converged: bool | None = None
     views: list[_View] = Field(default_factory=list)
     notes: list[KeptMessage] = Field(default_factory=list)
 
@@ -132,6 +135,7 @@ def write_camera(path: Path, calibration: CameraCalibration) -> None:
             "tilt_range_deg": math.degrees(calibration.tilt_range),
             "cross_validation_mm": calibration.cross_validation_mm,
             "hot_pixels": calibration.hot_pixels,
+            "converged": calibration.converged,
             "notes": [kept(note) for note in calibration.notes],
             "id": camera_id(camera),
             "version": __version__,
@@ -161,7 +165,10 @@ def read_camera(path: Path) -> CameraCalibration:
     )
     file = checked(_CameraFile, tables, path)
     with fitting(path):
-        return _calibration(file)
+        calibration = _calibration(file)
+        if calibration.converged is None and has_settled(calibration):  # an earlier version's, whose views show it
+            calibration = replace(calibration, converged=True)
+        return calibration
 
 
 def _calibration(file: _CameraFile) -> CameraCalibration:
@@ -184,6 +191,7 @@ def _calibration(file: _CameraFile) -> CameraCalibration:
         notes=tuple(file.notes),
         board=board_shape(file.board),
         hot_pixels=file.hot_pixels,
+        converged=file.converged,
     )
 
 

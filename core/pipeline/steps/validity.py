@@ -8,7 +8,7 @@ from dataclasses import replace
 from datetime import datetime, timedelta
 
 from core.calibrate.board_shape import LARGEST_SCALE_SD
-from core.calibrate.results import FanCalibration, Readjustment
+from core.calibrate.results import Readjustment
 from core.errors import InputError
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
@@ -37,14 +37,14 @@ def history_of(rig: Rig, calibration_id: str) -> RigHistory:
 
 
 def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
-    """What of the planes' calibration, and of the day of the recording, decides whether anything is proven.
+    """What of the calibrations, and of the day of the recording, decides whether anything is proven.
 
     The check nearest in time counts, before the recording or after it. What is not stated has no limit. That the
     target's points lie off alike in all poses counts no more once U contains what an artefact has left possible.
     """
     recording_set, fan = work.recording_set, calibration.fan
     when = taken_at(recording_set.frames)
-    facts = facts_of_planes(fan)
+    facts = facts_of_calibration(calibration)
     try:
         checks = history_of(recording_set.rig, calibration.id).of_calibration(calibration.id)
     except InputError as error:
@@ -66,9 +66,11 @@ def facts_of_the_day(work: Workspace, calibration: Calibration) -> ScanFacts:
     return replace(facts, of_the_day=tuple(Doubt.of(why) for why in lapsed if why is not None))
 
 
-def facts_of_planes(fan: FanCalibration) -> ScanFacts:
-    """What of the planes' calibration decides whether anything is proven."""
+def facts_of_calibration(calibration: Calibration) -> ScanFacts:
+    """What of the calibrations of camera and planes decides whether anything is proven."""
+    camera, fan = calibration.camera, calibration.fan
     return ScanFacts(
+        camera_unsettled=None if camera.converged is None else not camera.converged,
         planes_unsettled=None if fan.converged is None else not fan.converged,
         points_off_alike=fan.points_off_alike,
         size_unconfirmed=fan.scale_assumed,

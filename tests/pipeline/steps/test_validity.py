@@ -2,7 +2,7 @@
 
 import math
 import os
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime, timedelta
 from types import SimpleNamespace
 
@@ -56,15 +56,16 @@ def doubt(work, readjusted=None):
     fan = SimpleNamespace(
         readjusted=readjusted, scale_assumed=False, scale_sd=0.0, converged=True, points_off_alike=False
     )
-    return ", ".join(doubts(work, SimpleNamespace(id=ID, fan=fan)))
+    return ", ".join(doubts(work, SimpleNamespace(id=ID, fan=fan, camera=SimpleNamespace(converged=True))))
 
 
 @dataclass(frozen=True)
 class _Calibration:
-    """A calibration by its id, with a fan."""
+    """A calibration by its id, with a fan, and a camera of which it is known whether it had settled."""
 
     fan: FanCalibration
     id: str = ID
+    camera: SimpleNamespace = field(default_factory=lambda: SimpleNamespace(converged=True))
 
 
 def calibrated(*, assumed):
@@ -171,6 +172,13 @@ def test_planes_that_had_not_settled_prove_nothing(tmp_path):
     true = calibrated(assumed=False)
     told = doubts(recorded(tmp_path), replace(true, fan=replace(true.fan, converged=False)))
     assert told == ["validity.planes_not_settled"]
+
+
+def test_a_camera_that_had_not_settled_or_of_which_it_is_not_known_proves_nothing(tmp_path):
+    true = calibrated(assumed=False)
+    for converged, code in ((False, "validity.camera_not_settled"), (None, "validity.planes_unknown")):
+        told = doubts(recorded(tmp_path), replace(true, camera=SimpleNamespace(converged=converged)))
+        assert told == [code]
 
 
 def test_planes_of_which_it_is_not_known_whether_they_had_settled_prove_nothing(tmp_path):
