@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 
 from core.files.project.data import Done, Project
-from core.files.project.keys import changed, rests_on
+from core.files.project.keys import changed, inputs_of
 from core.files.step_graph import MAIN, PAGES, needed_by
 from core.messages import label
 from workbench.language import joined, time_of, tr
@@ -54,7 +54,7 @@ def _project_state(project: Project) -> StepState:
 def _state(step: str, project: Project, results: Mapping[str, Done], before: Mapping[str, StepState]) -> StepState:
     done = results.get(MAIN[step])
     if done is not None:
-        why = list(changed(done.rests_on, rests_on(MAIN[step], project, results)))
+        why = list(changed(done.rests_on, inputs_of(MAIN[step], project, results)))
         stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
             return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=joined(why)))

@@ -114,7 +114,7 @@ GRAPH = (
         SURFACES,
         on_request=True,
     ),
-    Step("report", "report", ("report",), "report", ("scan",), shows=("gauge",), in_project=True),
+    Step("report", "report", ("report",), "report", ("scan",), shows=("gauge", "inspection"), in_project=True),
 )
 """Every step, in the order of work."""
 

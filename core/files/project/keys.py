@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, replace
 from datetime import datetime
 from typing import Any
@@ -15,7 +15,7 @@ from typing import Any
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
 from core.files.recording.rig import part_table, rig_tables, without_warmth
-from core.files.step_graph import IN_PROJECT
+from core.files.step_graph import CALIBRATED, IN_PROJECT
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
@@ -26,45 +26,40 @@ Keys = Mapping[str, str]
 """Name of an input, fixed words of the catalogues → its key."""
 
 
-def rests_on(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def inputs_of(step: str, project: Project, results: Mapping[str, Done]) -> dict[str, str]:
     """The key of everything the result of `step` would be made of now, by its name.
 
-    `results` are the finished ones: what is inspected and reported is the scan that was measured, however the project
-    has changed since.
+    Which results these are, the graph of steps says; the rest are the step's own pictures and settings. `results` are
+    the finished ones: what is inspected and reported is the scan that was measured, however the project has changed
+    since.
 
     Raises
     ------
     ValueError
         If there is no such step.
     """
-    match step:
-        case "camera":
-            return _camera(project)
-        case "planes":
-            return _planes(project)
-        case "check":
-            return _check(project)
-        case "scan":
-            return _scan(project)
-        case "gauge":
-            return _gauge(project, results)
-        case "inspection":
-            return _inspection(project, results)
-        case "report":
-            return _report(project, results)
-    raise ValueError(f"{step} is none of {', '.join(STEPS)}")
+    if step not in _OWN:
+        raise ValueError(f"{step} is none of {', '.join(STEPS)}")
+    known = {**asdict(project.accepted), **{name: done.key for name, done in results.items() if name not in CALIBRATED}}
+    return {**{_MADE[name]: known.get(name, "") for name in _made_of(step)}, **_OWN[step](project)}
+
+
+def _made_of(step: str) -> tuple[str, ...]:
+    """The steps of a project whose results the result of `step` is made of, or shows."""
+    graph = next(each for each in IN_PROJECT if each.name == step)
+    return tuple(name for name in (*graph.rests_on, *graph.shows) if name in _MADE)
 
 
 def changed(before: Keys, now: Keys) -> tuple[str, ...]:
-    """Names of the inputs that are not what they were, in the order of `now`."""
+    """Names of the inputs that are not what they were, in the order of `now`. One that is not there has no key."""
     names = dict.fromkeys((*now, *before))
-    return tuple(name for name in names if before.get(name) != now.get(name))
+    return tuple(name for name in names if before.get(name, "") != now.get(name, ""))
 
 
 def up_to_date(step: str, project: Project, results: Mapping[str, Done]) -> bool:
     """Whether `step` has a result, and nothing that it rests on has changed since."""
     done = results.get(step)
-    return done is not None and not changed(done.rests_on, rests_on(step, project, results))
+    return done is not None and not changed(done.rests_on, inputs_of(step, project, results))
 
 
 def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]:
@@ -88,7 +83,7 @@ def left_to_do(project: Project, results: Mapping[str, Done]) -> tuple[str, ...]
 
 def finished(step: str, project: Project, results: Mapping[str, Done], at: datetime | None = None) -> Done:
     """The record of `step` just finished with `project` as it is; `at` is now if not given."""
-    keys = rests_on(step, project, results)
+    keys = inputs_of(step, project, results)
     return Done(_digest(keys), keys, at or datetime.now().astimezone())
 
 
@@ -144,7 +139,7 @@ def relocated(file: ProjectFile, moved: Mapping[str, str]) -> ProjectFile:
     renamed, results = dict(moved), dict(file.results)
     for step in STEPS:
         if (done := results.get(step)) is not None:
-            old, new = rests_on(step, before, file.results), rests_on(step, after, results)
+            old, new = inputs_of(step, before, file.results), inputs_of(step, after, results)
             keys = {
                 name: new.get(name, key) if key and old.get(name) == key else renamed.get(key, key)
                 for name, key in done.rests_on.items()
@@ -181,7 +176,6 @@ def _planes(project: Project) -> dict[str, str]:
     stripe = project.options.plane_stripe
     stated = {label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast])} if stripe else {}
     return {
-        label("camera calibration"): project.accepted.camera,
         label("pictures of the plane target"): project.sources.planes,
         label("plane target"): _digest(without_warmth(tables["plane_target"])),
         label("laser"): _digest(tables["laser_fan"]),
@@ -197,8 +191,6 @@ def _planes(project: Project) -> dict[str, str]:
 def _check(project: Project) -> dict[str, str]:
     tables, stripe = rig_tables(project.rig), project.options.plane_stripe
     return {
-        label("camera calibration"): project.accepted.camera,
-        label("laser planes"): project.accepted.planes,
         label("pictures of the interim check"): project.sources.check,
         label("plane target"): _digest(without_warmth(tables["plane_target"])),
         label("colour channel"): project.rig.channel_of("planes") or "",
@@ -220,8 +212,6 @@ def _scan(project: Project) -> dict[str, str]:
     if project.sources.check:
         stated[label("pictures of the interim check")] = project.sources.check
     return {
-        label("camera calibration"): project.accepted.camera,
-        label("laser planes"): project.accepted.planes,
         label("recording"): project.sources.scan,
         label("colour channel"): project.rig.channel_of("scan") or "",
         label("left-out frames"): _left_out(project, "scan"),
@@ -238,19 +228,17 @@ def _air(project: Project) -> dict[str, str]:
     return {label("temperature of the air"): _digest([air, project.info.air_celsius])} if matters else {}
 
 
-def _gauge(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def _gauge(project: Project) -> dict[str, str]:
     gauge = rig_tables(project.rig).get("gauge", {})
     return {
-        label("scan"): _key_of("scan", results),
         label("thickness regions"): _digest([gauge.get("upper_polygon_px"), gauge.get("lower_polygon_px")]),
         label("nominal thickness"): _digest([gauge.get("nominal_mm"), gauge.get("tolerance_mm")]),
         **_part(project),
     }
 
 
-def _inspection(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def _inspection(project: Project) -> dict[str, str]:
     return {
-        label("scan"): _key_of("scan", results),
         label("features"): _digest(plan_tables(project.inspection)),
         **_part(project),
     }
@@ -262,13 +250,9 @@ def _part(project: Project) -> dict[str, str]:
     return {label("material and temperature of the part"): _digest(stated)} if stated else {}
 
 
-def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
+def _report(project: Project) -> dict[str, str]:
     studies = [study.id for study in project.studies if study.included]
-    inspected = {label("features"): _key_of("inspection", results)} if "inspection" in results else {}
     return {
-        label("scan"): _key_of("scan", results),
-        label("thickness"): _key_of("gauge", results),
-        **inspected,
         **({label("studies"): _digest(studies)} if studies else {}),
         label("project fields"): _digest(asdict(project.info)),
         label("repeats"): _digest([[*repeat.values.values()] for repeat in project.repeats]),
@@ -279,11 +263,6 @@ def _report(project: Project, results: Mapping[str, Done]) -> dict[str, str]:
 def _printing(report: ReportChoices) -> list[str]:
     """Paper, and what else is not as usual: reports made before there was a choice stay up to date."""
     return [report.paper, *(one for one in (report.language, report.template) if one not in ("en", ""))]
-
-
-def _key_of(step: str, results: Mapping[str, Done]) -> str:
-    """The key of a finished result; nothing if there is none."""
-    return results[step].key if step in results else ""
 
 
 def _left_out(project: Project, part: str) -> str:
@@ -300,3 +279,15 @@ def _digest(value: Any) -> str:
     """Twelve hex digits that name `value`."""
     text = json.dumps(value, sort_keys=True, default=str)
     return hashlib.sha256(text.encode()).hexdigest()[:12]
+
+
+_OWN: Mapping[str, Callable[[Project], dict[str, str]]] = {
+    "camera": _camera,
+    "planes": _planes,
+    "check": _check,
+    "scan": _scan,
+    "gauge": _gauge,
+    "inspection": _inspection,
+    "report": _report,
+}
+"""What each step of a project is made of besides the results of others."""

@@ -19,7 +19,7 @@ from core.files.plan.translation import plan_tables
 from core.files.project.calibration_store import IMPORTED
 from core.files.project.data import Project, ProjectFile
 from core.files.project.folder import read_project, results_folder, source_folder
-from core.files.project.keys import changed, relocated, rests_on
+from core.files.project.keys import changed, inputs_of, relocated
 from core.files.reading import resolved
 from core.files.recording.rig import rig_to_toml
 from core.files.results.artefact_register import REGISTER, register_text
@@ -121,7 +121,7 @@ def _lines(
     """The commands in the order of the steps, as far as their results are there."""
     project = file.project
     for step, done in file.results.items():
-        if what := changed(done.rests_on, rests_on(step, project, file.results)):
+        if what := changed(done.rests_on, inputs_of(step, project, file.results)):
             yield _Line((), (words(CHANGED, step=step, what=", ".join(words(one) for one in what)),))
     yield _import(folder, project, words)
     settings, channel = record.settings, _option("--channel", project.options.channel or "")

@@ -11,7 +11,7 @@ from core.errors import InputError
 from core.files.atomic import remove, write_bytes
 from core.files.project.audit import Entry, Trail, append, read_trail
 from core.files.project.folder import PROJECT, RESULTS, is_project, read_project
-from core.files.project.keys import changed, rests_on
+from core.files.project.keys import changed, inputs_of
 from core.files.project.people import PEOPLE
 from core.files.reading import file_hash
 from core.files.recording.recording_set import RIG, RecordingSet, open_set
@@ -142,7 +142,7 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
         inputs = dict(read_run(run).inputs)
         problems += _inputs(inputs.items(), project_set(folder, file.project), progress)
     for step, done in file.results.items():
-        if names := changed(done.rests_on, rests_on(step, file.project, file.results)):
+        if names := changed(done.rests_on, inputs_of(step, file.project, file.results)):
             notes.append(Message("verify.outdated", "{step} is out of date: {names}", step=step, names=names))
     return Verified(trail, len(told.files) if told else 0, len(inputs), tuple(problems), tuple(notes))
 

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from core.files.project.data import Accepted, KeptStudy, Repeat, ReportChoices, Sources, new_project
-from core.files.project.keys import STEPS, changed, finished, rests_on
+from core.files.project.keys import STEPS, changed, finished, inputs_of
 from core.files.recording.rig import GaugeSpec
+from core.files.step_graph import CALIBRATED, IN_PROJECT
 from core.image.targets import Checkerboard
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
@@ -31,7 +32,7 @@ def measured(project=START):
 def out_of_date(project):
     """Step → the inputs that changed since everything was measured with START."""
     results = measured()
-    why = {step: changed(results[step].rests_on, rests_on(step, project, results)) for step in STEPS}
+    why = {step: changed(results[step].rests_on, inputs_of(step, project, results)) for step in STEPS}
     return {step: names for step, names in why.items() if names}
 
 
@@ -106,8 +107,8 @@ def test_a_scan_measured_anew_with_other_settings_makes_thickness_and_report_out
     results = measured()
     project = with_options(sigma_cut_mm=0.1)
     results["scan"] = finished("scan", project, results)
-    assert changed(results["gauge"].rests_on, rests_on("gauge", project, results)) == ("scan",)
-    assert changed(results["report"].rests_on, rests_on("report", project, results)) == ("scan",)
+    assert changed(results["gauge"].rests_on, inputs_of("gauge", project, results)) == ("scan",)
+    assert changed(results["report"].rests_on, inputs_of("report", project, results)) == ("scan",)
 
 
 def test_repeats_are_part_of_the_report():
@@ -128,7 +129,7 @@ def test_a_calibration_given_up_is_missed_by_its_own_step():
 
 def test_an_unknown_step_is_refused():
     with pytest.raises(ValueError, match="weigh"):
-        rests_on("weigh", START, {})
+        inputs_of("weigh", START, {})
 
 
 def test_features_rest_on_the_scan_and_on_the_plan_and_the_report_on_them():
@@ -136,17 +137,39 @@ def test_features_rest_on_the_scan_and_on_the_plan_and_the_report_on_them():
     results["scan"] = finished("scan", project, results)
     results["inspection"] = finished("inspection", project, results)
     ball = replace(project, inspection=InspectionPlan((FeatureSpec("ball", "sphere"),)))
-    assert changed(results["inspection"].rests_on, rests_on("inspection", ball, results)) == ("features",)
-    assert "features" in rests_on("report", project, results)
+    assert changed(results["inspection"].rests_on, inputs_of("inspection", ball, results)) == ("features",)
+    assert "features" in inputs_of("report", project, results)
 
 
-def test_a_report_of_a_project_without_features_does_not_speak_of_them():
-    assert "features" not in rests_on("report", new_project(""), {})
+def test_a_report_made_before_there_were_features_is_out_of_date_only_once_there_are_some():
+    """Its record does not name them at all."""
+    project, results = new_project(""), {}
+    results["scan"] = finished("scan", project, results)
+    before = {name: key for name, key in inputs_of("report", project, results).items() if name != "features"}
+    assert changed(before, inputs_of("report", project, results)) == ()
+    results["inspection"] = finished("inspection", project, results)
+    assert changed(before, inputs_of("report", project, results)) == ("features",)
+
+
+@pytest.mark.parametrize("step", IN_PROJECT, ids=lambda step: step.name)
+def test_the_results_a_step_is_made_of_are_those_of_the_graph(step):
+    """Each in turn is another, with nothing else changed."""
+    project = replace(new_project(""), accepted=Accepted("c1", "p1"))
+    results = {name: finished(name, project, {}) for name in STEPS}
+    before, resting = inputs_of(step.name, project, results), set()
+    for name in STEPS:
+        if name in CALIBRATED:
+            other, others = replace(project, accepted=replace(project.accepted, **{name: "other"})), results
+        else:
+            other, others = project, {**results, name: replace(results[name], key="other")}
+        if changed(before, inputs_of(step.name, other, others)):
+            resting.add(name)
+    assert resting == {*step.rests_on, *step.shows} & {*STEPS}
 
 
 def test_a_report_rests_on_the_studies_that_are_ticked():
     project, kept = new_project("block"), KeptStudy("c0ffee", "grr", plain("3 parts"))
-    without = rests_on("report", project, {})
-    left_out = rests_on("report", replace(project, studies=(replace(kept, included=False),)), {})
+    without = inputs_of("report", project, {})
+    left_out = inputs_of("report", replace(project, studies=(replace(kept, included=False),)), {})
     assert left_out == without
-    assert changed(without, rests_on("report", replace(project, studies=(kept,)), {})) == ("studies",)
+    assert changed(without, inputs_of("report", replace(project, studies=(kept,)), {})) == ("studies",)

@@ -15,7 +15,7 @@ from core.errors import InputError
 from core.files.project.audit import read_trail
 from core.files.project.data import Accepted, Done, Project, ProjectFile, Sources, new_project
 from core.files.project.folder import create_project, read_project, write_project
-from core.files.project.keys import changed, finished, rests_on
+from core.files.project.keys import changed, finished, inputs_of
 from core.files.project.lock import take_lock
 from core.files.project.packing import CONTENTS, pack_project, unpack_project
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec
@@ -63,7 +63,7 @@ def test_a_packed_project_comes_out_elsewhere_with_all_its_pictures_and_nothing_
     file = read_project(out)
     assert file.project.sources == Sources("recordings/packed/camera", "recordings/packed/planes", "recordings/scan-1")
     for step, done in file.results.items():
-        assert not changed(done.rests_on, rests_on(step, file.project, file.results)), step
+        assert not changed(done.rests_on, inputs_of(step, file.project, file.results)), step
 
 
 def test_a_project_packed_into_its_own_folder_does_not_hold_itself(project: Path) -> None:
@@ -139,7 +139,7 @@ def test_pictures_within_a_project_are_named_relative_to_it_however_it_was_made(
     create_project(folder, file)
     kept = read_project(folder)
     assert kept.project.sources == Sources(scan="set/scan")
-    assert not changed(kept.results["scan"].rests_on, rests_on("scan", kept.project, kept.results))
+    assert not changed(kept.results["scan"].rests_on, inputs_of("scan", kept.project, kept.results))
     assert kept.results["scan"].key != file.results["scan"].key
 
 
@@ -199,4 +199,4 @@ def test_nominal_surfaces_and_the_template_with_its_logo_come_along_from_outside
     assert (template.parent / "pictures" / "logo.png").read_bytes() == b"logo"
     assert set(back.results) == set(file.results)
     for step, done in back.results.items():
-        assert not changed(done.rests_on, rests_on(step, back.project, back.results)), step
+        assert not changed(done.rests_on, inputs_of(step, back.project, back.results)), step

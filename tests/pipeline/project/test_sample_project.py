@@ -6,7 +6,7 @@ import pytest
 
 from core.errors import Cancelled, InputError
 from core.files.project.folder import read_project
-from core.files.project.keys import STEPS, changed, rests_on
+from core.files.project.keys import STEPS, changed, inputs_of
 from core.pipeline.project import sample_project as module
 from core.pipeline.project.sample_project import clear_unfinished, sample_project, sample_to_measure
 
@@ -42,7 +42,7 @@ def test_it_is_finished_and_nothing_of_it_is_out_of_date(small):
     file = read_project(folder)
     assert {"camera", "planes", "scan", "report"} <= set(file.results) <= set(STEPS)
     for step, done in file.results.items():
-        assert changed(done.rests_on, rests_on(step, file.project, file.results)) == (), step
+        assert changed(done.rests_on, inputs_of(step, file.project, file.results)) == (), step
     assert (folder / "results" / "report.pdf").read_bytes().startswith(b"%PDF")
     assert file.project.info.notes
 

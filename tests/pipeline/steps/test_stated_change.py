@@ -8,7 +8,7 @@ import pytest
 from core.calibrate.change import DEFAULT_STABILITY, STABLE, Stability
 from core.calibrate.drift import Air, Drift
 from core.files.project.data import new_project
-from core.files.project.keys import rests_on
+from core.files.project.keys import inputs_of
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import taken_at
 from core.pipeline.project.workspace import rig_in_its_air
@@ -140,4 +140,4 @@ def test_the_air_of_a_project_is_that_of_its_scan_where_it_matters():
     assert rig_in_its_air(plain) is plain.rig, "the set's hash stays"
     stated = replace(plain, rig=replace(plain.rig, drift=WARMING, air=Air(20.0, 21.0)))
     assert rig_in_its_air(stated).air == Air(20.0, 21.0, 23.5)
-    assert rests_on("scan", plain, {}).keys() < rests_on("scan", stated, {}).keys(), "and is measured anew with it"
+    assert inputs_of("scan", plain, {}).keys() < inputs_of("scan", stated, {}).keys(), "and is measured anew with it"

@@ -11,7 +11,7 @@ from typing import Any, Generic, Literal, TypeVar
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Project
-from core.files.project.keys import ACCEPTED, FOUND_BY, rests_on
+from core.files.project.keys import ACCEPTED, FOUND_BY, inputs_of
 from core.messages import Message
 from workbench.bench import Bench
 from workbench.language import text_of, tr
@@ -248,12 +248,12 @@ class CalibrationWork(QObject, Generic[Found, Solution]):
 
     def found_key(self, project: Project) -> Key:
         """What finding rests on, as it is in `project`."""
-        keys = rests_on(self.STEP, project, {})
+        keys = inputs_of(self.STEP, project, {})
         return tuple(keys.get(name, "") for name in FOUND_BY[self.STEP])
 
     def solve_key(self, project: Project) -> Key:
         """What solving rests on, as it is in `project`; it begins with `found_key`."""
-        keys = rests_on(self.STEP, project, {})
+        keys = inputs_of(self.STEP, project, {})
         known = (*FOUND_BY[self.STEP], ACCEPTED[self.STEP])
         others = [value for name, value in keys.items() if name not in known]
         return (*self.found_key(project), *others)

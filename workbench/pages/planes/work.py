@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.files.project.data import Project
-from core.files.project.keys import FOUND_BY, rests_on
+from core.files.project.keys import FOUND_BY, inputs_of
 from core.messages import Message
 from core.model import Camera
 from workbench.bench import Bench
@@ -63,7 +63,7 @@ class PlanesWork(CalibrationWork[Poses, FanCalibration]):
             self._ask_what_was_found(folder, project)
 
     def _accepted_is_of_these_pictures(self, project: Project) -> bool:
-        done, keys = self._model.results.get("planes"), rests_on("planes", project, {})
+        done, keys = self._model.results.get("planes"), inputs_of("planes", project, {})
         known = {} if done is None else done.rests_on
         return bool(project.accepted.planes) and all(keys.get(name) == known.get(name) for name in FOUND_BY["planes"])
 

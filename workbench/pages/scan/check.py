@@ -10,7 +10,7 @@ from PySide6.QtCore import QObject, Signal
 
 from core.calibrate.results import ProposedReadjustment
 from core.files.project.data import Project
-from core.files.project.keys import changed, finished, rests_on
+from core.files.project.keys import changed, finished, inputs_of
 from core.files.results.check_file import InterimCheck
 from core.files.results.rig_history import PastCheck, RigHistory
 from workbench.bench import Bench
@@ -123,7 +123,7 @@ class RigCheck(QObject):
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
         done = self._model.results.get("check")
-        return changed(done.rests_on, rests_on("check", self._model.project, {})) if done is not None else ()
+        return changed(done.rests_on, inputs_of("check", self._model.project, {})) if done is not None else ()
 
     def use_folder(self, folder: Path) -> None:
         """Check by the pictures in this folder; the choice is undoable, and what can be checked is."""
@@ -273,4 +273,4 @@ class RigCheck(QObject):
 
 
 def _key(project: Project) -> str:
-    return repr(sorted(rests_on("check", project, {}).items()))
+    return repr(sorted(inputs_of("check", project, {}).items()))

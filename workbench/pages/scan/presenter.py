@@ -9,7 +9,7 @@ from typing import Any
 
 from core.errors import InputError
 from core.files.project.data import Project
-from core.files.project.keys import changed, rests_on
+from core.files.project.keys import changed, inputs_of
 from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
@@ -165,7 +165,7 @@ class ScanPresenter(StepPresenter):
     def changed_since(self) -> tuple[str, ...]:
         """What the result rests on and is not what it was."""
         done = self.model.results.get("scan")
-        return changed(done.rests_on, rests_on("scan", self.project, {})) if done is not None else ()
+        return changed(done.rests_on, inputs_of("scan", self.project, {})) if done is not None else ()
 
     @property
     def calibrated(self) -> bool:

@@ -9,7 +9,7 @@ from typing import Any
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import Project
-from core.files.project.keys import finished, rests_on
+from core.files.project.keys import finished, inputs_of
 from core.files.project.results import ScanSummary
 from core.messages import Message
 from core.pipeline.live.events import ScanDetail
@@ -174,4 +174,4 @@ def short(name: str) -> str:
 
 
 def _key(project: Project) -> str:
-    return repr(sorted(rests_on("scan", project, {}).items()))
+    return repr(sorted(inputs_of("scan", project, {}).items()))
