@@ -122,7 +122,7 @@ def show_run(result: RunResult, *, as_json: bool) -> None:
         **output.frames_json(result.frames, result.points),
         "triangles": result.triangles,
         "camera": output.camera_json(result.camera),
-        "fan": output.planes_json(result.fan),
+        "planes": output.planes_json(result.fan),
     }
     Shown(rows, values, result.notes, result.files).show(as_json=as_json)
 

@@ -92,7 +92,7 @@ COVERAGE = {1.0: "68", 2.0: "95", 3.0: "99.7"}
 """Coverage of a normal distribution in %, for the factors k in common use."""
 
 SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
-"""Of each decision: it is never told by colour alone."""
+"""Of each verdict: it is never told by colour alone."""
 
 
 def decimals_of(uncertainty: float) -> int:
@@ -160,8 +160,8 @@ def headed_name(one: Characteristic, words: Words = ENGLISH) -> str:
     return capital(shown) if one.name.startswith(one.kind) else shown
 
 
-def decision(verdict: str, words: Words = ENGLISH) -> str:
-    """What was decided, as a title: "Not conforming"."""
+def verdict_title(verdict: str, words: Words = ENGLISH) -> str:
+    """A verdict as a title: "Not conforming"."""
     return capital(words(DECISIONS[verdict]))
 
 
@@ -281,7 +281,7 @@ def _reason(verdict: Verdict, deviation: float, U: float, tolerance: str, unit: 
         )
     return words(
         "Neither conformity nor non-conformity is proven: a limit of the tolerance of {tolerance} lies inside the "
-        "interval of {deviation} ± {U} (deviation and U). A smaller uncertainty is needed for a decision.",
+        "interval of {deviation} ± {U} (deviation and U). A smaller uncertainty is needed for a verdict.",
         **shown,
     )
 
@@ -320,7 +320,7 @@ def limits_of_inspection(
             "budget names it."
         ),
         words(
-            "The decisions are made one by one: that all characteristics together conform is less probable than that "
+            "The verdicts are given one by one: that all characteristics together conform is less probable than that "
             "each does."
         ),
         _temperatures_used(words) if corrected else limit_of_temperature(temperatures, words),

@@ -31,7 +31,7 @@ from core.report.plots.charts import callouts, surface_figure
 from core.report.plots.run_chart import run_chart_figure
 from core.report.sections.result import DECIDED, WIDTHS
 from core.report.template import SECTIONS, ReportTemplate
-from core.report.wording import SIGNS, Words, decision, study_name
+from core.report.wording import SIGNS, Words, study_name, verdict_title
 from core.scan.surface.fused_surface import Mesh
 from core.translations import language
 
@@ -117,7 +117,7 @@ def test_a_comparison_is_told_in_figures(quick):
 def test_calibrations_have_id_age_and_hash(data):
     text = words(data)
     assert "Camera calibration c3f1a09b22d4, age 12 days" in text
-    assert "Fan calibration 9b22d4c3f1a0, age not known" in text
+    assert "Laser planes 9b22d4c3f1a0, age not known" in text
     assert "c3f1a09b22d4 2026-03-02 12:09 12 days " + "ab" * 32 in text
     lines = [page.get_textpage().get_text_range() for page in pypdfium2.PdfDocument(data)]
     assert any("2026-03-02 12:09 12 days" in line for line in lines), "the date is not parted from its time"
@@ -380,7 +380,7 @@ def test_one_result_alone_fills_the_box_whatever_is_asked_of_it(quick):
 @pytest.mark.parametrize("verdict", list(Verdict))
 def test_a_decision_stands_in_one_line(name, verdict):
     font = SANS if DECIDED[verdict] == "small" else BOLD
-    decided = f"{SIGNS[verdict]} {decision(verdict, Words.of(name))}"
+    decided = f"{SIGNS[verdict]} {verdict_title(verdict, Words.of(name))}"
     assert words_width(decided, font, 7) < WIDTHS[-1] - 5  # its padding
 
 

@@ -1,8 +1,8 @@
 """A digital calibration certificate: DCC 3.3.0 with D-SI numbers, the XML pattern of the national metrology institutes.
 
-It holds what the report says of the results: each value with U, k and coverage, limits and decision, the calibrations
+It holds what the report says of the results: each value with U, k and coverage, limits and verdict, the calibrations
 it rests on with their hashes, conditions, software and method. It is a document of the laboratory that issues it: the
-program does not sign, and a statement says that it claims no accreditation. A decision that proves neither has no
+program does not sign, and a statement says that it claims no accreditation. A verdict that proves neither has no
 `conformity`: DCC has no word for it. Texts are English.
 
 References
@@ -176,10 +176,10 @@ def _characteristic(result: Element, one: Characteristic) -> None:
         _text(measured, "dcc:noQuantity", "not known")
     else:
         _uncertain(_real(measured, row["value"], unit), one, row["U"])
-    if row["decision"] in CONFORMITY:
+    if row["verdict"] in CONFORMITY:
         meta = put(put(measured, "dcc:measurementMetaData"), "dcc:metaData")
         put(meta, "dcc:norm", "ISO 14253-1")
-        put(meta, "dcc:conformity", CONFORMITY[row["decision"]])
+        put(meta, "dcc:conformity", CONFORMITY[row["verdict"]])
     for key, name, kind in (
         ("nominal", "nominal value", "basic_nominalValue"),
         ("lower_limit", "lower limit", "basic_acceptanceLimitLower"),

@@ -12,7 +12,7 @@ K2101      nominal value
 K2110/1    lower and upper limit, only where there is one
 K2120/1    kind of each limit: 1 a limit, 0 none
 K2142      unit: mm or deg
-K2900      remark: kind, what exactly was measured, U, k and the decision, which AQDEF has no key for
+K2900      remark: kind, what exactly was measured, U, k and the verdict, which AQDEF has no key for
 K0001/n    measured value; K0002/n attribute: 0 valid, 255 not; K0004/n date and time; K0014/n serial number
 =========  ==========================================================================
 
@@ -78,7 +78,7 @@ def _description(number: int, one: Characteristic) -> dict[str, str]:
     keys |= {key: _number(value) for key, value in limits.items() if value is not None}
     keys |= {"K2120": f"{int('K2110' in keys)}", "K2121": f"{int('K2111' in keys)}", "K2142": row["unit"]}
     U = "unknown" if row["U"] is None else f"{row['U']:.{_decimals(one)}f} {row['unit']}"
-    said = f"{one.kind}; U = {U} (k = {one.k:g}); decision: {row['decision']}; {row['rule']}"
+    said = f"{one.kind}; U = {U} (k = {one.k:g}); verdict: {row['verdict']}; {row['rule']}"
     return keys | {"K2900": _cut(said.rstrip("; "), _TEXT)}
 
 

@@ -1,6 +1,6 @@
 """QIF 3.0 results (ISO 23952): definitions, nominals, items and measurements of every characteristic, as XML.
 
-QIF states a standard uncertainty with a value (`combinedUncertainty`, in the unit of the value); k, U and the decision
+QIF states a standard uncertainty with a value (`combinedUncertainty`, in the unit of the value); k, U and the verdict
 rule are attributes of the measurement. What is "not proven" is neither PASS nor FAIL: its status is INDETERMINATE.
 Features (the points a characteristic rests on) and datums are not handed over.
 
@@ -202,12 +202,12 @@ def _measurement(
     """Status and value of one, with its standard uncertainty."""
     row, (unit, factor) = result_row(one), unit_of(one)
     own = put(parent, f"{_kind(one)}CharacteristicMeasurement", id=f"{own_id}")
-    said = {"k": f"{one.k:g}", "decision": row["decision"], "decision rule": "ISO 14253-1"}
+    said = {"k": f"{one.k:g}", "verdict": row["verdict"], "decision rule": "ISO 14253-1"}
     said |= {} if row["U"] is None else {f"U, {unit}": decimal(row["U"])}
     attributes = put(own, "Attributes", n=f"{len(said)}")
     for name, value in said.items():
         put(attributes, "AttributeStr", name=name, value=value)
-    put(put(own, "Status"), "CharacteristicStatusEnum", STATUS[row["decision"]])
+    put(put(own, "Status"), "CharacteristicStatusEnum", STATUS[row["verdict"]])
     put(own, "CharacteristicItemId", f"{item_id}")
     put(own, "TimeStamp", content.timestamp.isoformat(timespec="seconds"))
     put(own, "ActualComponentId", f"{component}")

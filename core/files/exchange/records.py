@@ -33,7 +33,7 @@ RESULT_COLUMNS = (
     "u",
     "k",
     "U",
-    "decision",
+    "verdict",
     "rule",
 )
 BUDGET_COLUMNS = (
@@ -106,7 +106,7 @@ def result_row(one: Characteristic) -> dict[str, Any]:
         "u": finite(factor * one.u),
         "k": one.k,
         "U": finite(factor * one.U),
-        "decision": one.verdict or "none",
+        "verdict": one.verdict or "none",
         "rule": str(one.rule or ""),
     }
 
@@ -150,7 +150,7 @@ def setting_rows(content: ReportContent) -> list[tuple[str, str]]:
     """Name and value of all that the result rests on besides the pictures."""
     known = {
         "report": content.report_id,
-        "decision": content.results.verdict or "none",
+        "verdict": content.results.verdict or "none",
         "measured at": content.timestamp.isoformat(timespec="seconds"),
         "part": content.part,
         "serial number": content.serial,

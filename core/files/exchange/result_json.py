@@ -12,8 +12,9 @@ from core.messages import as_json
 from core.report.content import CalibrationMark, ReportContent
 
 SCHEMA = "trisect-measurement"
-SCHEMA_VERSION = 2
-"""2: notes, rules, reasons and sources of uncertainty are messages with code and values, no longer bare texts."""
+SCHEMA_VERSION = 3
+"""3: `verdict` stands where `decision` stood. 2: notes, rules, reasons and sources of uncertainty are messages with
+code and values, no longer bare texts."""
 
 
 def write_result_json(path: Path, content: ReportContent) -> None:
@@ -41,7 +42,7 @@ def result_tables(content: ReportContent) -> dict[str, Any]:
         "settings_sha256": content.settings_digest,
         "inputs_sha256": content.inputs_digest,
         "inputs": dict(content.hashes),
-        "decision": content.results.verdict or "none",
+        "verdict": content.results.verdict or "none",
         "characteristics": [
             {
                 **result_row(one),

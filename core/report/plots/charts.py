@@ -152,7 +152,7 @@ class Callout(NamedTuple):
 
 
 def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
-    """Name, value ± U and decision of the worst characteristic of each feature, at a point in its middle."""
+    """Name, value ± U and verdict of the worst characteristic of each feature, at a point in its middle."""
     made = []
     for one, indices in content.shown_at:
         points = content.cloud.points[indices]

@@ -13,7 +13,7 @@ from core.report.facts.of_planes import plane_cells
 from core.report.layout.blocks import heads, ruled_table
 from core.report.layout.style import ReportLook
 
-KINDS = {"camera": label("Camera"), "planes": label("Fixed laser (fan)")}
+KINDS = {"camera": label("Camera"), "planes": label("Laser planes")}
 
 HOURS_A_DAY = 24
 """An age is told in days from two days on, else in hours."""

@@ -78,7 +78,7 @@ def calibrations(look: ReportLook, content: ReportContent, limits: Limits) -> li
     ]
     rig = {look.words.known(name): value for name, value in list(content.rig.items())[: limits.settings]}
     fan: list[Flowable] = [
-        look.say("Fixed laser (fan), planes as the camera sees them", "small_strong"),
+        look.say("Laser planes, as the camera sees them", "small_strong"),
         fan_table(look, content.fan, other),
         Spacer(0, 1 * mm),
         pairs_table(look, told(look, rest_of_planes(content.fan)), other, 27 * mm),

@@ -75,7 +75,7 @@ def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
         words("Date and time"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),
         words("Rig"): content.rig_id,
         words("Camera calibration"): marks.get("camera", ""),
-        words("Fan calibration"): marks.get("planes", ""),
+        words("Laser planes"): marks.get("planes", ""),
         words("Software"): f"Trisect {content.version}",
         words("Settings, SHA-256"): f"{content.settings_digest[:SHORT]}…",
         words("Inputs, SHA-256"): f"{content.inputs_digest[:SHORT]}…" if content.hashes else "",

@@ -1,4 +1,4 @@
-"""The result on page one: the box with the decision, the bar of the tolerance, and the table of all characteristics."""
+"""The result on page one: the box with the verdict, the bar of the tolerance, and the table of all characteristics."""
 
 from __future__ import annotations
 
@@ -34,7 +34,6 @@ from core.report.layout.style import (
 from core.report.wording import (
     SIGNS,
     decimals_of,
-    decision,
     decision_sentence,
     grouped,
     headed_name,
@@ -44,10 +43,11 @@ from core.report.wording import (
     unbroken,
     uncertainty_sentence,
     value_parts,
+    verdict_title,
 )
 
 PADDING = 5 * mm  # of the box, inside
-BADGE = 46 * mm  # width of the decision's mark
+BADGE = 46 * mm  # width of the verdict's mark
 
 SHOWN_FIRST = (*WORST_FIRST, Verdict.NONE)
 
@@ -116,7 +116,7 @@ def _value(look: ReportLook, one: Characteristic) -> Paragraph:
 
 
 def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width: float) -> list[Flowable]:
-    """A headline with the decision beside it, if there is one."""
+    """A headline with the verdict beside it, if there is one."""
     if not verdict:
         return headline
     head = plain_table([[headline, VerdictMark(look, verdict, BADGE)]], [width - BADGE, BADGE])
@@ -125,7 +125,7 @@ def _headed(look: ReportLook, headline: list[Flowable], verdict: Verdict, width:
 
 
 def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flowable]:
-    """The decision on the part, the worst characteristic, and how many of which decision there are."""
+    """The verdict on the part, the worst characteristic, and how many of which verdict there are."""
     words, found = look.words, content.results.worst_first
     counts = {verdict: sum(one.verdict == verdict for one in found) for verdict in SHOWN_FIRST}
     verdict = content.results.verdict
@@ -134,9 +134,9 @@ def _several(look: ReportLook, content: ReportContent, width: float) -> list[Flo
     if found and found[0].verdict:
         title = words("{name}: the worst of {all}", name=headed_name(found[0], words), all=words(results))
         headline = [look.text(title, "label"), _value(look, found[0])]
-    facts = {decision(verdict, words): grouped(number) for verdict, number in counts.items() if number}
+    facts = {verdict_title(verdict, words): grouped(number) for verdict, number in counts.items() if number}
     said = words(
-        "The decision on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
+        "The verdict on the part is the worst of those on its characteristics. Each is stated with U = k·u below; by "
         "ISO 14253-1 a deviation must stay within its tolerance even when it is enlarged by U."
     )
     return [
@@ -162,9 +162,9 @@ def _cloud(look: ReportLook, content: ReportContent, width: float) -> list[Flowa
 
 
 WIDTHS = [size * mm for size in (15.5, 27, 19.5, 16.5, 8, 18.5, 32.5)]
-"""Nominal, permitted deviations, measured, U, k, deviation, decision; the name has the rest."""
+"""Nominal, permitted deviations, measured, U, k, deviation, verdict; the name has the rest."""
 DECIDED = {verdict: "small" if verdict is Verdict.NONE else "small_strong" for verdict in Verdict}
-"""How a decision is written: where there is none, it is not made much of."""
+"""How a verdict is written: where there is none, it is not made much of."""
 
 
 def result_table(look: ReportLook, content: ReportContent, budgets: Collection[int]) -> Table:
@@ -200,7 +200,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
         below.insert(0, look.say("Datum {letter}", "rule", letter=letter))
     if frame := content.control_frames.get(one.name):
         below.insert(0, ControlFrameMark(look, frame))
-    decided = f"{SIGNS[one.verdict]} {decision(one.verdict, words)}"
+    decided = f"{SIGNS[one.verdict]} {verdict_title(one.verdict, words)}"
     return [
         [title, *below],
         *(look.text(number, "number_strong" if place == 2 else "number") for place, number in enumerate(numbers)),
@@ -209,7 +209,7 @@ def _row(look: ReportLook, content: ReportContent, one: Characteristic, key: str
 
 
 class VerdictMark(Flowable):  # type: ignore[misc]
-    """The decision as word and form: filled with ✓, dark with ✗, outlined with ?."""
+    """The verdict as word and form: filled with ✓, dark with ✗, outlined with ?."""
 
     def __init__(self, look: ReportLook, verdict: Verdict, width: float) -> None:
         super().__init__()
@@ -219,7 +219,7 @@ class VerdictMark(Flowable):  # type: ignore[misc]
         """Paint it (called by reportlab)."""
         tone = {Verdict.CONFORMING: self.look.accent, Verdict.NONE: MUTED}.get(self.verdict, INK)
         filled = self.verdict in (Verdict.CONFORMING, Verdict.NOT_CONFORMING)
-        words = f"{SIGNS[self.verdict]}  {decision(self.verdict, self.look.words)}"
+        words = f"{SIGNS[self.verdict]}  {verdict_title(self.verdict, self.look.words)}"
         size = min(10.5, 10.5 * (self.width - 6) / words_width(words, BOLD, 10.5))
         canvas = self.canv
         canvas.setStrokeColor(color(tone))

@@ -54,7 +54,7 @@ def test_every_measurement_has_status_value_and_its_standard_uncertainty(documen
     assert measured[3].findtext("q:Value", namespaces=Q) == "89.95"
     assert measured[6].find("q:Value", Q) is None, "not known"
     said = {one.get("name"): one.get("value") for one in measured[3].find("q:Attributes", Q)}
-    assert said == {"k": "3", "decision": "conforming", "decision rule": "ISO 14253-1", "U, deg": "0.06"}
+    assert said == {"k": "3", "verdict": "conforming", "decision rule": "ISO 14253-1", "U, deg": "0.06"}
 
 
 def test_a_measurement_leads_to_what_was_asked(document):

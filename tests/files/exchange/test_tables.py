@@ -40,10 +40,10 @@ def test_a_spreadsheet_reads_a_line_for_each_characteristic(tmp_path, content):
     assert [row["name"].lstrip("'") for row in rows] == [one.name for one in content.inspected]
     first, angle, ball = rows[0], rows[3], rows[5]
     assert (float(first["value"]), first["unit"], float(first["U"])) == (50.0123, "mm", 0.01)
-    assert (first["decision"], float(first["lower_limit"])) == ("conforming", 49.8)
+    assert (first["verdict"], float(first["lower_limit"])) == ("conforming", 49.8)
     assert (angle["unit"], float(angle["value"])) == ("deg", pytest.approx(89.95, abs=1e-12))
     assert (float(ball["lower_limit"]), ball["upper_limit"]) == (49.9, "")
-    assert (rows[6]["value"], rows[6]["decision"], rows[2]["decision"]) == ("", "not proven", "none")
+    assert (rows[6]["value"], rows[6]["verdict"], rows[2]["verdict"]) == ("", "not proven", "none")
 
 
 def test_the_workbook_has_result_budget_frames_and_settings_with_full_numbers(tmp_path, content):
@@ -125,7 +125,7 @@ def test_json_is_as_its_schema_says(tmp_path, content, schema):
     tables = json.loads((tmp_path / "r.json").read_text())
     assert broken(tables, schema, schema) == []
     first = tables["characteristics"][0]
-    assert (first["value"], first["U"], first["decision"]) == (50.0123, 0.01, "conforming")
+    assert (first["value"], first["U"], first["verdict"]) == (50.0123, 0.01, "conforming")
     assert math.hypot(*(row["contribution"] for row in first["budget"])) == pytest.approx(first["u"])
     assert first["effective_dof"] == pytest.approx(0.005**4 / (0.003**4 / 8))
     assert tables["report_id"] == content.report_id
@@ -137,7 +137,7 @@ def test_the_schema_finds_what_is_wrong(tmp_path, content, schema):
     for spoil in (
         lambda t: t.pop("frames"),
         lambda t: t.update(more=1),
-        lambda t: t["characteristics"][0].update(decision="fine"),
+        lambda t: t["characteristics"][0].update(verdict="fine"),
         lambda t: t["characteristics"][0].update(value="50"),
         lambda t: t["software"].update(version=1),
     ):
@@ -161,7 +161,7 @@ def test_dfq_has_description_limits_and_value_of_each_characteristic(tmp_path, c
     assert (keys["K2001/2"], keys["K2002/2"]) == ("2", "Ebenheit größer")
     assert [keys[f"{key}/1"] for key in ("K2022", "K2101", "K2110", "K2111", "K2120", "K2121", "K2142")] == [
         "3", "50", "49.8", "50.2", "1", "1", "mm"]  # fmt: skip
-    assert "U = 0.010 mm (k = 2); decision: conforming" in keys["K2900/1"]
+    assert "U = 0.010 mm (k = 2); verdict: conforming" in keys["K2900/1"]
     assert "K2110/2" not in keys, "a form has no lower limit"
     assert (keys["K2120/2"], keys["K2121/2"]) == ("0", "1")
     assert (keys["K0001/4"], keys["K2142/4"]) == ("89.95", "deg")

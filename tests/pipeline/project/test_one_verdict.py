@@ -100,8 +100,8 @@ def _pdf(content: ReportContent) -> Shown:
 
 def _csv(content: ReportContent) -> Shown:
     lines = csv_text(as_table(RESULT_COLUMNS, [result_row(one) for one in content.characteristics])).splitlines()
-    decision = RESULT_COLUMNS.index("decision")
-    return {line.split(",")[0]: line.split(",")[decision] for line in lines[1:]}, ""
+    verdict = RESULT_COLUMNS.index("verdict")
+    return {line.split(",")[0]: line.split(",")[verdict] for line in lines[1:]}, ""
 
 
 def _xlsx(content: ReportContent, folder: Path) -> Shown:
@@ -109,12 +109,12 @@ def _xlsx(content: ReportContent, folder: Path) -> Shown:
     book = load_workbook(folder / "result.xlsx")
     head, *rows = book["result"].iter_rows(values_only=True)
     settings = dict(book["settings"].iter_rows(values_only=True, max_col=2))
-    return {row[0]: row[head.index("decision")] for row in rows}, settings["decision"]
+    return {row[0]: row[head.index("verdict")] for row in rows}, settings["verdict"]
 
 
 def _json(content: ReportContent) -> Shown:
     tables = result_tables(content)
-    return {row["name"]: row["decision"] for row in tables["characteristics"]}, tables["decision"]
+    return {row["name"]: row["verdict"] for row in tables["characteristics"]}, tables["verdict"]
 
 
 def _qif(content: ReportContent) -> Shown:
@@ -127,7 +127,7 @@ def _qif(content: ReportContent) -> Shown:
 
 def _dfq(content: ReportContent) -> Shown:
     said = "\n".join(line for line in dfq_lines(content) if line.startswith("K2900"))
-    return dict(zip(_rows(content), re.findall("decision: ([a-z ]+)", said), strict=True)), ""
+    return dict(zip(_rows(content), re.findall("verdict: ([a-z ]+)", said), strict=True)), ""
 
 
 def _dcc(content: ReportContent) -> Shown:

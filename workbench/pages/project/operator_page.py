@@ -10,7 +10,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePo
 
 from core.files.project.folder import results_folder
 from core.messages import capital
-from core.report.wording import decision, headed_name, value_line
+from core.report.wording import headed_name, value_line, verdict_title
 from core.states import STEP_STATES
 from workbench.language import tr
 from workbench.pages.project.operator import OperatorMode, Stage
@@ -158,7 +158,7 @@ class OperatorPage(QWidget):
         if found is None or not (found.rows or found.verdict):
             return "mdi6.check", "text", tr("Measured"), ""
         symbol, colour = VERDICT_ICONS[found.verdict]
-        verdict = decision(found.verdict, wording())
+        verdict = verdict_title(found.verdict, wording())
         line = ""
         for worst in found.worst_first[:1]:
             line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
