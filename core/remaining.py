@@ -48,7 +48,7 @@ _STEPS: Mapping[str, tuple[str, ...]] = {
 }
 """What each job does: functions that the window asks for, and commands."""
 
-_BESIDE = ("run",)
+_BESIDE = ("run", "measure_all")
 """Jobs that have a second process beside them."""
 
 

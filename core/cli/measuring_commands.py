@@ -27,13 +27,11 @@ from core.cli.options import (
     Skew,
     StripeWidth,
 )
+from core.pipeline.taken_over import TAKEN_OVER
 from core.scan.method import Method
 from core.second_process import second_process
 
 commands = typer.Typer()
-
-TAKEN_OVER = ("core.pipeline.steps.scan.pictures", "core.pipeline.steps.planes_step")
-"""What a whole run leaves to a second process."""
 
 Celsius = Annotated[float | None, typer.Option(metavar="°C", help="Temperature of the air, for the rig's history.")]
 

@@ -16,8 +16,8 @@ import typer
 
 from core.cli.bar import bar
 from core.cli.language import tr
-from core.cli.measuring_commands import TAKEN_OVER
 from core.cli.options import EPILOG, Json, Panel
+from core.pipeline.taken_over import TAKEN_OVER
 from core.progress import Progress
 from core.scan.method import Method
 from core.second_process import second_process

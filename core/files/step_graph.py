@@ -1,14 +1,18 @@
 """The graph of steps: what each reads, makes and rests on, once, for recording sets and projects, for window and disk.
 
 From it come the order of work, which steps a set or a project wants, which results go when another is made anew, in
-which order they are put in place, which page of the window a step is on, and what must be there before it. What a step
-does stands where its place is known: in `core.pipeline.run` for a set, in `core.pipeline.project.whole` for a project.
+which order they are put in place, which page of the window a step is on, and what must be there before it. A set and a
+project are two places of it, `core.pipeline.run` and `core.pipeline.project.whole`: what a step does there is the
+place's method of its name.
 """
 
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator
 from dataclasses import dataclass
+from typing import Protocol, TypeVar
+
+Stop = TypeVar("Stop", covariant=True)
 
 FILES = {
     "camera": "camera.json",
@@ -117,6 +121,25 @@ GRAPH = (
     Step("report", "report", ("report",), "report", ("scan",), shows=("gauge", "inspection"), in_project=True),
 )
 """Every step, in the order of work."""
+
+
+class Place(Protocol[Stop]):
+    """A recording set or a project while its steps are done."""
+
+    def wants(self, step: Step, /) -> bool:
+        """Whether a step is to be done, now that those before it have been."""
+
+    def do(self, step: Step, /) -> Stop | None:
+        """Do a step; what is returned stops the work."""
+
+
+def do_steps(place: Place[Stop]) -> Stop | None:
+    """Do every step that a place wants, in the order of work; what stopped it, if anything did."""
+    for step in GRAPH:
+        if place.wants(step) and (stop := place.do(step)) is not None:
+            return stop
+    return None
+
 
 IN_PROJECT = tuple(step for step in GRAPH if step.in_project)
 """The steps of a project, in the order of work."""

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -15,15 +14,13 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import (
     CHECK,
     PARTS,
-    RecordingSet,
     open_set,
     require_camera,
     require_planes,
     require_scan,
 )
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.folder_results import read_results
-from core.files.step_graph import GRAPH, READJUST, Step
+from core.files.step_graph import READJUST, Step, do_steps
 from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message
@@ -33,7 +30,7 @@ from core.pipeline.steps.gauge_step import gauge_if_possible, missing_thickness
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.readjust_step import readjust_step
 from core.pipeline.steps.report_step import prepare_report, report_step
-from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
+from core.pipeline.steps.scan.pictures import begin_looking
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
@@ -97,13 +94,12 @@ def run(
     with alone_in(work.out):
         work.clear()
         going = _Run(work, options, progress, beside)
-        for step in filter(going.wants, GRAPH):
-            going.do[step.name]()
+        do_steps(going)
         return going.result()
 
 
 class _Run:
-    """A recording set while it is measured: what each step of the graph does, and what the later ones need of it."""
+    """A recording set while it is measured: each step is the method of its name. It has what later ones need."""
 
     camera_found: CameraCalibration
     fan: FanCalibration
@@ -118,20 +114,14 @@ class _Run:
         self._there = {*PARTS, CHECK} if recording_set.check else {*PARTS}
         self._asked = {"gauge"}
         self._checked: tuple[PoseFeatures, ...] | None = None
-        self._seen = _looking(recording_set, options.for_scan, progress, beside)
-        self.do: Mapping[str, Callable[[], None]] = {
-            "camera": self.camera,
-            "planes": self.planes,
-            "check": self.check,
-            READJUST: self.readjust,
-            "scan": self.scan,
-            "gauge": self.gauge,
-            "report": self.report,
-        }
+        self._seen = begin_looking(recording_set, options.for_scan, progress, beside)
 
     def wants(self, step: Step) -> bool:
         """Whether a step is to be done, now that those before it have been done."""
-        return step.name in self.do and step.wanted(self._there, self._asked)
+        return step.wanted(self._there, self._asked)
+
+    def do(self, step: Step) -> None:
+        getattr(self, step.name)()
 
     def camera(self) -> None:
         self.camera_found = camera_step(self._work, self._options.for_camera, self._progress)
@@ -194,13 +184,3 @@ class _Run:
             notes=self._work.record().all_notes,
             files=self._work.written(),
         )
-
-
-def _looking(
-    recording_set: RecordingSet, settings: ScanSettings, progress: Progress, beside: SecondProcess | None
-) -> Callable[[], SeenScan] | None:
-    """Have the pictures of the scan looked at while camera and planes are calibrated."""
-    if beside is None:
-        return None
-    seen = beside.submit(look_at_scan, (recording_set, settings), progress)
-    return lambda: beside.wait(seen, progress, "frames")

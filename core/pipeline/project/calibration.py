@@ -24,6 +24,7 @@ from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
 from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_taken, planes_told, solve_planes
 from core.progress import Progress, silent
+from core.second_process import SecondProcess
 
 
 def accepted_camera(folder: Path, project: Project) -> Camera:
@@ -76,15 +77,17 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     return keep_camera(folder, calibration, project.options.for_camera.told, inputs)
 
 
-def find_poses(folder: Path, project: Project, progress: Progress = silent) -> tuple[PoseFeatures, ...]:
+def find_poses(
+    folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
+) -> tuple[PoseFeatures, ...]:
     """Target and stripes in the pictures of every pose; InputError without an accepted camera or without pictures.
 
-    What is found is kept in the project.
+    What is found is kept in the project. The process `beside` takes some of the poses.
     """
     pictures, camera = PictureReader(project_set(folder, project)), accepted_camera(folder, project)
     require_planes(pictures.recording_set)
     compile_ahead(progress)
-    poses = measure_poses(pictures, camera, progress, project.options.plane_stripe)
+    poses = measure_poses(pictures, camera, progress, project.options.plane_stripe, beside)
     keep_poses(folder, project, pictures, poses)
     return poses
 

@@ -22,7 +22,7 @@ from core.messages import Message
 from core.pipeline.project.report import project_content, report_bytes
 from core.pipeline.steps.export_kinds import Results, export_kind, write_export
 from core.pipeline.steps.report_step import results_content
-from core.pipeline.steps.workspace import made_beside, renew
+from core.pipeline.steps.workspace import staged
 from core.progress import Progress, silent
 from core.report.content import ReportContent
 from core.report.layout.page_pictures import Pages, page_pictures
@@ -164,9 +164,8 @@ def import_camera(path: Path, out: Path) -> CameraCalibration:
         If it cannot be read, or is no camera that is modelled here.
     """
     calibration = _read_camera(path)
-    with made_beside(make_folder(out)) as beside:
+    with staged(make_folder(out), "camera") as beside:
         write_camera(beside / FILES["camera"], calibration)
-        renew(out, beside, "camera")
     return calibration
 
 

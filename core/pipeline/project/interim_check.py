@@ -7,6 +7,8 @@ from pathlib import Path
 
 from core.calibrate.results import ProposedReadjustment
 from core.errors import InputError
+from core.files.atomic import make_folder
+from core.files.folder_lock import alone_in
 from core.files.project.calibration_store import (
     READJUSTED_FROM,
     keep_planes,
@@ -25,13 +27,12 @@ from core.files.results.inspection_file import read_inspection
 from core.files.results.rig_history import CheckChart, RigHistory
 from core.files.step_graph import FILES
 from core.messages import Message
-from core.pipeline.project.measuring import staged
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.artefact_step import artefact_step, lengths_of
 from core.pipeline.steps.check_step import check_step
 from core.pipeline.steps.readjust_step import propose_readjustment
 from core.pipeline.steps.validity import history_of
-from core.pipeline.steps.workspace import Calibration, Workspace
+from core.pipeline.steps.workspace import Calibration, Workspace, staged
 from core.progress import Progress, silent
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 
@@ -49,7 +50,8 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
     InputError
         If no calibration is accepted, or as `core.pipeline.steps.check_step.check_step`.
     """
-    with staged(folder / CHECK, FILES) as beside:
+    out = make_folder(folder / CHECK)
+    with alone_in(out), staged(out, "check", FILES) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(project_set(folder, project), beside, part_name(project))
         air = project.info.air_celsius if project.rig.air.checked is None else None

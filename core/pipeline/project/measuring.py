@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Collection, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 from core.errors import InputError
-from core.files.atomic import make_folder, make_inner_folder
+from core.files.atomic import make_inner_folder
 from core.files.folder_lock import alone_in
 from core.files.json_text import to_json
 from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
@@ -25,10 +24,12 @@ from core.pipeline.project.verify import noting_results
 from core.pipeline.project.workspace import part_name, project_set, project_workspace
 from core.pipeline.steps.camera_step import solved_for
 from core.pipeline.steps.gauge_step import gauge_if_possible, gauge_step
+from core.pipeline.steps.scan.pictures import SeenScan
 from core.pipeline.steps.scan_step import scan_step
-from core.pipeline.steps.workspace import Workspace, made_beside, put_results
+from core.pipeline.steps.workspace import Workspace, staged
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
+from core.second_process import SecondProcess
 
 _OF_A_SCAN = tuple(name for name in FILES if name != "report")
 """What a new scan replaces. The report stays: it is whole in itself, and says what it is of."""
@@ -39,6 +40,8 @@ def measure_scan(
     project: Project,
     progress: Progress = silent,
     watch: Callable[[FramePreview], None] | None = None,
+    seen: Callable[[], SeenScan] | None = None,
+    beside: SecondProcess | None = None,
 ) -> ScanSummary:
     """Measure surface and thickness with the accepted calibrations; a part without two parallel faces is no error.
 
@@ -54,6 +57,10 @@ def measure_scan(
         Called with what is being done; may raise Cancelled.
     watch
         Shown each frame with what it gives by itself, in the order of the recording, on this thread.
+    seen
+        Gives what the pictures show, if they are looked at already; there is nothing to watch then.
+    beside
+        A second process that takes the surface over.
 
     Raises
     ------
@@ -64,13 +71,12 @@ def measure_scan(
     require_scan(recording_set)
     compile_ahead(progress)
     results = make_inner_folder(folder, RESULTS)
-    with noting_results(folder), staged(results, _OF_A_SCAN) as beside:
-        put_in_place(folder, project.accepted, beside)
-        work = Workspace.open(recording_set, beside, part_name(project))
+    with noting_results(folder), alone_in(results), staged(results, "scan", _OF_A_SCAN) as new:
+        put_in_place(folder, project.accepted, new)
+        work = Workspace.open(recording_set, new, part_name(project))
         record_calibrations(work, folder, project)
-        measured = scan_step(
-            work, project.options.for_scan, progress, watch, earlier=_earlier(recording_set, results, project)
-        )
+        settings, earlier = project.options.for_scan, _earlier(recording_set, results, project)
+        measured = scan_step(work, settings, progress, watch, earlier, seen=seen, beside=beside)
         found = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
     return ScanSummary(
@@ -128,25 +134,3 @@ def record_calibrations(work: Workspace, folder: Path, project: Project) -> None
             made_at={**record.made_at, **made_at},
         )
     write_run(work.path("run"), record)
-
-
-@contextmanager
-def staged(results: Path, names: Collection[str]) -> Iterator[Path]:
-    """A folder to make new results in; if all goes well, they take the place of the old ones.
-
-    Parameters
-    ----------
-    results
-        Where the results belong; made if it is not there.
-    names
-        The results that belong together, keys of FILES: old ones go even where there is no new one.
-
-    Raises
-    ------
-    InputError
-        If nothing can be written there.
-    """
-    make_folder(results)
-    with alone_in(results), made_beside(results) as beside:
-        yield beside
-        put_results(results, beside, names)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from core.files.atomic import make_folder
+from core.files.folder_lock import alone_in
 from core.files.project.calibration_store import put_in_place
 from core.files.project.data import Project
 from core.files.project.results import ProfilesSummary
 from core.files.recording.options import StatedTilt
 from core.files.step_graph import FILES
-from core.pipeline.project.measuring import record_calibrations, staged
+from core.pipeline.project.measuring import record_calibrations
 from core.pipeline.project.report import with_words
 from core.pipeline.project.workspace import part_name, project_set
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.report_step import report_step
-from core.pipeline.steps.workspace import Workspace
+from core.pipeline.steps.workspace import Workspace, staged
 from core.progress import Progress, silent
 
 PROFILES = "profiles"
@@ -34,7 +36,7 @@ def measure_profiles(
         If no calibration is accepted, or as `core.pipeline.steps.profile_step.profile_step`.
     """
     found, results = project_set(folder, project), folder / PROFILES
-    with staged(results, FILES) as beside:
+    with alone_in(make_folder(results)), staged(results, "profile", FILES) as beside:
         put_in_place(folder, project.accepted, beside)
         work = Workspace.open(found, beside, part_name(project))
         record_calibrations(work, folder, project)

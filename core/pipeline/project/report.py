@@ -19,10 +19,15 @@ from core.progress import Progress, silent
 from core.report.content import AuditMark, RepeatLine, ReportContent
 from core.report.pdf import build_report
 from core.report.template import SECTIONS, ReportTemplate
+from core.second_process import SecondProcess
 
 
-def make_report(folder: Path, project: Project, progress: Progress = silent) -> Path:
+def make_report(
+    folder: Path, project: Project, progress: Progress = silent, beside: SecondProcess | None = None
+) -> Path:
     """Put the results into report.pdf, with what the project says of the job; returns its path.
+
+    The process `beside` draws it, if there is one.
 
     Raises
     ------
@@ -31,7 +36,7 @@ def make_report(folder: Path, project: Project, progress: Progress = silent) -> 
     """
     work = project_workspace(folder, project)
     with noting_results(folder, reported=True):
-        return report_step(work, progress, lambda content: with_words(content, folder, project))
+        return report_step(work, progress, lambda content: with_words(content, folder, project), beside)
 
 
 def report_bytes(folder: Path, project: Project, progress: Progress = silent) -> bytes:

@@ -6,15 +6,18 @@ are bad.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from contextlib import nullcontext, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from core.calibrate.camera.picture_residuals import bad_fit
 from core.errors import InputError
 from core.files.project.data import Project, ProjectFile
+from core.files.project.folder import results_folder
 from core.files.project.keys import finished, left_to_do
-from core.files.step_graph import GRAPH, Step
+from core.files.recording.recording_set import require_scan
+from core.files.step_graph import FILES, Step, do_steps
 from core.messages import Message
 from core.pipeline.project.calibration import (
     accept_camera,
@@ -28,10 +31,17 @@ from core.pipeline.project.inspection import measure_features
 from core.pipeline.project.interim_check import check_rig
 from core.pipeline.project.measuring import measure_gauge, measure_scan
 from core.pipeline.project.report import make_report
+from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.gauge_step import missing_thickness
+from core.pipeline.steps.report_step import prepare_report
+from core.pipeline.steps.scan.pictures import SeenScan, begin_looking
+from core.pipeline.taken_over import TAKEN_OVER
 from core.progress import Progress, silent
+from core.second_process import SecondProcess, second_process
 
 Watch = Callable[[ProjectFile], None]
+SHARED = {"planes", "scan"}
+"""The steps that are worth a second process."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -74,38 +84,49 @@ def measure_all(
     watch
         Given the project after each step that was done.
     """
-    work = _Work(folder, file, progress, watch or (lambda _: None), language)
-    for step in filter(work.wants, GRAPH):
-        try:
-            stop = work.do[step.name]()
-        except InputError as error:
-            stop = Stop(step.page, error.message)
-        if stop is not None:
-            return WholeJob(work.file, stop)
-    return WholeJob(work.file, None)
+    shared = not SHARED.isdisjoint(left_to_do(file.project, file.results))
+    with second_process(TAKEN_OVER) if shared else nullcontext() as beside:
+        work = _Work(folder, file, progress, watch or (lambda _: None), language)
+        work.go_beside(beside)
+        stop = do_steps(work)
+    return WholeJob(work.file, stop)
 
 
 class _Work:
-    """The project while its steps are done; each says whether to stop after it."""
+    """The project while its steps are done: what each does is the method of its name, and says whether to stop."""
+
+    _beside: SecondProcess | None = None
+    _seen: Callable[[], SeenScan] | None = None
 
     def __init__(self, folder: Path, file: ProjectFile, progress: Progress, watch: Watch, language: str) -> None:
         self.file = file
         self._language = language
         self._folder, self._progress, self._watch = folder, progress, watch
-        self.do: Mapping[str, Callable[[], Stop | None]] = {
-            "camera": self.camera,
-            "planes": self.planes,
-            "check": self.check,
-            "scan": self.scan,
-            "gauge": self.gauge,
-            "inspection": self.inspection,
-            "report": self.report,
-        }
-        """What does each step of the graph."""
+
+    def go_beside(self, beside: SecondProcess | None) -> None:
+        """Leave part of the work to a second process, if there is one.
+
+        It begins with the pictures of the scan where the light planes are calibrated first, and no earlier scan is
+        there whose features may do.
+        """
+        self._beside = beside
+        asked = {"planes", "scan"} <= {*left_to_do(self._project, self.file.results)}
+        if asked and not (results_folder(self._folder) / FILES["scan"]).exists():
+            with suppress(InputError):  # said at its step
+                recording_set = project_set(self._folder, self._project)
+                require_scan(recording_set)
+                self._seen = begin_looking(recording_set, self._project.options.for_scan, self._progress, beside)
 
     def wants(self, step: Step) -> bool:
         """Whether a step is left to do, now that those before it have been done."""
         return step.name in left_to_do(self.file.project, self.file.results)
+
+    def do(self, step: Step) -> Stop | None:
+        try:
+            stop: Stop | None = getattr(self, step.name)()
+        except InputError as error:
+            return Stop(step.page, error.message)
+        return stop
 
     @property
     def _project(self) -> Project:
@@ -121,7 +142,7 @@ class _Work:
 
     def planes(self) -> Stop | None:
         project = self._project
-        poses = find_poses(self._folder, project, self._progress)
+        poses = find_poses(self._folder, project, self._progress, self._beside)
         fan = solve_poses(self._folder, project, poses, self._progress)
         return self._accept("planes", accept_planes(self._folder, project, fan, poses))
 
@@ -131,7 +152,10 @@ class _Work:
         return None if check.passed else Stop("scan", check.sentence)
 
     def scan(self) -> Stop | None:
-        summary = measure_scan(self._folder, self._project, self._progress)
+        if self._beside is not None:
+            self._beside.submit(prepare_report, None)
+        seen, self._seen = self._seen, None
+        summary = measure_scan(self._folder, self._project, self._progress, seen=seen, beside=self._beside)
         self._done("scan", *(("gauge",) if summary.gauge is not None else ()), gone=("gauge",))
         missing = missing_thickness(self._project.rig, summary.no_gauge)
         return None if missing is None else Stop("inspect", missing)
@@ -156,7 +180,7 @@ class _Work:
         return None
 
     def report(self) -> Stop | None:
-        make_report(self._folder, self._project.printed_in(self._language), self._progress)
+        make_report(self._folder, self._project.printed_in(self._language), self._progress, self._beside)
         self._done("report")
         return None
 

@@ -62,7 +62,7 @@ class StepLog:
     beside: Path
     pictures: PictureReader
     """Reads the pictures of the set: what it has read are inputs of the step."""
-    gone: set[str] = field(default_factory=set)
+    gone: set[str]
     """Results of another step that these take the place of."""
     settings: dict[str, Any] = field(default_factory=dict)
     notes: list[Message | str] = field(default_factory=list)
@@ -144,24 +144,47 @@ class Workspace:
         """
         begun, started = _now(), time.perf_counter()
         self.record()  # a damaged run.json is told before the work, not after it
-        with made_beside(self.out) as beside:
-            log = StepLog(beside, PictureReader(self.recording_set))
+        gone: set[str] = set()
+        with staged(self.out, name, gone) as beside:
+            log = StepLog(beside, PictureReader(self.recording_set), gone)
             yield log
             seconds = time.perf_counter() - started
-            renew(self.out, beside, name, log.gone)
-            inputs = {RIG: self.recording_set.rig_hash, **log.pictures.hashes}
-            record = self.record().with_step(name, seconds, inputs, log.settings, log.notes)
-            if self.part:
-                record = replace(record, part=self.part)
-            if measures:
-                record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
-            if log.frames:
-                record = replace(record, frames=tuple(log.frames))
-            write_run(self.path("run"), record)
+        inputs = {RIG: self.recording_set.rig_hash, **log.pictures.hashes}
+        record = self.record().with_step(name, seconds, inputs, log.settings, log.notes)
+        if self.part:
+            record = replace(record, part=self.part)
+        if measures:
+            record = replace(record, measured_at=begun, made_at={**record.made_at, name: begun})
+        if log.frames:
+            record = replace(record, frames=tuple(log.frames))
+        write_run(self.path("run"), record)
         give_back()
 
 
-def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> None:
+@contextmanager
+def staged(out: Path, step: str, gone: Collection[str] = ()) -> Iterator[Path]:
+    """A folder in which a step makes new results; if all goes well, they take the place of the old ones in `out`.
+
+    Parameters
+    ----------
+    out
+        Where the results belong.
+    step
+        Its name; run.json tells no longer of it, nor of what goes with the old results.
+    gone
+        Further results that go, keys of FILES, even where there is no new one; looked at in the end.
+
+    Raises
+    ------
+    InputError
+        If nothing can be written there.
+    """
+    with made_beside(out) as beside:
+        yield beside
+        _renew(out, beside, step, gone)
+
+
+def _renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> None:
     """Put what a step has made in `beside` among the results in `out`; those `gone`, and what rests on what is
     another now, go.
 
@@ -177,7 +200,7 @@ def renew(out: Path, beside: Path, step: str, gone: Collection[str] = ()) -> Non
     old = {name for name in {*new, *gone} - same if (out / FILES[name]).exists()}
     old |= {one for name in old for one in resting_on(name)} - same
     run = out / FILES["run"]
-    if run.exists() and old - {"report"}:  # it never tells of other results than those beside it
+    if run.exists() and "run" not in old and old - {"report"}:  # it never tells of other results than those beside it
         undone = {one.name for one in GRAPH if one.decides in old} - ({"planes"} if step == READJUST else set())
         write_run(run, read_run(run).without({step, *undone}))
     put_results(out, beside, old)

@@ -1,5 +1,6 @@
 """The whole job in one go: the results of every button pressed in turn, and where it stops for somebody to decide."""
 
+from contextlib import contextmanager, nullcontext
 from dataclasses import replace
 
 import pytest
@@ -8,13 +9,17 @@ from core.errors import Cancelled
 from core.files.project.data import Accepted, ProjectFile
 from core.files.project.folder import results_folder
 from core.files.project.keys import STEPS, finished
-from core.files.step_graph import CALIBRATED
+from core.files.step_graph import CALIBRATED, GRAPH, IN_PROJECT, READJUST
 from core.inspect.plan.feature_spec import Auto, FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.messages import Message
 from core.pipeline.project import whole
-from core.pipeline.project.whole import measure_all
-from tests.simulated import copy_of
+from core.pipeline.project.whole import Stop, _Work, measure_all
+from core.pipeline.run import _Run
+from core.second_process import SecondProcess
+from tests.simulated import contents, copy_of
+
+WHY = Message("whole.enough", "That is enough.")
 
 BALL_ON_A_BLOCK = InspectionPlan((FeatureSpec("ball", "sphere", (Auto(1),)),))
 
@@ -128,7 +133,7 @@ def test_a_feature_that_cannot_be_measured_stops_it_once_and_is_then_reported(fo
 
 
 def test_what_was_done_before_it_is_cancelled_is_known(done, folder, begun, monkeypatch):
-    monkeypatch.setattr(whole, "measure_scan", lambda *_: done.summary)  # whose results are in the folder
+    monkeypatch.setattr(whole, "measure_scan", lambda *_, **__: done.summary)  # whose results are in the folder
     last = []
 
     def stop_in_the_report(step, _done, _total):
@@ -139,3 +144,47 @@ def test_what_was_done_before_it_is_cancelled_is_known(done, folder, begun, monk
         measure_all(folder, begun, progress=stop_in_the_report, watch=last.append)
     assert {"scan", "gauge"} <= last[-1].results.keys()
     assert measure_all(folder, last[-1]).file.results.keys() == {"camera", "planes", "scan", "gauge", "report"}
+
+
+@pytest.mark.parametrize("step", ["planes", "scan"])
+def test_a_second_process_takes_part_of_what_is_worth_it(step, folder, file, monkeypatch):
+    given = []
+    monkeypatch.setattr(whole, "second_process", lambda _: nullcontext("beside"))
+    monkeypatch.setattr(whole._Work, "planes", lambda work: given.append(work._beside) or Stop("planes", WHY))
+    monkeypatch.setattr(whole._Work, "scan", lambda work: given.append(work._beside) or Stop("scan", WHY))
+    results = {name: done for name, done in file.results.items() if name != step}
+    assert measure_all(folder, replace(file, results=results)).stop.page == step
+    assert given == ["beside"]
+
+
+def test_none_is_started_where_nothing_is_to_be_calibrated_or_scanned(folder, file, monkeypatch):
+    monkeypatch.setattr(whole, "second_process", None)
+    monkeypatch.setattr(whole, "make_report", lambda *_: None)
+    results = {name: done for name, done in file.results.items() if name != "report"}
+    assert measure_all(folder, replace(file, results=results)).stop is None
+
+
+def test_a_second_process_that_is_killed_stops_it_with_one_sentence_and_leaves_the_old_results(
+    folder, begun, monkeypatch
+):
+    @contextmanager
+    def killed(modules):
+        with SecondProcess(modules) as process:
+            process._process.kill()
+            yield process
+
+    monkeypatch.setattr(whole, "second_process", killed)
+    before = contents(results_folder(folder))
+    job, seen = steps_done(folder, begun)
+    assert (job.stop.page, job.stop.why.code) == ("scan", "run.second_process_ended")
+    assert seen == []
+    assert contents(results_folder(folder)) == before
+
+
+@pytest.mark.parametrize(
+    ("place", "steps"),
+    [(_Run, [step for step in GRAPH if not step.on_request or step.name in ("gauge", READJUST)]), (_Work, IN_PROJECT)],
+    ids=["set", "project"],
+)
+def test_a_place_has_a_method_of_the_name_of_each_step_that_it_may_want(place, steps):
+    assert [step.name for step in steps if not callable(getattr(place, step.name, None))] == []

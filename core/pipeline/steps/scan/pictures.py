@@ -41,6 +41,7 @@ from core.scan.features.extraction import (
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of
 from core.scan.features.reference import quantile_reference, sample_indices
+from core.second_process import SecondProcess
 from core.stage_times import StageTimes
 
 FEWEST_FOR_QUANTILE = 3
@@ -120,6 +121,19 @@ def look_at_scan(
     notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
     path = found.reference or taken_frames(found, settings)[0]
     return SeenScan(lines, averaged, notes, path, pictures.hashes, pictures.channels)
+
+
+def begin_looking(
+    recording_set: RecordingSet, settings: ScanSettings, progress: Progress, beside: SecondProcess | None
+) -> Callable[[], SeenScan] | None:
+    """Have the pictures of a scan looked at `beside` while camera and planes are calibrated; what waits for it.
+
+    None where there is no such process.
+    """
+    if beside is None:
+        return None
+    seen = beside.submit(look_at_scan, (recording_set, settings), progress)
+    return lambda: beside.wait(seen, progress, "frames")
 
 
 def at_sites(looking: FeatureOptions, sites: Sites) -> FeatureOptions:
