@@ -28,6 +28,10 @@ PARAMETERS = {
 """Symbol, unit and meaning of each parameter."""
 
 
+CORNERS = label("corners off by")
+"""What the RMS of a camera's reprojection is called."""
+
+
 def camera_facts(calibration: CameraCalibration, expected: ExpectedError | None = None) -> tuple[Fact, ...]:
     """How good the calibration is; `expected` is the error at the middle depth of its views, where that is known."""
     if not calibration.views:
@@ -35,7 +39,7 @@ def camera_facts(calibration: CameraCalibration, expected: ExpectedError | None 
     tilt = math.degrees(calibration.tilt_range)
     facts = [
         Fact(
-            label("corners off by"), calibration.rms_px, "px", 3,
+            CORNERS, calibration.rms_px, "px", 3,
             Message(
                 "told.tip_corners",
                 "Root mean square distance of the corners from where they should be; on the mean {mean_px:.3f} px",

@@ -10,7 +10,7 @@ from typing import Protocol
 from core.calibrate.camera.changes import CameraChanges
 from core.messages import Message, label, plain
 from core.report.facts.fact import Fact, Grade, Value
-from core.report.facts.of_camera import parameter_fact
+from core.report.facts.of_camera import CORNERS, parameter_fact
 from core.report.facts.table import Column, FactTable
 from core.report.wording import decimals_of
 
@@ -40,7 +40,7 @@ class KeptCalibration(Protocol):
 
 def kept_cameras(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
     """Cameras, `in_use` being the id of one of them or ""."""
-    columns = (_ACCEPTED, Column(label("RMS"), "px", 3), Column(label("views")), _ID, _STATE)
+    columns = (_ACCEPTED, Column(CORNERS, "px", 3), Column(label("views")), _ID, _STATE)
     return FactTable(columns, tuple((*_about(one, one.rms_px), plain(one.id), _state(one, in_use)) for one in kept))
 
 
@@ -62,9 +62,9 @@ def kept_planes(kept: Sequence[KeptCalibration], in_use: str) -> FactTable:
 
 
 def change_cells(changes: CameraChanges) -> tuple[tuple[Fact, ...], ...]:
-    """Both values of each parameter, the change and its standard deviation; of RMS and views both values alone."""
+    """Both values of each parameter, the change and its standard deviation; of corners and views both values alone."""
     rows: list[tuple[Fact, ...]] = [
-        tuple(Fact(label("RMS"), value, "px", 3) for value in changes.rms_px),
+        tuple(Fact(CORNERS, value, "px", 3) for value in changes.rms_px),
         tuple(Fact(label("views"), value) for value in changes.views),
     ]
     for one in changes.parameters:
