@@ -51,8 +51,9 @@ BUDGET_COLUMNS = (
 )
 FRAME_COLUMNS = ("name", "used", "reason", "points", "sigma_mm", "stripes", "fan_crossings", "sweep_crossings")
 
-FACT_COLUMNS = ("of", "name", "value", "sd", "low", "high", "unit", "level")
-"""Of what is told of results besides the characteristics; `low` and `high` are the ends of a 95 % interval."""
+FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "level")
+"""Of what is told of results besides the characteristics. The uncertainty is standard or, as the name says, expanded;
+`low` and `high` are the ends of a 95 % interval."""
 
 
 def fact_row(of: str, fact: Fact) -> dict[str, Any]:
@@ -63,7 +64,7 @@ def fact_row(of: str, fact: Fact) -> dict[str, Any]:
         "of": of,
         "name": str(fact.label),
         "value": str(value) if isinstance(value, Message) else value,
-        "sd": fact.sd,
+        "uncertainty": fact.sd,
         "low": low,
         "high": high,
         "unit": fact.unit,
