@@ -57,7 +57,8 @@ OTHERS = (
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the camera's or the laser planes' calibration, of another program or an earlier version, does "
             "not say whether it had settled and fitted its target, or the planes' poses are too few to tell: nothing "
-            "measured proves conformity. Calibrate again, the laser planes with eight poses or more.", fact="planes_unknown"),
+            "measured proves conformity. Calibrate again, the laser planes with eight poses or more.",
+            fact="planes_unknown"),
 )  # fmt: skip
 """That of the size, which a comparison with a master does not need, and of what a file does not say."""
 ROWS = (*SCAN, *PLANES, *OTHERS)
@@ -81,6 +82,7 @@ REASONS: Mapping[str, Message] = {
     "check_lapsed": Message("doubt.check_lapsed", "the check of camera and laser was too old"),
     "check_failed": Message("doubt.check_failed", "the check of camera and laser failed"),
     "history_unreadable": Message("doubt.history_unreadable", "the history of the rig's checks cannot be read"),
+    "camera_unsettled": Message("doubt.camera_unsettled", "the camera's calibration had not settled"),
     "planes_unsettled": Message("doubt.planes_unsettled", "the laser planes' calibration had not settled"),
     "points_off_alike": Message("doubt.points_off_alike", "the plane target's points lie off alike in all poses"),
     "planes_unknown": Message("doubt.planes_unknown", "it is not known whether the planes' calibration had settled"),
