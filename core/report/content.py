@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from datetime import datetime, timedelta
+from datetime import date, datetime, timedelta
 from itertools import chain
 from typing import Literal
 
@@ -21,6 +21,7 @@ from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.certificate import Certificate
 from core.report.facts.fact import Fact, named
 from core.report.facts.of_camera import camera_facts, parameter_facts
 from core.report.facts.of_checks import Check, artefact_facts, check_facts
@@ -231,7 +232,11 @@ class ReportContent:
     version
         Version of the software.
     timestamp
-        When the measurement was evaluated: the only date printed besides those of `repeats`.
+        When the measurement was evaluated.
+    reported
+        The day on which the report is made; None: it is not said, and the same content gives the same report.
+    certificates
+        Of the targets, by their tables in rig.toml; of one that is not there none is stated.
     repeats
         Scans of the same part to be compared, in the order of measuring; this one may be among them.
     hidden
@@ -297,6 +302,8 @@ class ReportContent:
     template: ReportTemplate = field(default_factory=ReportTemplate)
     audit: AuditMark | None = None
     attachments: Mapping[str, bytes] = field(default_factory=dict)
+    reported: date | None = None
+    certificates: Mapping[str, Certificate] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         if unknown := self.hidden - SECTIONS.keys():
@@ -371,6 +378,7 @@ class ReportContent:
             "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
             "artefacts": self.artefacts,
             "compared": self.compared,
+            "certificates": sorted(self.certificates.items()),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
         lines += [f"{name}: {value!r}" for name, value in choices.items() if value not in ("", None, (), [])]

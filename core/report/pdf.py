@@ -40,8 +40,9 @@ from core.report.sections.standard import story
 from core.report.template import Paper
 from core.report.wording import Words, shown_name
 
-MOST_PAGES = 4
-"""Of one scan with one result; more results, repeats, studies or long remarks may have more."""
+MOST_PAGES = 5
+"""Of one scan with one result, half a page of which says how to read it;
+more results, repeats, studies or long remarks may have more."""
 RESULTS_A_PAGE = 2
 """Results whose rows and budgets ask for one page more: no budget is to be left out for want of a page."""
 LEAST_OF_A_PAGE = 0.3

@@ -35,6 +35,7 @@ SECTIONS: Mapping[str, str] = MappingProxyType(
         "calibrations": label("Calibrations and rig"),
         "frames": label("Frames and calibration pictures"),
         "remarks": label("Remarks of the operator"),
+        "reading": label("How to read this report"),
         "settings": label("Software and settings"),
         "inputs": label("Inputs, each with its hash"),
         "signatures": label("Signatures"),

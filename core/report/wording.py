@@ -76,6 +76,15 @@ class Words:
 ENGLISH = Words()
 
 
+SHORT_HASH = 12
+"""Hex digits of a hash that name a file where the whole of it is kept beside the report."""
+
+
+def short_hash(digest: str) -> str:
+    """'522c08e52394…'."""
+    return f"{digest[:SHORT_HASH]}…"
+
+
 def points_counted(number: int) -> Message:
     """'1 204 points'."""
     return plural_message("report.points", "{n:,} point", "{n:,} points", n=number)

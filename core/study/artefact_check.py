@@ -16,6 +16,7 @@ from typing import Literal, TypeAlias
 from core.findings.proof import Doubts, notes_of
 from core.findings.table import note_of
 from core.messages import Message, label
+from core.model.certificate import Certificate
 
 CHECKED = frozenset((
     "size_unconfirmed", "points_off_alike", "planes_unknown", "rig_seems_changed", "of_the_day", "calibration_undated",
@@ -48,6 +49,8 @@ class Artefact:
         The last day on which the certificate holds; None: nothing is stated.
     kind
         What it is, and so which length is compared.
+    laboratory
+        Who has issued the certificate.
     """
 
     id: str
@@ -57,6 +60,12 @@ class Artefact:
     certificate: str = ""
     due: date | None = None
     kind: ArtefactKind = "block"
+    laboratory: str = ""
+
+    @property
+    def of_certificate(self) -> Certificate:
+        """What its certificate says of itself."""
+        return Certificate(self.certificate, self.laboratory, self.due)
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,7 +108,7 @@ class ArtefactCheck:
     @property
     def lapsed(self) -> bool:
         """Whether the certificate did not hold any more."""
-        return self.artefact.due is not None and self.day > self.artefact.due
+        return self.artefact.of_certificate.lapsed(self.day)
 
     @property
     def own_doubts(self) -> Doubts:

@@ -10,8 +10,14 @@ import pytest
 from pypdf import PdfReader
 
 from core.errors import Cancelled
+from core.inspect.causes import Cause
+from core.inspect.characteristic import thickness_characteristic
+from core.inspect.results import Contribution
 from core.messages import plain
+from core.model.certificate import Certificate
+from core.report.facts.of_budget import rows_told
 from core.report.pdf import build_report
+from core.report.template import SECTIONS
 from core.scan.results import FrameRecord
 from core.scan.surface.fused_surface import Mesh
 from core.study.artefact_check import Artefact, ArtefactCheck
@@ -86,7 +92,7 @@ def test_part_rig_calibrations_software_and_budget_are_named(data, content):
 
 def test_every_page_says_which_of_how_many_it_is(data):
     pages = reader(data).pages
-    assert 1 <= len(pages) <= 4
+    assert 1 <= len(pages) <= 5
     for number, page in enumerate(pages, start=1):
         assert f"page {number} of {len(pages)}" in page.extract_text()
     assert "End of report" in pages[-1].extract_text()
@@ -106,6 +112,43 @@ def test_every_input_is_printed_with_its_hash(data, content):
     for path, digest in content.hashes.items():
         assert f"{path.rpartition('/')[2]} {digest[:10]}" in text
     assert "in full are in run.json" in text
+
+
+def test_traceability_names_certificates_laboratories_and_days_and_what_is_not_stated(quick):
+    lapsed = Certificate("D-K 7", "Labor Nord", date(2026, 1, 31))
+    known = replace(quick, certificates={"camera_target": lapsed}, hidden=frozenset(SECTIONS))
+    text = words(build_report(known))
+    assert "Camera target D-K 7 Labor Nord 2026-01-31, lapsed" in text
+    assert "Plane target none stated" in text and "Artefact none stated" in text
+    assert replace(known, certificates={}).report_id != known.report_id
+
+
+def test_the_day_of_the_report_stands_beside_that_of_the_measurement(quick):
+    text = words(build_report(replace(quick, reported=date(2026, 3, 20))))
+    assert "Measured 2026-03-14 15:09:26" in text and "Report made 2026-03-20" in text
+
+
+def test_page_one_has_one_hash_and_files_are_named_by_short_ones(data, content):
+    first = " ".join(reader(data).pages[0].extract_text().split())
+    assert first.count("SHA-256") == 1 and f"Inputs, SHA-256 {content.inputs_digest[:12]}…" in first
+    assert f"settings: {content.settings_digest[:12]}…" in words(data)
+
+
+def test_a_length_has_rows_of_size_and_temperatures_even_where_they_add_nothing(content):
+    stated = thickness_characteristic(gauge(content.cloud, np.zeros(len(content.cloud), dtype=bool), k=2.0))
+    known = replace(stated, budget=(Contribution(Cause.CAMERA, 0.01), Contribution(Cause.SCALE_ASSUMED, 0.002)))
+    told = [str(row.words) for row in rows_told(known)]
+    assert told[2:] == ["temperature of the calibration target", "temperature of the part"]
+    assert [row.u_mm for row in rows_told(known)][2:] == [0, 0]
+    for other in (replace(known, at_20=None), replace(known, quantity="angle", kind="angle"), stated):
+        assert rows_told(other) == other.budget
+
+
+def test_how_to_read_the_report_explains_its_letters(data):
+    text = words(data)
+    assert "How to read this report" in text
+    for term in ("α, β Focal length", "γ Skew", "ν_eff Effective degrees of freedom of u", "Not proven U is too large"):
+        assert term in text, term
 
 
 def test_fonts_are_embedded(data):
@@ -208,7 +251,7 @@ def test_a_long_scan_stays_within_four_pages_and_counts_what_it_leaves_out(conte
     notes = tuple(plain(f"Note {n} of a long series.") for n in range(60))
     data = build_report(replace(content, hashes=hashes, frames=frames, notes=notes))
     text = words(data)
-    assert len(reader(data).pages) <= 4
+    assert len(reader(data).pages) <= 5
     assert "1 000 of 1 500" in text
     assert text.count("more, listed in run.json") == 3
 
@@ -247,7 +290,7 @@ def test_known_artefacts_are_printed_with_certificate_e_n_and_verdict(quick):
         assert expected in text, text[text.find("known artefacts") :][:600]
     assert content.report_id != quick.report_id
     assert "Checks by known artefacts" not in words(build_report(quick))
-    assert "GB 50-7" not in words(build_report(replace(content, hidden=frozenset({"artefacts"}))))
+    assert "E_n" not in words(build_report(replace(content, hidden=frozenset({"artefacts"}))))
 
 
 def test_the_decision_rule_is_named_always(content, data):

@@ -98,7 +98,7 @@ class ProjectTables(Table):
 
 _EARLIER_STEPS = {"inspect": "gauge", "features": "inspection"}
 """Names of results up to schema 9."""
-SCHEMA = 11
+SCHEMA = 12
 """Raised with every change of the keys: an older program then says that the project is too new for it."""
 
 MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
@@ -114,6 +114,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     8: lambda tables: tables,  # k3 of the camera, which was free or zero: it stays as the camera was calibrated
     9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}), _EARLIER_STEPS)},
     10: lambda tables: {**tables, "accepted": _renamed(tables.get("accepted", {}), EARLIER_CALIBRATIONS)},
+    11: lambda tables: tables,  # certificates of targets and laboratories of artefacts, which may be none
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 

@@ -14,7 +14,7 @@ from typing import Any
 
 from core.files.plan.translation import plan_tables
 from core.files.project.data import Done, Project, ProjectFile, ReportChoices, Sources
-from core.files.recording.rig import part_table, rig_tables, without_warmth
+from core.files.recording.rig import as_calibrated_with, part_table, rig_tables
 from core.files.step_graph import CALIBRATED, IN_PROJECT
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
@@ -162,7 +162,7 @@ def _camera(project: Project) -> dict[str, str]:
     camera = project.options.camera
     return {
         label("pictures of the camera target"): project.sources.camera,
-        label("camera target"): _digest(rig_tables(project.rig)["camera_target"]),
+        label("camera target"): _digest(as_calibrated_with(rig_tables(project.rig)["camera_target"])),
         label("colour channel"): project.rig.channel_of("camera") or "",
         label("left-out views"): _left_out(project, "camera"),
         label("camera settings"): _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
@@ -177,7 +177,7 @@ def _planes(project: Project) -> dict[str, str]:
     stated = {label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast])} if stripe else {}
     return {
         label("pictures of the plane target"): project.sources.planes,
-        label("plane target"): _digest(without_warmth(tables["plane_target"])),
+        label("plane target"): _digest(as_calibrated_with(tables["plane_target"])),
         label("laser"): _digest(tables["laser_fan"]),
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("left-out poses"): _left_out(project, "planes"),
@@ -192,7 +192,7 @@ def _check(project: Project) -> dict[str, str]:
     tables, stripe = rig_tables(project.rig), project.options.plane_stripe
     return {
         label("pictures of the interim check"): project.sources.check,
-        label("plane target"): _digest(without_warmth(tables["plane_target"])),
+        label("plane target"): _digest(as_calibrated_with(tables["plane_target"])),
         label("colour channel"): project.rig.channel_of("planes") or "",
         label("stripes on the plane target"): _digest([stripe.width_px, stripe.contrast]) if stripe else "",
         label("stability of the rig"): _digest(tables.get("stability")),

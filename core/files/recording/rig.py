@@ -18,6 +18,7 @@ from core.calibrate.drift import NO_DRIFT, Air, Drift
 from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
+from core.files.tables import OptionalDay
 from core.files.toml_text import toml_text
 from core.image.mosaic import Pattern
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
@@ -25,6 +26,7 @@ from core.image.targets.kinds import DICTIONARIES
 from core.inspect.uncertainty.part import MATERIALS, Part, TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
+from core.model.certificate import Certificate
 
 _WRITE_ONE = Message("advice.write_as_in_manual", "write one as the manual shows, page Recording sets and files")
 _MISSING = Message("rig.missing", "the file is missing; it says what the targets and the laser are")
@@ -49,6 +51,7 @@ _UOfAlpha = Annotated[float, Field(ge=0, le=1e-3, allow_inf_nan=False)]
 _A_TEMPERATURE = label("a temperature in °C from −50 to 200")
 _A_TEMPERATURE_DIFFERENCE = label("a temperature, 0 to 200 K")
 _AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
+_A_NAME = label("a text of at most 100 letters")
 
 
 class Table(BaseModel):
@@ -69,6 +72,9 @@ class _Printed(Table):
     u_celsius: _UOfCelsius | None = Field(None, description=_A_TEMPERATURE_DIFFERENCE)
     alpha_per_K: _Alpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815  (as units are written)
     u_alpha_per_K: _UOfAlpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815
+    certificate: str = Field("", max_length=100, description=_A_NAME)
+    laboratory: str = Field("", max_length=100, description=_A_NAME)
+    due: OptionalDay = None
 
     @model_validator(mode="after")
     def _with_u(self) -> _Printed:
@@ -91,12 +97,19 @@ class _Printed(Table):
                 )
         return self
 
+    def of_certificate(self) -> Certificate:
+        return Certificate(self.certificate, self.laboratory, self.due)
+
     def temperature(self) -> TargetTemperature:
         return TargetTemperature(self.celsius, self.u_celsius, self.alpha_per_K, self.u_alpha_per_K)
 
 
 WARMTH = (("celsius", "u_celsius"), ("alpha_per_K", "u_alpha_per_K"))
 """Keys of a target that go together: how warm it was and how it expands, each with its standard uncertainty."""
+
+
+CERTIFIED = ("certificate", "laboratory", "due")
+"""Keys of a target that its certificate is named by."""
 
 
 def require_pairs(table: BaseModel, pairs: Sequence[tuple[str, str]]) -> None:
@@ -425,10 +438,10 @@ def temperature_table(target: TargetTemperature) -> dict[str, Any]:
     return _renamed(asdict(target))
 
 
-def without_warmth(table: Mapping[str, Any]) -> dict[str, Any]:
-    """A target's table without how warm it was, which lengths rest on, but no picture and no calibration."""
-    warmth = {key for pair in WARMTH for key in pair}
-    return {key: value for key, value in table.items() if key not in warmth}
+def as_calibrated_with(table: Mapping[str, Any]) -> dict[str, Any]:
+    """A target's table without what no calibration rests on: how warm it was, and its certificate."""
+    left_out = {*(key for pair in WARMTH for key in pair), *CERTIFIED}
+    return {key: value for key, value in table.items() if key not in left_out}
 
 
 def _renamed(values: Mapping[str, Any]) -> dict[str, Any]:
@@ -474,6 +487,8 @@ class RigTables(Table):
     )
 
 
+TARGETS = ("camera_target", "plane_target", "reference_target")
+"""The tables of rig.toml that describe a target."""
 STEP_TABLES = ("camera_target", "plane_target", "laser_fan")
 """The tables that one step or another cannot do without."""
 
@@ -577,6 +592,8 @@ class Rig:
     """What the plane target's size is compared with in pictures of both; None: the camera's target."""
     readjust: bool = False
     """Whether a whole run re-adjusts camera and fan by a check that shows that they have changed."""
+    certificates: Mapping[str, Certificate] = field(default_factory=dict, hash=False)
+    """By the names of the targets' tables, the certificates that are stated; what they say is only reported."""
 
     @property
     def one_target(self) -> bool:
@@ -684,6 +701,9 @@ def rig_of(tables: RigTables, path: Path, within: str = "") -> Rig:
     if tables.channels is not None:
         stated["channels"] = Channels(**tables.channels.model_dump())
     unstated = frozenset(name for name in STEP_TABLES if getattr(tables, name) is None)
+    targets = {name: table for name in TARGETS if (table := getattr(tables, name)) is not None}
+    certificates = {name: table.of_certificate() for name, table in targets.items()}
+    stated["certificates"] = {name: one for name, one in certificates.items() if one.stated}
     return replace(
         rig,
         gauge=_gauge(tables.gauge) if tables.gauge else None,
@@ -726,6 +746,9 @@ def rig_tables(rig: Rig) -> dict[str, Any]:
         "check": {"readjust": True} if rig.readjust else None,
         "part": _of_part_alone(rig.part) or None,
     }
+    for name, certificate in rig.certificates.items():
+        if isinstance(table := tables[name], dict):
+            table |= _certificate_table(certificate)
     return {name: table for name, table in _present(tables).items() if name not in rig.unstated}
 
 
@@ -749,6 +772,12 @@ def _tolerance(table: TargetTable) -> BoardTolerance:
 
 def _tolerance_table(tolerance: BoardTolerance) -> dict[str, Any]:
     return _present({"flatness_mm": tolerance.flatness_mm, "scale_sd": tolerance.scale_sd})
+
+
+def _certificate_table(certificate: Certificate) -> dict[str, Any]:
+    due = None if certificate.due is None else certificate.due.isoformat()
+    said = {"certificate": certificate.number, "laboratory": certificate.laboratory, "due": due}
+    return {name: value for name, value in said.items() if value}
 
 
 def _target_table(target: Target) -> dict[str, Any]:

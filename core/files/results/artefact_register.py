@@ -8,6 +8,7 @@ An artefact of the same id beside rig.toml counts::
     U_mm = 0.0004            # expanded, with its k
     k = 2.0
     certificate = "D-K-15070 2026-03"
+    laboratory = "Physikalisches Labor Nord"
     due = 2028-03-01
 
     [[artefact]]
@@ -56,6 +57,7 @@ class ArtefactTable(Table):
     certificate: str = ""
     due: OptionalDay = None
     kind: ArtefactKind = Field("block", description='"block", "sphere" or "step"')
+    laboratory: str = Field("", max_length=100, description="a text of at most 100 letters")
 
     def artefact(self) -> Artefact:
         """What it says."""

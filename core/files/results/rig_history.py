@@ -88,6 +88,7 @@ class PastCheck:
     kind: Annotated[ArtefactKind, Field(description='"block", "sphere" or "step"')] = "block"
     characteristic: str = ""
     doubts: tuple[str, ...] = ()
+    laboratory: str = ""
     __pydantic_config__ = RESULT
 
     @property
@@ -119,6 +120,7 @@ class PastCheck:
             self.certificate,
             self.due,
             self.kind,
+            self.laboratory,
         )
         square = (self.unseen_mm / 2) ** 2 - self.certified_u_mm**2
         day = self.taken_at.astimezone().date()
@@ -151,6 +153,7 @@ class PastCheck:
             kind=known.kind,
             characteristic=measured.characteristic,
             doubts=tuple(doubt.fact for doubt in measured.doubts),
+            laboratory=known.laboratory,
         )
 
     @classmethod

@@ -23,7 +23,7 @@ from core.files.project.data import Project
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.rig import rig_tables, without_warmth
+from core.files.recording.rig import as_calibrated_with, rig_tables
 from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_features import FEATURES, read_features, write_features
 from core.files.results.scan_file import read_scan
@@ -162,7 +162,7 @@ def _pose_pictures(recording_set: RecordingSet) -> list[Path]:
 def _key(project: Project, step: str, pictures: PictureReader, paths: Sequence[Path], camera: str = "") -> str:
     rests_on: dict[str, Any] = {
         "program": text_hash(_CALIBRATION_ROOMS),
-        "target": without_warmth(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
+        "target": as_calibrated_with(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
         "channel": pictures.laser_channel(step).channel,
         "mosaic": pictures.recording_set.rig.mosaic,
         "camera": camera,

@@ -6,6 +6,7 @@ import hashlib
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
@@ -129,6 +130,8 @@ def report_content(
         overlay=_overlay(pictures, scan, content.cloud) if scan else None,
         attachments={FILES[one]: work.path(one).read_bytes() for one in ATTACHED if work.path(one).exists()},
         artefacts=_artefacts(work),
+        certificates=rig.certificates,
+        reported=datetime.now().astimezone().date(),
     )
     content = said(content) if said else content
     channel = work.record().settings.get("scan", {}).get("channel") or rig.channel_of("scan")
@@ -268,9 +271,6 @@ def _rig_in_words(rig: Rig, image_size: tuple[int, int], channel: str | None, wo
         said[label("Fixed laser")] = (
             words("{n} lines, {angle}° apart", n=rig.lines, angle=angle) if rig.lines > 1 else words("1 line")
         )
-    if rig.gauge and rig.gauge.nominal_mm is not None and rig.gauge.tolerance_mm is not None:
-        nominal, tolerance = words.general(rig.gauge.nominal_mm), words.general(rig.gauge.tolerance_mm)
-        said[label("Nominal")] = f"{nominal} mm ± {tolerance} mm"
     return said
 
 

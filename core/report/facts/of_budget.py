@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from dataclasses import replace
 
+from core.inspect.causes import CALIBRATIONS, Cause
 from core.inspect.characteristic import Characteristic
+from core.inspect.plan.temperature import expands
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.coverage import effective_dof
 from core.messages import Message, label
@@ -33,7 +35,7 @@ def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
     digits = _digits(one)
     root = label("Root of the sum of squares of all rows (k = 1)")
     about_U = Message("told.expanded", "expanded uncertainty U = k·u, k = {k:g}", k=one.k)
-    contributions = (replace(_contribution(one, row), label=row.words) for row in one.budget)
+    contributions = (replace(_contribution(one, row), label=row.words) for row in rows_told(one))
     return (
         *contributions,
         Fact(label("combined standard uncertainty u"), factor * one.u, unit, digits, root),
@@ -42,11 +44,31 @@ def budget_facts(one: Characteristic) -> tuple[Fact, ...]:
     )
 
 
+ALWAYS_TOLD = (
+    (Cause.SCALE, Cause.SCALE_ASSUMED),
+    (Cause.SCALE_TEMPERATURE, Cause.SCALE_TEMPERATURE_ASSUMED),
+    (Cause.PART_TEMPERATURE, Cause.PART_TEMPERATURE_ASSUMED),
+)
+"""What every length follows, as stated and as assumed: a reader misses the row where it is nothing."""
+
+
+def rows_told(one: Characteristic) -> tuple[Contribution, ...]:
+    """The rows of its budget, and for a length those of size and temperatures that add nothing.
+
+    Of a budget that is not of this program's causes, of a comparison, which they cancel in, and of one of which it is
+    not known whether temperatures are in it, the rows alone.
+    """
+    causes = {row.source for row in one.budget}
+    if not expands(one) or one.by_master or one.at_20 is None or causes.isdisjoint(CALIBRATIONS.values()):
+        return one.budget
+    return (*one.budget, *(Contribution(pair[0], 0.0) for pair in ALWAYS_TOLD if causes.isdisjoint(pair)))
+
+
 def input_cells(one: Characteristic) -> tuple[tuple[Fact, ...], ...]:
     """Of each input its value, distribution, u(x), sensitivity |c|, contribution, freedom and share of the variance."""
     _, factor = shown_unit(one)
     variance = sum(row.u_mm**2 for row in one.budget if math.isfinite(row.u_mm)) or 1.0
-    return tuple(_cells(one, row, factor, row.u_mm**2 / variance) for row in one.budget)
+    return tuple(_cells(one, row, factor, row.u_mm**2 / variance) for row in rows_told(one))
 
 
 def _cells(one: Characteristic, row: Contribution, factor: float, share: float) -> tuple[Fact, ...]:

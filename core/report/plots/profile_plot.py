@@ -16,6 +16,8 @@ FORMS = ("o", "^", "s", "v", "D")
 """Marks of the lines: told apart without colour."""
 _LEFT_MM, _FOOT_MM, _HEAD_MM, _BESIDE_MM, _BETWEEN_MM = 13.0, 9.0, 2.0, 44.0, 17.0
 """Room in mm for the numbers at the left and below, above the plot, for the plot beside it, and between the two."""
+_DIMENSION_MM = 5.0
+"""Room above and beside a cross-section for the line and the number of a dimension."""
 _MOST_SECTION_MARKS = 2000
 """Points of a cross-section that are drawn."""
 _MOST_MARKS = 120
@@ -40,7 +42,7 @@ def section_figure(look: ReportLook, profile: Array, width_mm: float, height_mm:
     """A cross-section: height over position along it, `profile` (M, 2) in mm, M ≥ 1; to one scale unless it is flat."""
     with plot_style():
         figure = new_figure(width_mm, height_mm)
-        room = (width_mm - _LEFT_MM - 2.0, height_mm - _FOOT_MM - _HEAD_MM)
+        room = (width_mm - _LEFT_MM - _DIMENSION_MM, height_mm - _FOOT_MM - _DIMENSION_MM)
         axes = figure.add_axes((_LEFT_MM / width_mm, _FOOT_MM / height_mm, room[0] / width_mm, room[1] / height_mm))
         some = np.linspace(0, len(profile) - 1, min(len(profile), _MOST_SECTION_MARKS)).astype(np.int64)
         axes.plot(profile[some, 0], profile[some, 1], "o", color=look.accent, ms=1.2, mew=0)
@@ -51,7 +53,19 @@ def section_figure(look: ReportLook, profile: Array, width_mm: float, height_mm:
         axes.set_xlabel(look.words("position along the profile, mm"), labelpad=1)
         axes.set_ylabel(look.words("height, mm"), labelpad=2)
         axes.spines[["top", "right"]].set_visible(False)
+        _dimensions(look, profile, axes)
     return figure
+
+
+def _dimensions(look: ReportLook, profile: Array, axes: Axes) -> None:
+    """The extent of what was measured, along and up, as a drawing has it."""
+    (left, low), (right, high) = profile.min(axis=0), profile.max(axis=0)
+    along, up = (f"{look.words.fixed(length, 2)} mm" for length in (right - left, high - low))
+    ends = {"arrowstyle": "|-|, widthA=0.25, widthB=0.25", "color": MUTED, "lw": 0.6, "shrinkA": 0, "shrinkB": 0}
+    axes.annotate("", (left, 1.0), (right, 1.0), axes.get_xaxis_transform(), arrowprops=ends)
+    axes.annotate("", (1.0, low), (1.0, high), axes.get_yaxis_transform(), arrowprops=ends)
+    axes.text((left + right) / 2, 1.02, along, transform=axes.get_xaxis_transform(), ha="center", va="bottom")
+    axes.text(1.01, (low + high) / 2, up, transform=axes.get_yaxis_transform(), rotation=90, va="center")
 
 
 def _heights(look: ReportLook, profiles: LightProfiles, axes: Axes) -> None:

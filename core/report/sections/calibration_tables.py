@@ -12,6 +12,7 @@ from core.report.facts.of_camera import parameter_facts
 from core.report.facts.of_planes import plane_cells
 from core.report.layout.blocks import heads, ruled_table
 from core.report.layout.style import ReportLook
+from core.report.wording import short_hash
 
 KINDS = {"camera": label("Camera"), "planes": label("Laser planes")}
 
@@ -30,7 +31,7 @@ def marks_table(look: ReportLook, content: ReportContent, width: float) -> Table
                 look.text(mark.id, "small"),
                 look.text(made, "small"),
                 look.text(age_words(look, mark, content), "small"),
-                look.text(mark.sha256, "mono"),
+                look.text(short_hash(mark.sha256), "mono"),
             ]
         )
     fixed = [25 * mm, 22 * mm, 25 * mm, 21 * mm]  # an id of twelve wide digits stays in one line

@@ -9,7 +9,8 @@ from reportlab.pdfbase.pdfmetrics import stringWidth
 from reportlab.platypus import Flowable, HRFlowable, KeepTogether, Spacer, TableStyle
 
 from core.findings.table import is_grave
-from core.messages import plural_message
+from core.messages import label, plural_message
+from core.model.certificate import Certificate
 from core.report.content import ReportContent
 from core.report.facts.of_camera import camera_facts
 from core.report.facts.of_checks import artefact_facts, check_facts
@@ -32,7 +33,7 @@ from core.report.layout.blocks import (
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MONO, MUTED, SANS, TEXT_WIDTH, ReportLook, color, markup
 from core.report.sections.calibration_tables import camera_table, fan_table, marks_table
-from core.report.wording import grouped
+from core.report.wording import grouped, short_hash
 from core.study.artefact_check import KINDS
 
 
@@ -105,6 +106,37 @@ def _check(look: ReportLook, content: ReportContent) -> list[Flowable]:
     ]
 
 
+TARGETS = {
+    "camera_target": label("Camera target"),
+    "plane_target": label("Plane target"),
+    "reference_target": label("Reference target"),
+}
+ALWAYS_TOLD = ("camera_target", "plane_target")
+"""Targets that every length rests on: the report says of these as well that nothing is stated."""
+
+
+def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """The certificate of each target and artefact by which lengths are traced to the metre; it cannot be left out."""
+    words, day = look.words, content.timestamp.date()
+    traced = {
+        words(title): content.certificates.get(name, Certificate())
+        for name, title in TARGETS.items()
+        if name in ALWAYS_TOLD or name in content.certificates
+    }
+    artefacts = {one.artefact.id: one.artefact.of_certificate for one in content.artefacts}
+    traced |= {words("Artefact {name}", name=name): one for name, one in artefacts.items()} or {
+        words("Artefact"): Certificate()
+    }
+    rows: list[list[Flowable]] = [heads(look, "Standard", "certificate", "laboratory", "due")]
+    for title, one in traced.items():
+        due = words("not stated") if one.due is None else f"{one.due}"
+        until = words("{day}, lapsed", day=due) if one.lapsed(day) else due
+        said = (one.number, one.laboratory, until) if one.stated else (words("none stated"), "–", "–")
+        rows.append([look.text(title, "small"), *(look.text(text or words("not stated"), "small") for text in said)])
+    table = ruled_table(rows, [TEXT_WIDTH * share for share in (0.3, 0.28, 0.27, 0.15)])
+    return [section(look, "traceability", "Traceability", [table])]
+
+
 def pictures_used(look: ReportLook, content: ReportContent, limits: Limits) -> list[Flowable]:
     """Frames and calibration pictures used, and why others were not."""
     used = [frame.name for frame in content.frames if frame.used]
@@ -149,9 +181,8 @@ def settings(look: ReportLook, content: ReportContent, limits: Limits) -> list[F
     columns: list[list[Flowable]] = [
         [pairs_table(look, dict(part), column, 27 * mm)] if part else [] for part in (shown[:middle], shown[middle:])
     ]
-    over_all = look.say("SHA-256 over version, method and settings:", "small")
-    digest = Paragraph(markup(content.settings_digest), look.style("mono"))
-    body = [side_by_side(columns[0], columns[1], TEXT_WIDTH), over_all, digest]
+    over_all = look.words("SHA-256 over version, method and settings: {hash}", hash=short_hash(content.settings_digest))
+    body = [side_by_side(columns[0], columns[1], TEXT_WIDTH), look.text(over_all, "small")]
     if content.audit is not None:
         said = look.say("Audit trail of the project, SHA-256 of entry {n}:", "small", n=content.audit.n)
         body += [said, Paragraph(markup(content.audit.sha256), look.style("mono"))]

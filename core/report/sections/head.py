@@ -13,7 +13,7 @@ from core.report.content import ReportContent
 from core.report.layout.blocks import GAP, pairs_table, plain_table, side_by_side
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.sections.calibration_tables import age_words
-from core.report.wording import temperatures_line
+from core.report.wording import short_hash, temperatures_line
 
 TITLE = label("Measurement report")
 
@@ -21,8 +21,6 @@ LOGO = (46 * mm, 16 * mm)
 """Largest width and height of a logo."""
 
 LABEL = 27 * mm  # width of the column of names
-SHORT = 12
-"""Characters of a hash that name it on page one; the whole of it is further on."""
 
 
 def head(look: ReportLook, content: ReportContent) -> list[Flowable]:
@@ -72,13 +70,13 @@ def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
     }
     return {
         words("Report"): content.report_id,
-        words("Date and time"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),
+        words("Measured"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),
+        words("Report made"): "" if content.reported is None else f"{content.reported}",
         words("Rig"): content.rig_id,
         words("Camera calibration"): marks.get("camera", ""),
         words("Laser planes"): marks.get("planes", ""),
         words("Software"): f"Trisect {content.version}",
-        words("Settings, SHA-256"): f"{content.settings_digest[:SHORT]}…",
-        words("Inputs, SHA-256"): f"{content.inputs_digest[:SHORT]}…" if content.hashes else "",
+        words("Inputs, SHA-256"): short_hash(content.inputs_digest) if content.hashes else "",
     }
 
 

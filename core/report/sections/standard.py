@@ -30,6 +30,7 @@ from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 from core.report.sections import evidence
 from core.report.sections.budget import budget_table
 from core.report.sections.head import head
+from core.report.sections.reading import reading
 from core.report.sections.repeats import repeats_head, repeats_table
 from core.report.sections.result import budget_key, characteristics_table, result_box, result_table
 from core.report.sections.studies import studies
@@ -59,9 +60,11 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
     ]
     rest: list[Part] = []
     grounds: list[Part] = [
+        ("", lambda: evidence.traceability(look, content)),
         ("calibrations", lambda: evidence.calibrations(look, content, limits)),
         ("frames", lambda: evidence.pictures_used(look, content, limits)),
         ("", lambda: evidence.warnings(look, content, limits)),
+        ("reading", lambda: reading(look, content)),
     ]
     remarks = evidence.remarks(look, content)
     (grounds if len(remarks) == 1 else rest).append(("remarks", lambda: remarks))  # long ones flow from page to page
@@ -185,7 +188,10 @@ def _sections(look: ReportLook, content: ReportContent, pictures: Pictures, limi
     parts: list[OnOnePage] = []
     for number, name in enumerate(content.sections):
         rows = [one for one in content.characteristics if content.features.get(one.name) == name]
-        caption = look.words("{name}: measured points near the plane of the section.", name=name)
+        caption = look.words(
+            "{name}: measured points near the plane of the section. Dimensions are those of what was measured.",
+            name=name,
+        )
         body: list[Flowable] = [
             Picture(pictures[f"section-{number}"], limits.picture_scale),
             look.text(caption, "caption"),

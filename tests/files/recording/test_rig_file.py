@@ -1,6 +1,7 @@
 import math
 import re
 from dataclasses import replace
+from datetime import date
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ from core.files.recording.rig import (
     ReferenceTarget,
     Rig,
     RigTables,
+    as_calibrated_with,
     default_rig,
     part_of,
     part_table,
@@ -23,6 +25,7 @@ from core.files.recording.rig import (
 )
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
 from core.inspect.uncertainty.part import Part, TargetTemperature
+from core.model.certificate import Certificate
 
 GOOD = """
 [camera_target]
@@ -109,6 +112,16 @@ def test_how_true_the_targets_are_can_be_said(tmp_path):
     assert rig.plane_board == BoardTolerance(0.1, 2e-4)
     assert written(tmp_path, rig) == rig
     assert default_rig().camera_board == BoardTolerance()
+
+
+def test_certificates_of_the_targets_can_be_said_and_no_calibration_rests_on_them(tmp_path):
+    said = 'side_mm = 60.0\ncertificate = "D-K 7"\nlaboratory = "Labor Nord"\ndue = 2028-03-01'
+    rig = read(tmp_path, GOOD.replace("side_mm = 60.0", said))
+    assert rig.certificates == {"plane_target": Certificate("D-K 7", "Labor Nord", date(2028, 3, 1))}
+    assert written(tmp_path, rig) == rig
+    plain = as_calibrated_with(rig_tables(read(tmp_path, GOOD))["plane_target"])
+    assert as_calibrated_with(rig_tables(rig)["plane_target"]) == plain
+    assert not default_rig().certificates
 
 
 def test_what_is_known_of_the_part_can_be_said(tmp_path):
