@@ -139,7 +139,8 @@ class Project:
 
     `rejected`: ids of calibrations that were found and are not wanted. `inspection`: the features measured beside the
     thickness; names of nominal surfaces in it are paths within the project's folder, or whole ones. `artefacts`: those
-    that its rig is checked by, beside the user's own.
+    that its rig is checked by, beside the user's own. `callouts`: by features, how far (right, down) in pixels the
+    plate with its result was dragged from its place on the surface.
     """
 
     info: ProjectInfo = field(default_factory=ProjectInfo)
@@ -153,6 +154,7 @@ class Project:
     inspection: InspectionPlan = field(default_factory=InspectionPlan)
     studies: tuple[KeptStudy, ...] = ()
     artefacts: tuple[Artefact, ...] = ()
+    callouts: Mapping[str, tuple[float, float]] = field(default_factory=dict, hash=False)
 
     def printed_in(self, language: str) -> Project:
         """The same, its report in this language unless it states one."""

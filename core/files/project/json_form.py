@@ -34,7 +34,7 @@ from core.files.reading import read_json
 from core.files.recording.options import Options
 from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
 from core.files.results.artefact_register import ArtefactTable
-from core.files.tables import TIME_WORDS, Time, kept
+from core.files.tables import TIME_WORDS, Finite, Time, kept
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.scan.method import Method
@@ -93,6 +93,9 @@ class ProjectTables(Table):
     inspection: PlanTables = PlanTables()
     studies: tuple[KeptStudy, ...] = ()
     artefacts: tuple[ArtefactTable, ...] = ()
+    callouts: dict[str, tuple[Finite, Finite]] = Field(
+        default_factory=dict, description="a table of two numbers each, in pixels"
+    )
     results: dict[str, Done] = Field(default_factory=dict)
 
 
@@ -114,7 +117,7 @@ MIGRATIONS: Mapping[int, Callable[[dict[str, Any]], dict[str, Any]]] = {
     8: lambda tables: tables,  # k3 of the camera, which was free or zero: it stays as the camera was calibrated
     9: lambda tables: {**tables, "results": _renamed(tables.get("results", {}), _EARLIER_STEPS)},
     10: lambda tables: {**tables, "accepted": _renamed(tables.get("accepted", {}), EARLIER_CALIBRATIONS)},
-    11: lambda tables: tables,  # certificates of targets and laboratories of artefacts, which may be none
+    11: lambda tables: tables,  # certificates of targets, laboratories of artefacts, places of callouts: may be none
 }
 """By schema: the tables as the next schema has them, from those of this one."""
 
@@ -165,6 +168,7 @@ def project_tables(file: ProjectFile) -> dict[str, Any]:
         "inspection": plan_tables(project.inspection),
         "studies": [{**asdict(study), "title": kept(study.title)} for study in project.studies],
         "artefacts": [{**asdict(one), "due": one.due and one.due.isoformat()} for one in project.artefacts],
+        "callouts": {name: list(moved) for name, moved in sorted(project.callouts.items())},
         "results": {step: _done_table(done) for step, done in sorted(file.results.items())},
     }
 
@@ -228,6 +232,7 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
         inspection=plan_of(file.inspection, path),
         studies=file.studies,
         artefacts=tuple(table.artefact() for table in file.artefacts),
+        callouts=dict(file.callouts),
     )
     return ProjectFile(project, file.results, file.created, file.saved)
 

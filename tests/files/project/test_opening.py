@@ -46,6 +46,7 @@ from core.inspect.plan.feature_spec import FeatureSpec, Filters, Polygon
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message, plain
+from core.model.certificate import Certificate
 from core.study.artefact_check import Artefact
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))
@@ -65,7 +66,8 @@ def full_project():
             channels=Channels("red", "blue", "red"), validity=Validity(30.0, 1.0, 2.0), name="bench-2", readjust=True,
             mosaic="RGGB", reference=ReferenceTarget(BlackSquare(36.0), BoardTolerance(0.01, 1e-5)),
             part=Part("wax", 0.12, 0.01, 0.02, 0.004, 9e-5, 2e-5, 21.5, 0.5,
-                      TargetTemperature(23.0, 0.5, 24e-6, 1e-6))),
+                      TargetTemperature(23.0, 0.5, 24e-6, 1e-6)),
+            certificates={"plane_target": Certificate("D-K 7", "Labor Nord", date(2028, 3, 1))}),
         Sources("/data/set/camera", "recordings/planes-1", "C:/pictures/scan", "recordings/check-1"),
         Options("three-crossings", 0.3, CameraOptions(False, frozenset({"p1", "k2"}), True, "all"), "my part",
                 StripeSettings(8.5, 120), frozenset({"camera/b.png", "planes/pose02", "scan/ä ö.png"}), False, True,
@@ -76,7 +78,8 @@ def full_project():
         ReportChoices(frozenset({"plots", "frames"}), "Letter", "de", "house/template.toml"),
         full_plan(),
         (KeptStudy("c0ffee012345", "grr", Message("study.title_grr", "{parts} parts", parts=3), False),),
-        (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1), "sphere"),),
+        (Artefact("GB 50-7", 50.0003, 0.0004, 2.5, "D-K-15070", date(2028, 3, 1), "sphere", "Lab 4"),),
+        {"ball Ø": (40.0, -70.5)},
     )  # fmt: skip
 
 
@@ -176,7 +179,7 @@ def test_the_file_is_for_people_too(tmp_path):
     tables = json.loads(text)
     assert list(tables) == [
         "schema_version", "version", "created", "saved", "info", "rig", "sources", "options", "accepted", "rejected",
-        "repeats", "report", "inspection", "studies", "artefacts", "results",
+        "repeats", "report", "inspection", "studies", "artefacts", "callouts", "results",
     ]  # fmt: skip
     assert tables["schema_version"] == SCHEMA
     assert tables["options"]["excluded"] == ["camera/b.png", "planes/pose02", "scan/ä ö.png"]
@@ -319,6 +322,16 @@ def test_the_artefacts_of_a_project_from_before_they_had_a_kind_are_blocks(tmp_p
         del one["kind"]
     (tmp_path / "project.json").write_text(json.dumps(tables))
     assert read_project(tmp_path).project.artefacts == (block, block)
+
+
+def test_a_project_from_before_places_of_callouts_were_kept_has_none(tmp_path):
+    create_project(tmp_path, ProjectFile(full_project()))
+    tables = json.loads((tmp_path / "project.json").read_text())
+    assert tables["callouts"] == {"ball Ø": [40.0, -70.5]}
+    tables["schema_version"] = 11
+    del tables["callouts"]
+    (tmp_path / "project.json").write_text(json.dumps(tables))
+    assert read_project(tmp_path).project == replace(full_project(), callouts={})
 
 
 def test_results_of_a_project_from_before_they_had_the_names_of_the_steps_are_known_by_these(tmp_path):

@@ -41,6 +41,9 @@ class ViewControl(Protocol):
     def pull(self, dx: float, dy: float) -> None:
         """Move what is held, by a drag in pixels."""
 
+    def drop(self) -> None:
+        """Let go of what was pulled."""
+
     def point_at(self, at: QPointF) -> None:
         """The mouse is there, no button is down."""
 
@@ -109,6 +112,8 @@ class Navigate:
         """A button comes up."""
         clicked = self._last is not None and not self._dragged and event.button() == Qt.MouseButton.LeftButton
         self._last = None
+        if self._pulls and self._dragged:
+            self.view.drop()
         if clicked:
             self.click(event.position())
 

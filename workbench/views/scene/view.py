@@ -505,6 +505,13 @@ class SceneView(QWidget):
             if squared > LEAST_PX_PER_MM**2:
                 self.handle_pulled.emit(float(along @ [dx, dy]) / squared)
 
+    def drop(self) -> None:
+        """Let go of what was pulled, and tell where a callout is now."""
+        for one in self._scene.callouts:
+            if self._held and one.name == self._held:
+                self.callout_moved.emit(one.name, one.moved)
+        self._held = ""
+
     def point_at(self, at: QPointF) -> None:
         """Show by the cursor what can be dragged."""
         held = self._handle_under(at) or self._callout_under(at) is not None
@@ -535,6 +542,7 @@ class SceneView(QWidget):
         callout = self._callout_under(at)
         if callout is not None:
             self._move_callout(callout.name, None)
+            self.callout_moved.emit(callout.name, None)
             return
         number = self._under(at)
         if number is not None:
@@ -589,7 +597,6 @@ class SceneView(QWidget):
 
     def _move_callout(self, name: str, to: tuple[float, float] | None) -> None:
         self.set_callouts([replace(one, moved=to) if one.name == name else one for one in self._scene.callouts])
-        self.callout_moved.emit(name, to)
 
     def _handle_on_screen(self) -> Array:
         """How the handle goes over the screen: (2,) in pixels for one mm."""

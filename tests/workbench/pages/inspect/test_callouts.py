@@ -115,14 +115,26 @@ def test_the_button_hides_them_and_is_remembered(page, tmp_path):
     assert "top" in called(page)
 
 
-def test_where_one_was_dragged_is_kept_until_another_project_is_open(page, qtbot):
+def test_where_one_was_dragged_is_kept_in_the_project_and_can_be_undone(page, qtbot):
     features = page.presenter.features
     page.surface.scene.callout_moved.emit("top", (40.0, -70.0))
     features.put(replace(PLAN.features[0], name="upper"), "top")
     measure(page, qtbot, features.plan)
     assert called(page)["upper"].moved == (40.0, -70.0) and called(page)["table"].moved is None
-    features.forget()
-    assert not features.callouts_moved
+    model = page.presenter.bench.model
+    assert model.project.callouts == {"upper": (40.0, -70.0)}
+    model.undo_stack.undo()
+    assert model.project.callouts == {"top": (40.0, -70.0)} and model.project.inspection == PLAN
+    model.undo_stack.undo()
+    assert not model.project.callouts
+
+
+def test_the_place_of_a_removed_feature_is_forgotten_and_that_of_the_thickness_stays(page):
+    features = page.presenter.features
+    for name in ("gap", THICKNESS):
+        page.surface.scene.callout_moved.emit(name, (40.0, -70.0))
+    features.remove("gap")
+    assert set(features.callouts_moved) == {THICKNESS}
 
 
 def test_a_click_on_one_chooses_its_feature(page):

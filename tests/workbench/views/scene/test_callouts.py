@@ -149,7 +149,7 @@ def test_a_dragged_plate_keeps_its_distance_from_its_place_and_the_view_stands_s
     _, now = seen(called)["right"]
     assert_allclose((now.center() - plate.center()).toTuple(), (60, 90), atol=1)
     offset = (now.center() - at).toTuple()
-    assert moved[-1][0] == "right"
+    assert [one[0] for one in moved] == ["right"], "told once, when it is let go"
     assert_allclose(moved[-1][1], offset)
     called.pan(-30, 10)
     at, now = seen(called)["right"]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 from PySide6.QtCore import QObject, Signal
@@ -72,6 +73,7 @@ def features_buttons(facts: FeaturesFacts) -> FeaturesButtons:
     )
 
 
+NO_OTHERS: Mapping[str, str] = MappingProxyType({})
 THICKNESS = "#thickness"
 """What the gauge's thickness is called among the features, where it is chosen or has its callout."""
 
@@ -92,8 +94,11 @@ class InspectFeatures(QObject):
         self._shown_for: tuple[InspectionPlan, object] | None = None
         self.problem = ""
         self.chosen = ""
-        self.callouts_moved: dict[str, tuple[float, float]] = {}
+
+    @property
+    def callouts_moved(self) -> Mapping[str, tuple[float, float]]:
         """How far (right, down) in pixels the callout of a feature was dragged from its place."""
+        return self.model.project.callouts
 
     # ---- the plan
 
@@ -125,9 +130,7 @@ class InspectFeatures(QObject):
         plan = self._with(spec, instead_of)
         label = tr("change {name}", name=spec.name) if instead_of else tr("add {name}", name=spec.name)
         self.chosen = spec.name
-        if instead_of in self.callouts_moved:
-            self.callouts_moved[spec.name] = self.callouts_moved.pop(instead_of)
-        self.put_plan(plan, label)
+        self.put_plan(plan, label, {instead_of: spec.name})
 
     def add(self, specs: Sequence[FeatureSpec]) -> None:
         """Add features, the last one made of the others, and choose that; one edit, undoable."""
@@ -179,9 +182,11 @@ class InspectFeatures(QObject):
         features.insert(names.index(name) + by, features.pop(names.index(name)))
         self.put_plan(replace(self.plan, features=tuple(features)), tr("move {name}", name=name))
 
-    def put_plan(self, plan: InspectionPlan, label: str) -> None:
-        """Measure this plan from now on; undoable."""
-        self.model.edit(label, replace(self.model.project, inspection=plan))
+    def put_plan(self, plan: InspectionPlan, label: str, renamed: Mapping[str, str] = NO_OTHERS) -> None:
+        """Measure this plan from now on, in which features are `renamed`; undoable. Callouts stay where they are."""
+        moved = {renamed.get(name, name): to for name, to in self.callouts_moved.items()}
+        callouts = {name: to for name, to in moved.items() if name in plan.names or name not in self.plan.names}
+        self.model.edit(label, replace(self.model.project, inspection=plan, callouts=callouts))
         if self.chosen not in (*plan.names, THICKNESS):
             self.chosen = ""
 
@@ -309,14 +314,14 @@ class InspectFeatures(QObject):
             self.changed.emit()
 
     def move_callout(self, name: str, moved: tuple[float, float] | None) -> None:
-        """Keep where a feature's callout was dragged, as long as the project is open; None: where there is room."""
-        self.callouts_moved.pop(name, None)
+        """Keep where a feature's callout was dragged; None: where there is room. undoable."""
+        callouts = {other: to for other, to in self.callouts_moved.items() if other != name}
         if moved is not None:
-            self.callouts_moved[name] = moved
+            callouts[name] = moved
+        self.model.edit(tr("move the plate of a result"), replace(self.model.project, callouts=callouts))
 
     def forget(self) -> None:
         """Another project is open: nothing of it has been measured here."""
-        self.callouts_moved = {}
         self._shown, self._shown_for = None, None
         self.problem = self.chosen = ""
 
