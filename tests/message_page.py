@@ -27,7 +27,7 @@ NAMES = (
     "camera.downwards", "camera.inwards", "camera.outwards", "camera.upwards", "camera.to_the_*", "camera.none",
     "camera.only", "camera.of_view", "camera.nameless_view",
     "camera.view_number", "camera.two_reasons",
-    "comparison.as_measured", "comparison.best_fit", "comparison.by_frame",
+    "comparison.as_measured", "comparison.best_fit", "comparison.by_frame", "doubt.*", "study.doubted_result",
     "fan.angle_with_sd", "fan.bent_*", "fan.constrained_used", "fan.free_*_used", "fan.of_pose", "fan.one_axis*",
     "fan.pose_and_reason", "fan.pose_reason_and_distance", "fan.suits", "fan.used_as_asked", "fan.verdict",
     "feature.where*", "feature.compared_with_master", "feature.stated_at_20",
