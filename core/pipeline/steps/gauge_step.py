@@ -36,6 +36,8 @@ PART = "part"
 
 UNSURE = 0.5
 """Share of the sweeps' points that the σ cut leaves out, from which on it is told where faces are not found."""
+FEW_FRAMES, USUAL_FRAMES = 20, 30
+"""Frames that locate the surface: so few are named where faces are not found, and so many are asked for then."""
 MATTERS = 1.1
 """A rig is told to be unchecked if U is so many times what it would be without a change since the calibration."""
 
@@ -132,7 +134,8 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
 def unsure_first(scan: ScanFile) -> Iterator[None]:
     """A complaint about faces begins with stripes that are overexposed, or with how many points the σ cut left out.
 
-    With these only if they are most: that may be why.
+    With these only if they are most: that may be why. Where the frames are few, their number is: with as many as are
+    usual, the same sweeps have faces.
     """
     try:
         yield
@@ -151,6 +154,17 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
             raise InputError(what, where=error.where, todo=ADVICE) from error
         if scan.unsure_share < UNSURE:
             raise
+        if len(scan.sweep_frames) < FEW_FRAMES:
+            what = Message(
+                "gauge.few_frames_and_no_faces",
+                "only {n} frames locate the surface, and {percent:.0f} % of their points are less sure than the σ cut; "
+                "of the rest: {reason}",
+                n=len(scan.sweep_frames),
+                percent=100 * scan.unsure_share,
+                reason=error.what,
+            )
+            todo = Message("gauge.advice_more_frames", "record {n} frames or more", n=USUAL_FRAMES)
+            raise InputError(what, where=error.where, todo=todo) from error
         what = Message(
             "gauge.unsure_and_no_faces",
             "{percent:.0f} % of the sweeps' points are less sure than the σ cut, and left out; of the rest: {reason}",

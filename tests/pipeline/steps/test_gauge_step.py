@@ -13,10 +13,11 @@ from core.pipeline.steps import gauge_step
 from core.scan.features.picture_faults import faults_first
 
 
-def scan_of(*, unsure_share, saturated=0, notes=()):
+def scan_of(*, unsure_share, saturated=0, notes=(), sweeps=36):
     """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
     line = SimpleNamespace(saturated=np.arange(100) < saturated)
-    return SimpleNamespace(unsure_share=unsure_share, features=SimpleNamespace(fan=[line], frames=[], notes=notes))
+    features = SimpleNamespace(fan=[line], frames=[], notes=notes)
+    return SimpleNamespace(unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps))
 
 
 NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are parallel", n=1)
@@ -45,6 +46,14 @@ def test_faces_that_are_not_found_are_told_with_the_points_that_are_too_unsure(s
     assert said in str(refused.value)
     assert "no two are parallel" in str(refused.value)
     assert ("raise the scan's σ cut" in str(refused.value)) == (share > 0.5)
+
+
+def test_few_frames_are_named_before_points_that_are_too_unsure():
+    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=0.8, sweeps=11)):
+        raise InputError(NO_FACES, where="point cloud")
+    for said in ("only 11 frames", "no two are parallel", "record 30 frames or more"):
+        assert said in str(refused.value)
+    assert "raise the scan's σ cut" not in str(refused.value)
 
 
 def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():
