@@ -95,4 +95,6 @@ def test_what_a_result_rests_on_fills_pages_in_any_order_but_long_remarks_flow(r
     parts = story(LOOK, replace(block_content(), remarks=remarks), {}, LIMITS[0])
     moved = [one for one in parts if isinstance(one, Sections)][-1].sections
     keys = [inside.key for one in moved for inside in one._content if isinstance(inside, Heading)]
-    assert keys == ["calibrations", "frames", "notes"] + ["remarks"] * (remarks == "Table warm.")
+    assert keys == ["traceability", "calibrations", "frames", "notes", "reading"] + ["remarks"] * (
+        remarks == "Table warm."
+    )

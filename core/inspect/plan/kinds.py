@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from core.inspect.characteristic import Characteristic
 from core.inspect.plan.feature_kind import ChoiceField, ElementKind, FeatureKind, NumberField, ResultKind, TextField
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
@@ -274,3 +275,8 @@ def results_of(spec: FeatureSpec) -> Mapping[str, ResultKind]:
 def expanding() -> frozenset[str]:
     """Names of the characteristics that grow with the part's temperature."""
     return frozenset(result.name for kind in every_kind() for result in kind.results if result.expands)
+
+
+def expands(characteristic: Characteristic) -> bool:
+    """Whether it is a length that grows with the part: no angle, and no deviation of form."""
+    return characteristic.kind in expanding() and characteristic.quantity == "length"

@@ -26,7 +26,7 @@ from core.findings.table import note_of
 from core.inspect.causes import CALIBRATIONS, OF_TARGET, Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
-from core.inspect.plan.kinds import expanding
+from core.inspect.plan.kinds import expands
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.part import Part, TargetTemperature
@@ -34,11 +34,6 @@ from core.messages import Message
 
 ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
-
-
-def expands(characteristic: Characteristic) -> bool:
-    """Whether it is a length that grows with the part: no angle, and no deviation of form."""
-    return characteristic.kind in expanding() and characteristic.quantity == "length"
 
 
 def at_reference(length: Characteristic, temperature: Temperature) -> Characteristic:

@@ -9,7 +9,7 @@ from core.files.project.folder import is_project, read_project, results_folder, 
 from core.files.results.folder_results import read_results
 from core.inspect.causes import Cause
 from core.inspect.plan.conditions import Master
-from core.inspect.plan.temperature import expands
+from core.inspect.plan.kinds import expands
 from core.messages import Message
 from core.pipeline.steps.workspace import read_calibration
 from core.progress import Progress, silent

@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from core.inspect.causes import CALIBRATIONS, Cause
 from core.inspect.characteristic import Characteristic
-from core.inspect.plan.temperature import expands
+from core.inspect.plan.kinds import expands
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.coverage import effective_dof
 from core.messages import Message, label

@@ -8,6 +8,7 @@ from core.messages import label
 from core.report.content import ReportContent
 from core.report.layout.blocks import GAP, pairs_table, section, side_by_side
 from core.report.layout.style import TEXT_WIDTH, ReportLook
+from core.states import DECISIONS
 
 TERM = 24 * 72 / 25.4
 """Width of the column of terms, in points."""
@@ -16,9 +17,9 @@ OF_RESULTS = {
     "± U, k": label(
         "The value lies within ± U = k·u, with k = 2 in about 95 of 100 cases; u is the standard uncertainty."
     ),
-    label("Conforming"): label("The deviation stays within the tolerance even when it is enlarged by U."),
-    label("Not conforming"): label("It is outside the tolerance even when it is made smaller by U."),
-    label("Not proven"): label("U is too large to tell, or something that is needed for a proof is not known."),
+    DECISIONS["conforming"]: label("The deviation stays within the tolerance even when it is enlarged by U."),
+    DECISIONS["not conforming"]: label("It is outside the tolerance even when it is made smaller by U."),
+    DECISIONS["not proven"]: label("U is too large to tell, or something that is needed for a proof is not known."),
 }
 OF_BUDGETS = {
     label("value, u(x)"): label("Best estimate of an input, and its standard uncertainty, both in its own unit."),

@@ -457,7 +457,7 @@ def test_spoilt_scan_files_are_refused(tmp_path, scan):
     with pytest.raises(InputError, match=r"scan\.npz: this is no whole file of arrays"):
         read_scan(path)
     np.savez(path, pis=np.zeros((2, 3)))
-    with pytest.raises(InputError, match="the array calibration_id is missing"):
+    with pytest.raises(InputError, match="the array image_size is missing"):
         read_scan(path)
     with pytest.raises(InputError, match="the file is missing; measure the scan first"):
         read_scan(tmp_path / "none.npz")

@@ -21,7 +21,7 @@ WARM = Temperature(24.0, 0.5, 11.5e-6, 1.0e-6)
 
 def length(value=50.02, noise=0.003, camera=0.008, kind="thickness", **more):
     budget = (Contribution(Cause.POINT_NOISE, noise), Contribution(Cause.CAMERA, camera))
-    return Characteristic("block", kind, value, combined(budget), budget=budget, **more)
+    return Characteristic("block", kind, value, combined(budget), budget=budget, doubts=(), **more)
 
 
 def test_a_warm_steel_block_is_shorter_at_20_degrees():

@@ -410,7 +410,7 @@ def test_a_rig_to_be_checked_daily_that_was_not_proves_nothing_and_an_unstated_s
     assert notes[0].code == "validity.never_checked"
     assert "scan.shutter_assumed" in {note.code for note in notes}
     gauge = gauge_step(work)
-    assert not gauge.complete and gauge.verdict is Verdict.NOT_PROVEN
+    assert gauge.doubts and gauge.verdict is Verdict.NOT_PROVEN
     assert gauge.notes[0].code == "validity.never_checked"
 
 

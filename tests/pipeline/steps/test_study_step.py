@@ -125,8 +125,8 @@ def test_the_report_has_the_studies_that_are_included(done, tmp_path):
 
 def test_a_series_is_of_any_length_and_of_no_angle(done, tmp_path, monkeypatch):
     found = {
-        "top flatness": Measured(0.031, 0.004, 2.0, (), "mm"),
-        "top to side": Measured(89.95, 0.02, 2.0, (), "deg"),
+        "top flatness": Measured(0.031, 0.004, 2.0, (), "mm", doubts=()),
+        "top to side": Measured(89.95, 0.02, 2.0, (), "deg", doubts=()),
     }
     monkeypatch.setattr(study_step, "measured_in", lambda _, name: found[name])
     folder = tmp_path / "project"
