@@ -55,13 +55,13 @@ from workbench.views import ask
 from workbench.views.console import console_missing
 from workbench.views.instruction_bar import InstructionBar
 from workbench.views.layouts import (
+    Elided,
     UpAndDown,
     enable,
     holding,
     in_column,
     in_row,
     keep_focus,
-    muted,
     resize_on_screen,
 )
 from workbench.views.lists.notice_list import Banner, NoticeList
@@ -104,8 +104,11 @@ class MainWindow(QMainWindow):
         self.instructions = InstructionBar()
         self._led_in: Path | None = None
         self.welcome = WelcomePage(self.projects)
-        self._title, self._help, self.missing = QLabel(), muted(), muted()
+        self._title, self._help = QLabel(), Elided()
         self._title.setObjectName("title")
+        self._help.setObjectName("muted")
+        self.missing = Elided()
+        self.missing.setObjectName("muted")
         self.back = QPushButton(tr("Back"))
         self.next = QPushButton(tr("Next"))
         self.next.setProperty("primary", True)

@@ -19,7 +19,7 @@ from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.run import short
 from workbench.theme import icon
 from workbench.views.common import Slider
-from workbench.views.layouts import Folding, enable, in_column, in_row, muted
+from workbench.views.layouts import Elided, Folding, enable, in_column, in_row
 
 
 class FrameBar(QWidget):
@@ -32,7 +32,7 @@ class FrameBar(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.back, self.on, self.next_mark = QToolButton(), QToolButton(), QToolButton()
-        self.slider, self.used, self.said = Slider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), muted()
+        self.slider, self.used, self.said = Slider(Qt.Orientation.Horizontal), QCheckBox(tr("use it")), Elided()
         self.stages: dict[View, QPushButton] = {}
         self._group = QButtonGroup(self)
         self._lay_out()
@@ -105,9 +105,11 @@ class FrameBar(QWidget):
         for widget, stretch in ((self.back, 0), (self.slider, 1), (self.on, 0), (self.next_mark, 0), (self.used, 0)):
             along.addWidget(widget, stretch)
         column = in_column(Folding(*halves, spacing=0), along, on=self, margins=(0, 4, 0, 0), spacing=4)
+        self.said.setObjectName("muted")
+        self.said.setWordWrap(True)
         words = self.used.text()  # in the window's own letters: those of some languages are higher than the font's line
         two_lines = self.said.fontMetrics().boundingRect(self.rect(), Qt.TextFlag.TextWordWrap, f"{words}\n{words}")
-        self.said.setMinimumHeight(two_lines.height())  # what stands above it stays where it is
+        self.said.setFixedHeight(two_lines.height())
         self.said.setAlignment(Qt.AlignmentFlag.AlignTop)
         column.addWidget(self.said)
 

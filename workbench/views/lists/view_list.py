@@ -221,26 +221,13 @@ _PAD, _BAR = 4, 4
 
 
 class RowDelegate(QStyledItemDelegate):
-    """Check box, thumbnail, name, and below it all of why it was left out; the value over its bar."""
+    """Check box, thumbnail, name, and below it why it was left out; the value over its bar."""
 
     thumbnail_missing = Signal(str)
     """Name of a row in sight whose thumbnail comes later."""
 
     def sizeHint(self, option: QStyleOptionViewItem, index: _Index) -> QSize:
         return QSize(140, row_height(option.fontMetrics))
-
-    def height_of(self, table: QTableView, index: _Index) -> int:
-        """Pixels that a row of a table needs for all that is said of it."""
-        metrics, row = table.fontMetrics(), index.data(VALUE_ROLE)
-        usual = row_height(metrics)
-        if not row.reason:
-            return usual
-        side = table.style().pixelMetric(QStyle.PixelMetric.PM_IndicatorWidth, None, table)
-        model = self.parent()
-        later = isinstance(model, RowsModel) and model.later
-        picture = THUMBNAIL.width() + 8 if later or row.thumbnail is not None else 0
-        across = table.columnWidth(0) - 14 - side - picture - _PAD
-        return max(usual, metrics.height() + _wrapped(metrics, across, row.reason) + 2 * _PAD)
 
     def paint(self, painter: QPainter, option: QStyleOptionViewItem, index: _Index) -> None:
         self.initStyleOption(option, index)
@@ -298,17 +285,14 @@ class RowDelegate(QStyledItemDelegate):
         self, painter: QPainter, area: QRect, first: tuple[str, QColor], second: tuple[str, QColor]
     ) -> None:
         metrics = painter.fontMetrics()
-        (name, ink), (reason, faint) = first, second
-        below = _wrapped(metrics, area.width(), reason) if reason else 0
-        top = area.top() + (area.height() - metrics.height() - below) // 2
-        painter.setPen(ink)
-        painter.drawText(
-            QRect(area.left(), top, area.width(), metrics.height()),
-            int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter),
-            metrics.elidedText(name, Qt.TextElideMode.ElideMiddle, area.width()),
-        )
-        painter.setPen(faint)
-        painter.drawText(QRect(area.left(), top + metrics.height(), area.width(), below), _WRAPPED, reason)
+        lines = [line for line in (first, second) if line[0]]
+        top = area.top() + (area.height() - len(lines) * metrics.height()) // 2
+        for text, colour in lines:
+            painter.setPen(colour)
+            elided = metrics.elidedText(text, Qt.TextElideMode.ElideRight, area.width())
+            line = QRect(area.left(), top, area.width(), metrics.height())
+            painter.drawText(line, int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignVCenter), elided)
+            top += metrics.height()
 
     def _draw_value(self, painter: QPainter, cell: QRect, row: ListRow, ink: QColor, chosen: bool) -> None:
         metrics, s = painter.fontMetrics(), shades()
@@ -328,14 +312,6 @@ class RowDelegate(QStyledItemDelegate):
         painter.fillRect(QRect(rail.right() + 1 - length, rail.top(), length, _BAR), colour)
 
 
-_WRAPPED = int(Qt.AlignmentFlag.AlignLeft | Qt.AlignmentFlag.AlignTop | Qt.TextFlag.TextWordWrap)
-
-
-def _wrapped(metrics: QFontMetrics, across: int, text: str) -> int:
-    """Pixels that a text wrapped to a width is high."""
-    return metrics.boundingRect(QRect(0, 0, max(across, 1), 0), _WRAPPED, text).height()
-
-
 def row_height(metrics: QFontMetrics) -> int:
     """Two lines of text, or a thumbnail."""
     return max(2 * metrics.height() + 2 * _PAD, THUMBNAIL.height() + 6)
@@ -349,8 +325,6 @@ class CheckingTable(QTableView):
 
     toggle_wanted = Signal()
     check_clicked = Signal(int)
-    widened = Signal()
-    """It has another size, and so have its columns."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -364,7 +338,6 @@ class CheckingTable(QTableView):
     def resizeEvent(self, event: QResizeEvent) -> None:
         follows = self._follows  # a lower table is scrolled by Qt, too
         super().resizeEvent(event)
-        self.widened.emit()
         self._follows = follows
         if follows:
             self.scrollTo(self.currentIndex())
@@ -427,9 +400,6 @@ class ViewList(QWidget):
         self._delegate.thumbnail_missing.connect(self.thumbnail_wanted, Qt.ConnectionType.QueuedConnection)
         self._told = ""
         self._set_up_table()
-        for changed in (self.model.modelReset, self.model.layoutChanged, self.model.dataChanged):
-            changed.connect(self._fit_rows)
-        self.table.widened.connect(self._fit_rows)
         self.set_headers(tr("View"), tr("Error"))
         self.setFocusProxy(self.table)
         in_column(self.table, on=self)
@@ -442,7 +412,6 @@ class ViewList(QWidget):
         header.ensurePolished()
         needed = header.fontMetrics().horizontalAdvance(value) + _AROUND_HEADER
         header.resizeSection(1, min(max(needed, _NARROWEST), _WIDEST))
-        self._fit_rows()
 
     def set_rows(self, rows: Sequence[ListRow]) -> None:
         """Show rows. Which are chosen, which is current, and the scrolling are kept."""
@@ -483,13 +452,6 @@ class ViewList(QWidget):
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
             self.table.viewport().update()
-
-    def _fit_rows(self, *_: object) -> None:
-        """Rows as high as what is said of them: why something was left out is never cut."""
-        for place in range(len(self.model.rows)):
-            height = self._delegate.height_of(self.table, self.model.index(place, 0))
-            if self.table.rowHeight(place) != height:
-                self.table.setRowHeight(place, height)
 
     def _set_up_table(self) -> None:
         table = self.table

@@ -378,7 +378,7 @@ def test_slider_buttons_list_and_arrows_go_through_the_frames_together(measured,
     qtbot.waitUntil(lambda: scrub.up_to_date)
     measured.refreshing.at_once()
     assert measured.bar.said.text().startswith(
-        "Frame 5 of 6 (frame0004.png): 500 points, median σ 0.050\u00a0mm; 3 crossings"
+        "Frame 5 of 6 (frame0004.png): 500 points, median σ 0.050 mm; 3 crossings"
     )
 
 
