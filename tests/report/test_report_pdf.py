@@ -147,7 +147,7 @@ def test_a_length_has_rows_of_size_and_temperatures_even_where_they_add_nothing(
 def test_how_to_read_the_report_explains_its_letters(data):
     text = words(data)
     assert "How to read this report" in text
-    for term in ("α, β Focal length", "γ Skew", "ν_eff Effective degrees of freedom of u", "Not proven U is too large"):
+    for term in ("α, β Focal length", "γ Skew", "ν_eff Effective degrees of freedom of u", "not proven U is too large"):
         assert term in text, term
 
 
