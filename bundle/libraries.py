@@ -160,6 +160,9 @@ def drop_unused(folder: Path) -> None:
             path.unlink()
         elif unused.intersection(found[path].links):
             cut_links(path, unused)
+    for path in folder.rglob("*"):
+        if path.is_symlink() and not path.exists():
+            path.unlink()
 
 
 def reached(library: Path, found: dict[Path, Linked], named: dict[str, Path]) -> set[Path]:
