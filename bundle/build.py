@@ -30,9 +30,20 @@ INSIDE = FOLDER / "_internal"
 NOTE = """
 This folder was built by PyInstaller, whose start program is in it: GPL-2.0-or-later with an exception that allows to
 pass on programs built with it under any licence. Python's own licence (PSF-2.0) is in licences/python.txt, those of the
-packages are in _internal/NAME.dist-info. Libraries under the LGPL (Qt, PySide6, FFmpeg, Open CASCADE) lie in _internal
-as files of their own and may be replaced there. sbom.cdx.json lists every package with its version (CycloneDX).
+packages are in _internal/NAME.dist-info. sbom.cdx.json lists every package with its version (CycloneDX).
+
+It holds Qt with PySide6 and shiboken6 (LGPL-3.0), FFmpeg (LGPL-2.1) and Open CASCADE Technology (LGPL-2.1 with its own
+exception), on whose facilities the reading of STEP files is based; the texts are in licences. They lie in _internal as
+libraries of their own and may be replaced there. Qt brings ICU (licence of Unicode, Inc.:
+_internal/babel/locale-data/LICENSE.unicode).
 """
+CHANGED = """
+On Linux the libraries differ from those of the packages, by `bundle/libraries.py` of the source of this program: names
+for a debugger are taken out, and links to libraries that are left out, as nothing of them is used; from ICU's data, the
+languages that the program does not speak.
+"""
+LICENCES = Path(__file__).with_name("licences")
+"""Texts that the packages do not bring, though their terms ask for them."""
 
 
 def main() -> None:
@@ -71,10 +82,11 @@ def put_notices() -> None:
     (FOLDER / "VERSION").write_text(f"trisect {__version__} ({', '.join(EXTRAS)})\n", encoding="utf-8")
     shutil.copy(ROOT / "LICENSE", FOLDER)
     notice = (ROOT / "NOTICE").read_text(encoding="utf-8")
-    (FOLDER / "NOTICE").write_text(notice + NOTE, encoding="utf-8")
+    changed = CHANGED if sys.platform == "linux" else ""
+    (FOLDER / "NOTICE").write_text(notice + NOTE + changed, encoding="utf-8")
     shutil.copy(BUILD / "sbom.cdx.json", FOLDER)
     licences = FOLDER / "licences"
-    licences.mkdir(exist_ok=True)
+    shutil.copytree(LICENCES, licences, dirs_exist_ok=True)
     (licences / "python.txt").write_text(pythons_licence(), encoding="utf-8")
 
 

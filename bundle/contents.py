@@ -131,7 +131,7 @@ def wanted_data(data: list[tuple[str, str, str]]) -> Iterator[tuple[str, str, st
             continue
         if "/Qt/translations/" in path and not Path(path).name.startswith("qtbase_"):
             continue
-        if path.startswith("babel/locale-data/") and not Path(path).name.startswith(LANGUAGES):
+        if path.startswith("babel/locale-data/") and not Path(path).name.startswith((*LANGUAGES, "LICENSE")):
             continue
         if ".dist-info/" in path and path.rsplit("/", 1)[1] in ("RECORD", "INSTALLER", "REQUESTED", "direct_url.json"):
             continue
