@@ -12,6 +12,10 @@ ROWS = (
     Finding("fan.saturated_stripes", Weight.CAUTION, Effect.NONE,
             "the stripes are saturated at {share:.0%} of their points, which can shift them: expose shorter, dim "
             "the laser, or set {field} to a colour in which the laser is weaker"),
+    Finding("fan.brightness_changed", Weight.CAUTION, Effect.NONE,
+            "the pictures with the fan on and off are not exposed alike in {n} of {all} poses, the first {pose}: they "
+            "differ by up to {percent:.0f} %, as with automatic exposure or a lamp that is not steady, which is taken "
+            "off by the plate's light. Fix exposure and gain of the camera"),
     Finding("fan.further_plane", Weight.CAUTION, Effect.NONE,
             "a further light plane is seen in {n} poses: check {field}"),
     Finding("fan.outlying_pose", Weight.CAUTION, Effect.NONE,

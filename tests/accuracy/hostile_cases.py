@@ -85,6 +85,10 @@ EFFECTS = (
         ],
     ),
     Effect(
+        "automatic exposure",
+        [(f"± {share:.0%}", {"sensor": SensorEffects(automatic_exposure=share)}) for share in (0.1, 0.3)],
+    ),
+    Effect(
         "camera's target bowed",
         [(f"{bow} mm", {"plates": PlateEffects(camera_bow_mm=bow)}) for bow in (0.2, 0.6, 1.5)],
     ),
@@ -216,6 +220,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "the rig warms within the scan": (*CHANGED, *DRIFT, "scan.fan_shifted"),
     "the rig warmed since its calibration": CHANGED,
     "exposed too long, blooming": ("scan.overexposed", "fan.saturated_stripes"),
+    "automatic exposure": ("scan.brightness_changed", "fan.brightness_changed"),
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),
     "plane target bowed": ("fan.bowed_target", "fan.bow_or_bend", "fan.bow_beyond_flatness"),
     "camera's target larger": ("target.sizes_disagree",),

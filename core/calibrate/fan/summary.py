@@ -162,7 +162,7 @@ def _rms(distances: Sequence[Array]) -> float:
 
 
 def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose], *, few_told: bool) -> tuple[Message, ...]:
-    """On the poses that are left out, on too few that are used unless that is told, and on saturated stripes."""
+    """On poses left out, on too few that are used unless that is told, on saturated stripes and uneven exposure."""
     left_out = note_on_left_out(poses)
     notes = [] if left_out is None else [left_out]
     used = sum(pose.used for pose in poses)
@@ -172,6 +172,11 @@ def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose], *, few_to
     share = float(np.average([s.saturated for s in stripes], weights=[len(s) for s in stripes]))
     if share > SATURATED_SHARE:
         notes.append(note_of("fan.saturated_stripes", share=share, field=Field("channel")))
+    changed = [pose.features for pose in located if pose.features.gain != 1]
+    if changed:
+        most = max(abs(pose.gain - 1) for pose in changed)
+        count = {"n": len(changed), "all": len(located), "pose": changed[0].name}
+        notes.append(note_of("fan.brightness_changed", **count, percent=100 * most))
     return tuple(notes)
 
 

@@ -50,6 +50,7 @@ _POSES = {
     "fan_id": texts(),
     "notes": texts("pictures", optional=True),
     "moved_px": real("pictures", optional=True),
+    "gain": real("pictures", optional=True),
     **centreline_members("stripe", "pictures"),
 }
 _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
@@ -107,6 +108,7 @@ def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> No
         "reasons": pack_messages([pose.reason for pose in poses]),
         "notes": pack_texts(["\n".join(map(as_text, pose.notes)) for pose in poses]),
         "moved_px": np.array([_NOT_KNOWN if math.isnan(pose.moved_px) else pose.moved_px for pose in poses]),
+        "gain": np.array([pose.gain for pose in poses]),
         **pack_views([pose.view for pose in poses]),
         **pack_centrelines("stripe", [pose.centrelines for pose in poses]),
     }
@@ -141,6 +143,7 @@ def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
         map(known_exclusion, unpack_messages(arrays["reasons"])),
         (tuple(note for line in said.splitlines() if (note := from_text(line))) for said in notes),
         np.where(moved_px == _NOT_KNOWN, math.nan, moved_px).tolist(),
+        arrays.get("gain", np.ones(len(names))).tolist(),
         strict=True,
     )
     return tuple(PoseFeatures(*pose) for pose in columns)

@@ -9,6 +9,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from core.image.stripes.pair_exposure import Exposed
 from core.messages import Message
 
 PAIRS_TRIED = 3
@@ -25,11 +26,12 @@ EXCHANGED = Message(
 def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
     """How many times stronger the strongest light that only the off picture (H, W) has is than that of the on picture.
 
-    0 where the two differ in size.
+    The off picture is brought to the exposure of the other. 0 where the two differ in size.
     """
     if on.shape != off.shape:
         return 0.0
-    light = cv2.blur(on.astype(np.float32) - off.astype(np.float32), (5, 5))
+    alike = Exposed.of(on, off, float(np.iinfo(on.dtype).max)).like(off.astype(np.float32))
+    light = cv2.blur(on.astype(np.float32) - alike, (5, 5))
     light -= np.median(light[::4, ::4])
     return float(-light.min() / max(float(light.max()), 1e-9))
 

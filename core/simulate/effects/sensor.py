@@ -43,6 +43,8 @@ class SensorEffects:
     second_exposure, third_exposure
         Every picture but those of the camera's target is taken again, exposed so many times shorter, or longer if it is
         below 1; 0: it is not.
+    automatic_exposure
+        Each picture is exposed longer or shorter than the others by up to this share, by chance.
     jpeg_quality
         Pictures are JPEG files of this quality with colours at half the size both ways (4:2:0); 0: lossless.
 
@@ -61,6 +63,7 @@ class SensorEffects:
     jpeg_quality: int = 0
     second_exposure: float = 0.0
     third_exposure: float = 0.0
+    automatic_exposure: float = 0.0
 
     def __post_init__(self) -> None:
         require_ranges(
@@ -73,6 +76,7 @@ class SensorEffects:
                 ("jpeg_quality", 0, 100),
                 ("second_exposure", 0.0, 1000.0),
                 ("third_exposure", 0.0, 1000.0),
+                ("automatic_exposure", 0.0, 0.9),
             ),
         )
 

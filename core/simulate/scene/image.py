@@ -86,9 +86,12 @@ class Sensor:
         Of that light, `room` (height, width) is white; the rest is the lasers'. The picture is (height, width, 3) where
         the sensor sees colours.
         """
-        if self.exposure != 1:
-            light = np.float32(self.exposure) * light
-            room = None if room is None else np.float32(self.exposure) * room
+        exposure = self.exposure
+        if self.effects.automatic_exposure:
+            exposure *= 1 + self.effects.automatic_exposure * rng.uniform(-1, 1)
+        if exposure != 1:
+            light = np.float32(exposure) * light
+            room = None if room is None else np.float32(exposure) * room
         if self.effects != IDEAL_SENSOR:
             light = self.effects.collected(light, room, self.optics.black_level_grey)
             light = self.effects.with_hot_pixels(light, generator(self.seed, "hot pixels"))

@@ -305,6 +305,13 @@ def test_saturated_stripes_are_warned_of():
     assert any("saturated at 75%" in str(note) for note in fit_fan(burnt, CAMERA, THREE).notes)
 
 
+def test_pairs_that_were_not_exposed_alike_are_told():
+    pairs = features(WHERE, Noise(), 13)
+    pairs[2] = replace(pairs[2], gain=0.8)
+    told = [str(note) for note in fit_fan(pairs, CAMERA, THREE).notes]
+    assert any("not exposed alike in 1 of 7 poses" in note and "by up to 20 %" in note for note in told)
+
+
 def test_fewer_lines_than_promised_is_said():
     with pytest.raises(InputError, match=r"only 2 of the 3 promised fan lines.*laser_fan\.lines in rig\.toml"):
         fit_fan(features(WHERE, Noise(), 14, pis=PAPER[:2]), CAMERA, THREE)

@@ -51,6 +51,14 @@ def test_without_effects_the_pictures_are_those_of_before_there_were_any():
 WEIGHTED_BEFORE = 801168006
 
 
+def test_automatic_exposure_changes_every_picture_by_a_factor_of_its_own():
+    scenario = replace(SMALL, noise=0.0, sensor=SensorEffects(automatic_exposure=0.3))
+    even = [picture(replace(scenario, sensor=SensorEffects()), index).mean() for index in range(4)]
+    factors = [picture(scenario, index).mean() / mean for index, mean in enumerate(even)]
+    assert np.ptp(factors) > 0.1
+    assert all(0.65 < factor < 1.35 for factor in factors)
+
+
 @pytest.mark.parametrize(
     "effect",
     [

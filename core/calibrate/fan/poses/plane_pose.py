@@ -37,6 +37,7 @@ from core.image.stripes.noise import (
     estimate_noise_of_pair,
     free_of_structure,
 )
+from core.image.stripes.pair_exposure import Exposed
 from core.image.stripes.ridge_picture import ridge_strength
 from core.image.stripes.stripe import USUAL_STRIPE
 from core.image.stripes.told_width import as_measured
@@ -161,7 +162,7 @@ def measure_plane_pose(
             pose=name,
         )
         notes = (note,)
-    return PoseFeatures(name, view, centrelines, notes=notes, moved_px=moved_px)
+    return PoseFeatures(name, view, centrelines, notes=notes, moved_px=moved_px, gain=light.gain)
 
 
 def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:
@@ -200,7 +201,7 @@ class _Light:
     """The laser's light by the sites alone that see it, (H, W) each: grey levels, what is saturated, what no plate.
 
     `full_scale` is the largest grey level there can be, `mean` that of the picture with the laser on; `further` is the
-    light of further exposures.
+    light of further exposures; `gain` that of the picture with the laser on over the one without.
     """
 
     picture: NDArray[np.float32]
@@ -210,6 +211,7 @@ class _Light:
     full_scale: float
     mean: float
     further: tuple[_Light, ...] = ()
+    gain: float = 1.0
 
     @classmethod
     def of(
@@ -220,17 +222,22 @@ class _Light:
         further = tuple(cls.of(*pictures, view, outside, alone) for pictures in beside.further)
         sites = beside.sites
         lit, outside = sites.of(on), sites.of(outside)
-        picture, full_scale = lit.astype(np.float32), np.iinfo(lit.dtype).max
+        picture, full_scale, exposed = lit.astype(np.float32), np.iinfo(lit.dtype).max, Exposed()
         if off is None:
             noise = replace(estimate_noise(picture), compression=beside.compression)
         else:
             without = sites.of(off).astype(np.float32)
             # the stripes lie on the plate; the rest of the picture may be dark
-            common = _plate_level(without, replace(view, uv=sites.places_of(view.uv)))
+            there = replace(view, uv=sites.places_of(view.uv))
+            of_plate = _window(there, without.shape, margin=0.25)
+            exposed = Exposed.of(picture[of_plate], without[of_plate], full_scale)
+            without = exposed.like(without)
+            common = _plate_level(without, there)
             one = free_of_structure(estimate_noise(without), estimate_noise_of_pair(picture, without, outside), common)
             noise = replace(one, compression=beside.compression).of_difference(common)
             picture -= without
-        return cls(picture, lit >= full_scale, outside, noise, float(full_scale), float(lit.mean()), further)
+        saturated, mean = lit >= full_scale, float(lit.mean())
+        return cls(picture, saturated, outside, noise, float(full_scale), mean, further, exposed.gain)
 
 
 def _stripes(

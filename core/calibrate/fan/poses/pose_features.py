@@ -36,6 +36,9 @@ class PoseFeatures(Excludable):
         For the technician.
     moved_px
         How far the target moved between the pictures with the fan on and off; NaN: not known.
+    gain
+        Factor of the plate's light with the fan on over that with the fan off, which was taken off; 1: the same, or not
+        known.
     """
 
     name: str
@@ -44,6 +47,7 @@ class PoseFeatures(Excludable):
     exclusion: Reason | None = None
     notes: tuple[Message, ...] = ()
     moved_px: float = math.nan
+    gain: float = 1.0
 
     @property
     def used(self) -> bool:

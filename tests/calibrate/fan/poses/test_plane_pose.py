@@ -108,6 +108,17 @@ def test_without_an_off_picture_the_light_plate_still_serves(pair):
     assert np.sqrt(np.mean(misses_px(alone)[on_stripe] ** 2)) < 0.1
 
 
+@pytest.mark.parametrize("longer", [0.7, 1.3])
+def test_pictures_that_are_not_exposed_alike_are_brought_to_one_exposure(pair, measured, longer):
+    off = np.round(longer * pair.off).astype(np.uint8)
+    features = measure_plane_pose("p", pair.on, off, TARGET, CAMERA)
+    assert features.gain == pytest.approx(1 / longer, abs=0.01)
+    misses = misses_px(features)
+    assert len(misses) > 0.95 * len(misses_px(measured))
+    assert np.sqrt(np.mean(misses**2)) < 0.1
+    assert measured.gain == 1
+
+
 def in_colour(pair: Pair) -> tuple[np.ndarray, np.ndarray]:
     """The pair as a colour camera sees it, in the order blue, green, red: the fan is red, all else grey."""
     grain = np.random.default_rng(5).normal(0, 1.0, (2, *pair.on.shape, 3))
