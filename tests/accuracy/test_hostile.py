@@ -135,7 +135,7 @@ def test_cases_share_calibrations_only_where_these_are_the_same():
         own = case.effect in {
             "camera's target bowed", "plane target bowed", "camera's target larger", "plane target larger",
             "lens with k3", "coma", "defocus", "JPEG", "Bayer mosaic", "hot pixels", "fan lines that bow", "speckle",
-            "exposed too long, blooming", "lasers that are no Gaussian across", "three at once",
+            "exposed too long, blooming", "lasers that are no Gaussian across", "three at once", "automatic exposure",
         }  # fmt: skip
         assert not (shares and own)
         assert shares or own or case.scenario.seed != 1

@@ -174,9 +174,8 @@ def _notes(located: Sequence[LocatedPose], poses: Sequence[PlanePose], *, few_to
         notes.append(note_of("fan.saturated_stripes", share=share, field=Field("channel")))
     changed = [pose.features for pose in located if pose.features.gain != 1]
     if changed:
-        most = max(abs(pose.gain - 1) for pose in changed)
-        count = {"n": len(changed), "all": len(located), "pose": changed[0].name}
-        notes.append(note_of("fan.brightness_changed", **count, percent=100 * most))
+        n, most, first = len(changed), max(abs(pose.gain - 1) for pose in changed), changed[0].name
+        notes.append(note_of("fan.brightness_changed", n=n, all=len(located), pose=first, percent=100 * most))
     return tuple(notes)
 
 
