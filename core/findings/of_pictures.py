@@ -42,7 +42,7 @@ ROWS = (
     Finding("scan.brightness_changed", Weight.CAUTION, Effect.NONE,
             "The brightness of {n} of {all} frames, the first {name}, differs from that of the reference by up to "
             "{percent:.0f} %, as with automatic exposure or a laser that is not steady: taken off by the fan's light. "
-            "Fix exposure and gain of the camera.", of_pictures=True),
+            "Fix exposure and gain of the camera."),
     Finding("scan.room_light_changed", Weight.CAUTION, Effect.NONE,
             "The room's light changed in {n} of {all} frames, the first {name}: the background is up to "
             "{percent:.0f} % {which} than in the reference, which makes stripes less sure. Keep the light as it is "

@@ -95,6 +95,11 @@ class FanRest:
         """Whether anything has moved, at once or evenly."""
         return bool(self.first_after) or self.drifts
 
+    @property
+    def what_moved(self) -> Message:
+        """The part alone, or more."""
+        return EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS
+
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Note for the technician if anything moved, or that is not known; `frames` frames are used."""
         if not self.known:
@@ -106,7 +111,7 @@ class FanRest:
         return (
             note_of(
                 "scan.fan_shifted",
-                what=EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS,
+                what=self.what_moved,
                 when=self.when(names),
                 percent=100 * self.share,
                 shift_px=self.shift_px,

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from core.errors import InputError
+from core.errors import InputError, OwnCause
 from core.findings.table import note_of
 from core.image.exclusion import MOVEMENTS
 from core.messages import Field, Message
@@ -127,22 +127,23 @@ def reconstruct(
         bounces = find_second_bounces(features.frames, among, camera, fan)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
-    with _drift_first(watched):
+    with _unrest_first(watched, names):
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
-    sweeps = solved.sweeps
-    if sweeps.collapsed and not _flat(features, lines, camera, fan):
-        raise _refused(too_bright, note_of("scan.collapsed_in_spite_of_relief"), TILT_MORE)
+        sweeps = solved.sweeps
+        if sweeps.collapsed and not _flat(features, lines, camera, fan):
+            raise _refused(too_bright, note_of("scan.collapsed_in_spite_of_relief"), TILT_MORE)
     reasons = np.where(bounces.among(crossings), CrossingUse.SECOND_BOUNCE, solved.reasons)
     progress("network", 1, 3)
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
-    if not np.any(cloud.sweep >= 0):
-        raise _refused(
-            too_bright,
-            _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
-            LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
-        )
+    with _unrest_first(watched, names):
+        if not np.any(cloud.sweep >= 0):
+            raise _refused(
+                too_bright,
+                _no_points(options.sigma_cut_mm, solved.explanation, sweeps.notes),
+                LOCATE_BETTER if solved.explanation is None else AS_CALIBRATED,
+            )
     records = bounces.counted(frame_records(features, crossings, line, reasons, sweeps.frames, cloud, camera))
     sheets = dict(zip(sweeps.frames.tolist(), sweeps.middle_planes[0], strict=True))
     progress("network", 3, 3)
@@ -185,21 +186,31 @@ def _refused(too_bright: Message | None, what: Message, todo: Message) -> InputE
 
 
 @contextmanager
-def _drift_first(watched: FanRest) -> Iterator[None]:
-    """A complaint about sweeps that do not fit together begins with the rig's drift, if it drifted: that is why."""
+def _unrest_first(watched: FanRest, names: Sequence[str]) -> Iterator[None]:
+    """A complaint about sweeps that do not fit together begins with the rig's drift, or what moved: that is why."""
     try:
         yield
     except InputError as error:
-        if not watched.drifts:
-            raise
-        what = Message(
-            "scan.drifted_too_much",
-            "the rig drifted: from the first frame to the last the fan's light moved evenly, by {shift_px:.2g} px; of "
-            "what was measured so: {reason}",
-            shift_px=watched.shift_px,
-            reason=error.what,
-        )
-        raise InputError(what, where=error.where, todo=WARM_UP) from error
+        if watched.drifts:
+            what = Message(
+                "scan.drifted_too_much",
+                "the rig drifted: from the first frame to the last the fan's light moved evenly, by {shift_px:.2g} px; "
+                "of what was measured so: {reason}",
+                shift_px=watched.shift_px,
+                reason=error.what,
+            )
+            raise OwnCause(what, where=error.where, todo=WARM_UP) from error
+        if watched.first_after and not isinstance(error, OwnCause):
+            what = Message(
+                "scan.moved_and_not_solved",
+                "by the fan's light, {what} moved {when:and}, by {shift_px:.2g} px; of the frames without it: {reason}",
+                what=watched.what_moved,
+                when=watched.when(names),
+                shift_px=watched.shift_px,
+                reason=error.what,
+            )
+            raise OwnCause(what, where=error.where, todo=HOLD_STILL) from error
+        raise
 
 
 def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera) -> tuple[Message, ...]:
@@ -361,7 +372,7 @@ def _require_rest(features: ScanFeatures, watched: FanRest) -> None:
     moved = [frame for frame in features.frames if frame.exclusion in MOVEMENTS or not watched.at_rest[frame.index]]
     if len(left) >= LEAST_SWEEPS or len(moved) < LEAST_FRAMES:
         return
-    raise InputError(
+    raise OwnCause(
         Message(
             "scan.moved_too_early",
             "object, table or camera moved during the scan, the first frame after it is {name}, and only {n} frames "

@@ -28,7 +28,7 @@ from scipy.linalg import cho_solve
 from scipy.sparse import diags_array
 from scipy.spatial import cKDTree
 
-from core.errors import InputError
+from core.errors import OwnCause
 from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
@@ -233,7 +233,7 @@ def still_part(
                 scale = locate_together(crossings.select(part), line[part], camera, fan, progress, read_out).scale
                 solved.append((count, scale, part))
         if not solved:
-            raise InputError(
+            raise OwnCause(
                 Message(
                     "scan.moved_too_much",
                     "object or camera moved {when:and}, and too few frames are left between which nothing did",

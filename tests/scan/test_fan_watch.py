@@ -7,6 +7,8 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.messages import plain
+from core.scan import reconstruct as reconstruct_module
 from core.scan.features.extraction import FeatureOptions, extract_features
 from core.scan.method import Method
 from core.scan.reconstruct import ReconstructOptions, reconstruct
@@ -111,10 +113,29 @@ def test_a_rig_that_warms_is_told_as_a_drift_and_all_frames_are_used(seed):
     assert not [frame for frame in result.frames if frame.reason == MOVED_FRAME]
 
 
+@pytest.mark.parametrize(
+    ("what", "code"),
+    [
+        ({"lifted_mm": 0.4}, "scan.moved_and_not_solved"),
+        ({"moved_frame": 0, "warming": Warming(scan_px=0.1, scan_focal_ppm=50, scan_urad=20)}, "scan.drifted_too_much"),
+    ],
+)
+def test_what_cannot_be_solved_is_refused_for_what_moved(what, code, monkeypatch):
+    def not_solved(*_):
+        raise InputError(plain("nothing fits"))
+
+    monkeypatch.setattr(reconstruct_module, "_solve", not_solved)
+    with pytest.raises(InputError, match=r"moved .* nothing fits") as refused:
+        measured(**what)
+    assert refused.value.code == code
+
+
 @pytest.mark.accuracy
-def test_a_rig_that_warms_too_much_is_refused_for_its_drift():
+@pytest.mark.parametrize("seed", [1, 2, 3])
+def test_a_rig_that_warms_too_much_is_refused_for_its_drift_or_told_to_drift(seed):
     warming = Warming(scan_px=1.0, scan_focal_ppm=500, scan_urad=300)
-    with pytest.raises(InputError) as refused:
-        measured(moved_frame=0, warming=warming)
-    assert refused.value.code == "scan.drifted_too_much"
-    assert "warm up" in str(refused.value.todo)
+    try:
+        assert measured(seed=seed, moved_frame=0, warming=warming).drifted
+    except InputError as refused:
+        assert refused.code == "scan.drifted_too_much"
+        assert "warm up" in str(refused.todo)
