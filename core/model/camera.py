@@ -35,12 +35,6 @@ DISTORTION_NAMES = ("k1", "k2", "p1", "p2", "k3")
 """Names and order of the distortion coefficients."""
 
 
-# Newton's method for undistorting, in ray coordinates.
-_ROUNDS = 20  # at most; a usual lens takes four
-_SETTLED = 1e-12  # step that ends it: rounding
-_CONVERGED = 1e-9  # misfit with which a point counts as converged after all rounds, 5e-6 px
-
-
 @dataclass(frozen=True, eq=False, slots=True)
 class Camera:
     """Intrinsics and distortion of one camera at one picture size.
@@ -151,18 +145,11 @@ class Camera:
 
         A point outside the region where the distortion is one-to-one does not converge; it comes back as NaN.
         """
+        from core.model.undistortion import undistorted  # compiled: a window starts without
+
         points = np.asarray(uv, dtype=np.float64).reshape(-1, 2)
         distorted = (points - self.matrix[:2, 2]) @ np.linalg.inv(self.matrix[:2, :2]).T
-        xy = distorted.copy()
-        for _ in range(_ROUNDS):
-            error = self.distort(xy) - distorted
-            step = _solve_2x2(self.distort_jacobian(xy), error)
-            xy -= step
-            if not np.any(np.abs(step) > _SETTLED):
-                break
-        else:
-            xy[np.abs(self.distort(xy) - distorted).max(axis=1) > _CONVERGED] = np.nan
-        return xy
+        return np.asarray(undistorted(distorted, self.distortion))
 
     def rays(self, uv: ArrayLike) -> Array:
         """Rays (N, 3), r = (x, y, 1), of image points `uv` (N, 2) in pixels."""
@@ -172,17 +159,10 @@ class Camera:
     def ray_jacobian(self, rays: Array) -> Array:
         """∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
         forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
-        return np.asarray(np.linalg.inv(forward), dtype=np.float64)
+        (a, b), (c, d) = np.moveaxis(forward, 0, 2)
+        inverse = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
+        return np.ascontiguousarray(np.moveaxis(inverse, 2, 0))
 
     def inverse_depth_slopes(self, pi: Array, rays: Array, directions: Array) -> Array:
         """∂(1/z) (N,) in 1/(mm px) of light in the plane `pi` (3,) seen at `rays`, along `directions` (N, 2) of uv."""
         return np.asarray(np.einsum("i,nij,nj->n", pi[:2], self.ray_jacobian(rays), directions), dtype=np.float64)
-
-
-def _solve_2x2(matrices: Array, vectors: Array) -> Array:
-    """Solve N systems of two equations, (N, 2, 2) and (N, 2), in closed form."""
-    a, b = matrices[:, 0, 0], matrices[:, 0, 1]
-    c, d = matrices[:, 1, 0], matrices[:, 1, 1]
-    p, q = vectors[:, 0], vectors[:, 1]
-    determinant = a * d - b * c
-    return np.column_stack([(d * p - b * q) / determinant, (a * q - c * p) / determinant])
