@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 from scipy.linalg import cho_solve
-from scipy.sparse import diags_array
+from scipy.sparse import csr_array, diags_array
 from scipy.spatial import cKDTree
 
 from core.errors import OwnCause
@@ -112,11 +112,14 @@ class _Scores:
     """All that does not depend on k.
 
     `earlier` and `later` (M,) sweep of each crossing, −1 for the fan; `pattern` (M, ≤ 12) what a movement between them
-    does to its equation; `scale` the variance of unit weight where above 1.
+    does to its equation; `weighted` and `noise` are W A and the crossings' noise; `scale` the variance of unit weight
+    where above 1.
     """
 
     equations: Adjustment
     solution: Solution
+    weighted: csr_array
+    noise: csr_array
     earlier: Index
     later: Index
     pattern: Array
@@ -135,7 +138,9 @@ class _Scores:
         _, expected = equations.covariance(solution)
         scale = max(1.0, solution.misfit / max(expected, 1.0))
         sign = np.where(table.a > b, 1.0, -1.0)
-        return cls(equations, solution, np.minimum(table.a, b), np.maximum(table.a, b), sign[:, None] * pattern, scale)
+        weighted = csr_array(diags_array(solution.weights / solution.sigma**2) @ solution.design)
+        earlier, later, pattern = np.minimum(table.a, b), np.maximum(table.a, b), sign[:, None] * pattern
+        return cls(equations, solution, weighted, equations.noise(solution), earlier, later, pattern, scale)
 
     def at(self, k: int) -> float:
         """T for a movement before sweep k; 0 with too few crossings."""
@@ -145,11 +150,10 @@ class _Scores:
         solution, equations = self.solution, self.equations
         weight = solution.weights / solution.sigma**2
         moved = np.where(across[:, None], self.pattern, 0.0)
-        weighted = diags_array(weight) @ solution.design
-        pulled = cho_solve(solution.factor, weighted.T @ moved, check_finite=False)
+        pulled = cho_solve(solution.factor, self.weighted.T @ moved, check_finite=False)
         score = moved.T @ (weight * solution.residuals * solution.sigma)
-        gain = weight[:, None] * moved - weighted @ pulled
-        of_noise = equations.noise(solution).T @ gain
+        gain = weight[:, None] * moved - self.weighted @ pulled
+        of_noise = self.noise.T @ gain
         of_cells = pulled[equations.unknowns :]
         own = np.sqrt(np.maximum(np.sum(weight[:, None] * moved**2, axis=0), 1e-300))
         return (

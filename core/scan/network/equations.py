@@ -20,17 +20,20 @@ Koch, K.-R., Parameter Estimation and Hypothesis Testing in Linear Models (1999)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg.lapack import dpotri
 from scipy.sparse import csr_array, diags_array, hstack
 
 from core.model import Fan
-from core.model.arrays import Array
+from core.model.arrays import Array, set_field
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
+from core.scan.network.normal_matrix import normal_matrix
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.network.sweep_plane import PRIOR_SD
 
@@ -45,7 +48,7 @@ MOST_OFFSET = 3.0
 """Standard deviations by which a crossing's ray is moved at most: an outlier must not move its own ray far."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """One weighted linear solution.
 
@@ -63,10 +66,12 @@ class Solution:
         (M, 2) how an error of a's and of b's centreline moves the misclosure, in 1/(mm px).
     sigma
         (M,) standard deviation of the misclosure without the fan's cells, in 1/mm.
+    design
+        Derivatives (M, N) of the equations by the unknowns, N = 3·(1 + K)·S + F.
+    factor
+        The Cholesky factor of H.
     motion
         Sum of the squares of what planes change with the rows, in standard deviations before anything is measured.
-    design, factor
-        Derivatives (M, 3·(1 + K)·S + F) of the equations by the unknowns, and the Cholesky factor of H.
     """
 
     pis: Array
@@ -77,8 +82,13 @@ class Solution:
     sigma: Array
     design: csr_array
     factor: tuple[Array, bool]
-
     motion: float
+
+    @cached_property
+    def inverse(self) -> Array:
+        """H⁻¹ (N, N)."""
+        lower = np.tril(dpotri(self.factor[0], lower=1)[0])
+        return np.asarray(lower + np.tril(lower, -1).T)
 
     @property
     def misfit(self) -> float:
@@ -100,6 +110,20 @@ class Adjustment:
     sweeps: int
     errors: LineErrors
     read_out: ReadOut = AT_ONCE
+    typical_gradient: float = field(init=False)
+    """‖D‖ of a plane that differs from the fan's by as much as the fan's from none, in 1/(mm px)."""
+    _fan_pis: Array = field(init=False)
+    _motion: csr_array | None = field(init=False)
+    _pattern: csr_array = field(init=False)
+
+    def __post_init__(self) -> None:
+        """Reckon what is the same in all rounds; `_pattern` says where the design's numbers stand."""
+        typical = np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1))
+        area = np.abs(np.linalg.det(self.geometry.jacobians)).mean() if len(self.crossings) else 0.0
+        set_field(self, "typical_gradient", float(typical * np.sqrt(area)))
+        set_field(self, "_fan_pis", self.fan.pis_at(np.maximum(self.line, 0), self.geometry.rays))
+        set_field(self, "_motion", self.read_out.weight(self.sweeps) if self.read_out.moves else None)
+        set_field(self, "_pattern", self._places())
 
     @property
     def unknowns(self) -> int:
@@ -119,7 +143,9 @@ class Adjustment:
         less the planes differ.
         """
         difference = self.differences(before.pis)
-        gradient = floored(self.gradient(before.pis), GRADIENT_FLOOR * self.typical_gradient)
+        gradient = floored(
+            inverse_depth_gradient(difference, self.geometry.jacobians), GRADIENT_FLOOR * self.typical_gradient
+        )
         gains = np.column_stack(noise_gains(self.crossings, gradient))
         adjusted = self.geometry.rays - self._noise_of_rays(before, gains, difference)
         moved = np.einsum("mi,mi->m", self.geometry.rays - adjusted, difference)
@@ -127,12 +153,14 @@ class Adjustment:
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
         """(3S, 3S) of the planes from the crossings' whole covariance, and the expected `Solution.misfit`."""
-        noise = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ self.noise(solution))
-        middle = (noise @ noise.T).toarray()
+        felt, weight = self._felt(solution), solution.weights / solution.sigma**2
+        lower = normal_matrix(felt, np.ones(felt.shape[0]))
+        lower += normal_matrix(solution.design, weight**2 * self._rest(solution))
+        middle = lower + np.tril(lower, -1).T
         middle[np.diag_indices(len(middle))] += self._prior()
         self._add_motion(middle)
-        gained = cho_solve(solution.factor, middle, check_finite=False)
-        covariance = cho_solve(solution.factor, gained.T, check_finite=False)[: self.unknowns, : self.unknowns]
+        gained = solution.inverse @ middle
+        covariance = gained[: self.unknowns] @ solution.inverse[:, : self.unknowns]
         expected = np.sum(solution.weights) + len(solution.cells) + (self.unknowns - 3 * self.sweeps) - np.trace(gained)
         return np.asarray((covariance + covariance.T) / 2), float(expected)
 
@@ -142,39 +170,45 @@ class Adjustment:
         x̂ − x = H⁻¹(Aᵀ W e − P x) for unknowns x with the prior P and noise e that is none of theirs, and z is one of
         them with P = 1: so it is minus the block of H⁻¹.
         """
-        of_cells = np.zeros((len(solution.factor[0]), len(solution.cells)))
-        of_cells[self.unknowns :] = np.eye(len(solution.cells))
-        inverse = cho_solve(solution.factor, of_cells, check_finite=False)
-        return np.asarray(-inverse[: self.unknowns])
+        return -solution.inverse[: self.unknowns, self.unknowns :]
 
     def shared_with_own_lines(self, solution: Solution) -> Array:
         """(Q, 3) covariance of π̂ − π of a sweep with the errors z of the cells of its own centrelines.
 
         The crossings say A x = y + noise, so x̂ − x is −H⁻¹ Aᵀ W noise, prior aside.
         """
-        shared = self.noise(solution)[:, : self.errors.sweep_a.shape[1]]
-        felt = solution.design.T @ (diags_array(solution.weights / solution.sigma**2) @ shared)
-        moved = -cho_solve(solution.factor, felt.toarray(), check_finite=False)[: self.unknowns]
-        sweep = self.errors.sweep_cells[:, 0]
-        return np.asarray(moved.reshape(self.sweeps, self.read_out.size, -1)[sweep, :, np.arange(len(sweep))])
+        felt = self._felt(solution)
+        size, moved = self.read_out.size, np.zeros((felt.shape[0], self.read_out.size))
+        for sweep in range(self.sweeps):  # its cells stand together, in order
+            first, last = np.searchsorted(self.errors.sweep_cells[:, 0], [sweep, sweep + 1])
+            moved[first:last] = -felt[first:last] @ solution.inverse[:, size * sweep : size * sweep + size]
+        return moved
 
     def noise(self, solution: Solution) -> csr_array:
         """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
+        return csr_array(hstack([self._shared(solution), diags_array(np.sqrt(self._rest(solution)))], format="csr"))
+
+    def _shared(self, solution: Solution) -> csr_array:
+        """(M, Q) what the errors of the cells of the sweeps' own centrelines add to the misclosures, in 1/mm."""
         gain_a, gain_b = solution.gains.T
-        errors = self.errors
-        rest = np.sqrt(gain_a**2 * errors.rest_a + gain_b**2 * errors.rest_b)
-        shared = diags_array(gain_a) @ errors.sweep_a + diags_array(gain_b) @ errors.sweep_b
-        return csr_array(hstack([shared, diags_array(rest)], format="csr"))
+        return csr_array(diags_array(gain_a) @ self.errors.sweep_a + diags_array(gain_b) @ self.errors.sweep_b)
+
+    def _rest(self, solution: Solution) -> Array:
+        """(M,) variance of what is each misclosure's own, in 1/mm²."""
+        gain_a, gain_b = solution.gains.T
+        return np.asarray(gain_a**2 * self.errors.rest_a + gain_b**2 * self.errors.rest_b)
+
+    def _felt(self, solution: Solution) -> csr_array:
+        """(Q, N) what those cells add to the right side Aᵀ W y of the normal equations, with sorted rows."""
+        felt = csr_array(
+            (diags_array(solution.weights / solution.sigma**2) @ self._shared(solution)).T @ solution.design
+        )
+        felt.sort_indices()
+        return felt
 
     def gradient(self, pis: Array) -> Array:
         """D (M, 2) in 1/(mm px) at every crossing of sweeps `pis` (S, 3)."""
         return inverse_depth_gradient(self.differences(pis), self.geometry.jacobians)
-
-    @property
-    def typical_gradient(self) -> float:
-        """‖D‖ of a plane that differs from the fan's by as much as the fan's from none, in 1/(mm px)."""
-        typical = np.median(np.linalg.norm(self.fan.pis[:, :2], axis=1))
-        return float(typical * np.sqrt(np.abs(np.linalg.det(self.geometry.jacobians)).mean()))
 
     def _noise_of_rays(self, before: Solution, gains: Array, difference: Array) -> Array:
         """Shift (M, 3) of each crossing's ray by the noise estimated in the last round."""
@@ -199,27 +233,36 @@ class Adjustment:
 
     def _solve(self, weights: Array, gains: Array, rays: Array, moved: Array) -> Solution:
         """One weighted linear solution of (π_a − π_b)·`rays` + `moved` = noise."""
-        table, with_fan = self.crossings, self.crossings.with_fan
-        sigma, between = self._sigma(gains), np.flatnonzero(~with_fan)
-        size, forms = self.read_out.size, self.read_out.forms(rays, table.uv[:, 1])
-        rows = np.concatenate([np.repeat(np.arange(len(table)), size), np.repeat(between, size)])
-        of_a, of_b = size * table.a[:, None] + np.arange(size), size * table.b[between, None] + np.arange(size)
-        values = np.concatenate([forms.ravel(), -forms[between].ravel()])
-        columns = np.concatenate([of_a.ravel(), of_b.ravel()])
-        planes = csr_array((values, (rows, columns)), shape=(len(table), self.unknowns))
-        design = hstack([planes, -(diags_array(gains[:, 1]) @ self.errors.fan)], format="csr")
-        observed = np.where(with_fan, np.einsum("mi,mi->m", rays, self._fan_pis()), 0.0) - moved
-        root = np.sqrt(weights) / sigma
-        weighted = diags_array(root) @ design
-        information = (weighted.T @ weighted).toarray()
+        sigma, forms = self._sigma(gains), self.read_out.forms(rays, self.crossings.uv[:, 1])
+        between, of_fan = ~self.crossings.with_fan, -np.repeat(gains[:, 1], np.diff(self.errors.fan.indptr))
+        values = np.concatenate([forms.ravel(), -forms[between].ravel(), of_fan * self.errors.fan.data])
+        design = csr_array(
+            (values[self._pattern.data], self._pattern.indices, self._pattern.indptr), self._pattern.shape
+        )
+        observed = np.where(between, 0.0, np.einsum("mi,mi->m", rays, self._fan_pis)) - moved
+        weight = weights / sigma**2
+        information = normal_matrix(design, weight)
         information[np.diag_indices(len(information))] += self._prior() + RIDGE * information.diagonal()
         self._add_motion(information)
         factor = cho_factor(information, lower=True, overwrite_a=True, check_finite=False)
-        solution = cho_solve(factor, weighted.T @ (root * observed), check_finite=False)
+        solution = cho_solve(factor, design.T @ (weight * observed), check_finite=False)
         residuals = (observed - design @ solution) / sigma
-        pis, cells = solution[: self.unknowns].reshape(-1, size), solution[self.unknowns :]
-        motion = float(pis.ravel() @ (self.read_out.weight(self.sweeps) @ pis.ravel())) if self.read_out.moves else 0.0
+        pis, cells = solution[: self.unknowns].reshape(self.sweeps, -1), solution[self.unknowns :]
+        motion = 0.0 if self._motion is None else float(pis.ravel() @ (self._motion @ pis.ravel()))
         return Solution(pis, cells, residuals, weights, gains, sigma, design, factor, motion)
+
+    def _places(self) -> csr_array:
+        """Where in the design (M, N) the forms of a, those of b and the shares of the fan's cells stand, from 0."""
+        table, size, fan = self.crossings, self.read_out.size, self.errors.fan
+        between = np.flatnonzero(~table.with_fan)
+        every, numbers = np.arange(len(table)), np.arange(size)
+        rows = [np.repeat(every, size), np.repeat(between, size), np.repeat(every, np.diff(fan.indptr))]
+        of_a, of_b = size * table.a[:, None] + numbers, size * table.b[between, None] + numbers
+        columns = np.concatenate([of_a.ravel(), of_b.ravel(), self.unknowns + fan.indices])
+        shape = len(table), self.unknowns + fan.shape[1]
+        places = csr_array((np.arange(len(columns)), (np.concatenate(rows), columns)), shape=shape)
+        places.sort_indices()
+        return places
 
     def _prior(self) -> Array:
         """Weight of the prior on each unknown but the hand's motion."""
@@ -228,18 +271,15 @@ class Adjustment:
 
     def _add_motion(self, matrix: Array) -> None:
         """Add the weight of the prior on the hand's motion to the upper left of `matrix`."""
-        if self.read_out.moves:
-            weight = self.read_out.weight(self.sweeps).tocoo()
+        if self._motion is not None:
+            weight = self._motion.tocoo()
             matrix[weight.coords] += weight.data
 
     def differences(self, pis: Array) -> Array:
         """π_a − π_b (M, 3) of every crossing, in its row."""
         table, v = self.crossings, self.crossings.uv[:, 1]
-        other = np.where(table.with_fan[:, None], self._fan_pis(), self.read_out.planes(pis[table.b], v))
+        other = np.where(table.with_fan[:, None], self._fan_pis, self.read_out.planes(pis[table.b], v))
         return np.asarray(self.read_out.planes(pis[table.a], v) - other)
-
-    def _fan_pis(self) -> Array:
-        return self.fan.pis_at(np.maximum(self.line, 0), self.geometry.rays)
 
 
 def _within(offsets: Array, variances: Array) -> Array:

@@ -17,7 +17,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.linalg import cho_solve
 
 from core.calibrate.camera.coverage import REGIONS
 from core.findings.table import note_of
@@ -76,9 +75,7 @@ class CellErrors:
         rays = equations.geometry.rays[row]
         inverse = np.einsum("ni,ni->n", equations.read_out.planes(solution.pis[table.a[row]], table.uv[row, 1]), rays)
         depth = part * solution.gains[row, 1] / np.maximum(inverse, 1e-12) ** 2
-        prior = np.eye(share.shape[1])
-        unknown = np.vstack([np.zeros((first, len(prior))), prior])
-        covariance = prior - cho_solve(solution.factor, unknown, check_finite=False)[first:]
+        covariance = np.eye(share.shape[1]) - solution.inverse[first:, first:]
         return cls(
             solution.cells[crossed],
             covariance[np.ix_(crossed, crossed)],
