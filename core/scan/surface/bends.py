@@ -12,6 +12,7 @@ on top, where the picture sees it as anything but one.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, field, fields
 from itertools import pairwise
 
@@ -19,9 +20,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
+from core.compiled import compiled, inlined
 from core.model.arrays import Array, set_field
 from core.model.directions import square_to
-from core.model.robust import MAD_TO_SD, TUKEY, tukey_weights
+from core.model.robust import MAD_TO_SD, TUKEY
+from core.model.small_arrays import invert, median_of, new_row, new_table
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fusion import fuse
 from core.scan.surface.normals import pixel_angle
@@ -141,44 +144,94 @@ class _Quadrics:
     @classmethod
     def _of(cls, axis: Array, away: Array, taper: Array, sigma: Array, seen: Array) -> _Quadrics:
         first, second = np.moveaxis(square_to(axis), 2, 0)
-        xi, eta, height = (np.einsum("mki,mi->mk", away, to) for to in (first, second, axis))
-        design = np.stack([np.ones_like(xi), xi, eta, xi**2 / 2, xi * eta, eta**2 / 2], axis=2)
-        scale = np.sqrt(np.maximum((taper * (xi**2 + eta**2)).sum(axis=1) / np.maximum(taper.sum(axis=1), 1e-9), 1e-9))
-        design /= scale[:, None, None] ** np.array([0, 1, 1, 2, 2, 2])
         cosine = np.abs((axis * seen).sum(axis=1)) / np.linalg.norm(seen, axis=1)
         noise = sigma * np.maximum(cosine, LEAST_COSINE)[:, None]
-        weight, spread = taper / noise**2, np.ones(len(axis))
-        solved, inverse = np.zeros((len(axis), 6)), np.zeros((len(axis), 6, 6))
-        robust = np.ones_like(taper)
-        for _ in range(ROUNDS):
-            weighted = design * (weight * robust)[..., None]
-            matrix = weighted.transpose(0, 2, 1) @ design
-            matrix += 1e-9 * np.trace(matrix, axis1=1, axis2=2)[:, None, None] * np.eye(6) + 1e-12 * np.eye(6)
-            inverse = np.linalg.inv(matrix)
-            solved = np.einsum("mij,mj->mi", inverse, np.einsum("mki,mk->mi", weighted, height))
-            off = np.where(taper > 0, (height - np.einsum("mki,mi->mk", design, solved)) / noise, np.nan)
-            spread = np.maximum(MAD_TO_SD * _median(np.abs(off)), 1.0)
-            robust = tukey_weights(np.nan_to_num(off), TUKEY * spread[:, None])
+        solved, variance, scale, spread, used = _fit_all(np.stack([first, second, axis], axis=1), away, taper, noise)
         p, q, a, b, c = (solved[:, k] / scale**power for k, power in zip(range(1, 6), (1, 1, 2, 2, 2), strict=True))
         normal = axis - p[:, None] * first - q[:, None] * second
         normal /= np.linalg.norm(normal, axis=1)[:, None]
         form = a, b, c
         curvature = -_tensor(first, second, form)
-        own = np.sqrt(CORRELATED * np.maximum(inverse[:, 3, 3] + 2 * inverse[:, 4, 4] + inverse[:, 5, 5], 0)) / scale**2
-        sound = (
-            (np.hypot(p, q) < MOST_SLOPE)
-            & np.isfinite(own)
-            & ((robust * (taper > 0)).sum(axis=1) > LEAST_NEIGHBOURS / 2)
-        )
+        own = np.sqrt(CORRELATED * np.maximum(variance[:, 3] + 2 * variance[:, 4] + variance[:, 5], 0)) / scale**2
+        sound = (np.hypot(p, q) < MOST_SLOPE) & np.isfinite(own) & (used > LEAST_NEIGHBOURS / 2)
         return cls(normal, curvature, own * spread, sound)
 
 
-def _median(values: Array) -> Array:
-    """Medians (M,) of rows (M, K) with NaN; 1 where there is nothing else."""
-    ordered, rows = np.sort(values, axis=1), np.arange(len(values))  # NaN last
-    count = np.count_nonzero(~np.isnan(values), axis=1)
-    low, high = ordered[rows, np.maximum(count - 1, 0) // 2], ordered[rows, count // 2]
-    return np.where(count > 0, (low + high) / 2, 1.0)
+@compiled()
+def _fit_all(frames: Array, away: Array, taper: Array, noise: Array) -> tuple[Array, Array, Array, Array, Array]:
+    """A quadric for each of M nodes over a plane, of which `frames` (M, 3, 3) has two tangents and the axis.
+
+    To K neighbours that lie `away` (M, K, 3), weighed by `taper` and `noise` (M, K). Returns the quadrics' six numbers
+    (M, 6), ξ and η in units of the `scale`, with their variances; the scale; the residuals' spread; and the sum of the
+    weights (M,).
+    """
+    nodes, most = taper.shape
+    found, variance, design = new_table(nodes, 6), new_table(nodes, 6), new_table(most, 6)
+    scales, spreads, used = new_row(nodes), new_row(nodes), new_row(nodes)
+    height, sd, weight, robust = new_row(most), new_row(most), new_row(most), new_row(most)
+    off, matrix, inverse, right = new_row(most), new_table(6, 6), new_table(6, 6), new_row(6)
+    for m in range(nodes):
+        count, total, square = 0, 0.0, 0.0
+        for k in range(most):
+            if taper[m, k] > 0:
+                x, y, z = away[m, k, 0], away[m, k, 1], away[m, k, 2]
+                xi = x * frames[m, 0, 0] + y * frames[m, 0, 1] + z * frames[m, 0, 2]
+                eta = x * frames[m, 1, 0] + y * frames[m, 1, 1] + z * frames[m, 1, 2]
+                design[count, 1], design[count, 2] = xi, eta
+                height[count] = x * frames[m, 2, 0] + y * frames[m, 2, 1] + z * frames[m, 2, 2]
+                sd[count], weight[count], robust[count] = noise[m, k], taper[m, k] / noise[m, k] ** 2, 1.0
+                total += taper[m, k]
+                square += taper[m, k] * (xi * xi + eta * eta)
+                count += 1
+        scale = math.sqrt(max(square / max(total, 1e-9), 1e-9))
+        for k in range(count):
+            xi, eta = design[k, 1] / scale, design[k, 2] / scale
+            design[k, 0], design[k, 1], design[k, 2] = 1.0, xi, eta
+            design[k, 3], design[k, 4], design[k, 5] = xi * xi / 2, xi * eta, eta * eta / 2
+        spread = 1.0
+        for _ in range(ROUNDS):
+            _add_up(design, weight, robust, height, count, matrix, right)
+            invert(matrix, inverse, 6)
+            for i in range(6):
+                found[m, i], variance[m, i] = 0.0, inverse[i, i]
+                for j in range(6):
+                    found[m, i] += inverse[i, j] * right[j]
+            for k in range(count):
+                off[k] = height[k]
+                for i in range(6):
+                    off[k] -= design[k, i] * found[m, i]
+                off[k] = abs(off[k]) / sd[k]
+            spread = max(MAD_TO_SD * (median_of(off, 0, count) if count > 0 else 1.0), 1.0)
+            for k in range(count):
+                robust[k] = max(1 - (off[k] / (TUKEY * spread)) ** 2, 0.0) ** 2
+        scales[m], spreads[m], used[m] = scale, spread, 0.0
+        for k in range(count):
+            used[m] += robust[k]
+    return found, variance, scales, spreads, used
+
+
+@inlined()
+def _add_up(
+    design: Array, weight: Array, robust: Array, height: Array, count: int, matrix: Array, right: Array
+) -> None:
+    """Normal equations of `count` neighbours, with as much added to their diagonal as keeps them solvable."""
+    for i in range(6):
+        right[i] = 0.0
+        for j in range(i + 1):
+            matrix[i, j] = 0.0
+    for k in range(count):
+        for i in range(6):
+            weighted = weight[k] * robust[k] * design[k, i]
+            right[i] += weighted * height[k]
+            for j in range(i + 1):
+                matrix[i, j] += weighted * design[k, j]
+    trace = 0.0
+    for i in range(6):
+        trace += matrix[i, i]
+    for i in range(6):
+        matrix[i, i] += 1e-9 * trace + 1e-12
+        for j in range(i):
+            matrix[j, i] = matrix[i, j]
 
 
 def _tensor(first: Array, second: Array, form: tuple[Array, Array, Array]) -> Array:

@@ -18,7 +18,7 @@ from scipy.spatial import cKDTree
 from core.compiled import compiled, inlined
 from core.model.arrays import Array
 from core.model.robust import TUKEY
-from core.model.small_arrays import new_indices, new_row, zero_table
+from core.model.small_arrays import new_row, new_table, zero_table
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Surface
@@ -134,6 +134,7 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
         np.ascontiguousarray(xyz[order]),
         np.ascontiguousarray(uv[order]),
         np.maximum(sigma[order], floor),
+        xyz[order, 2] ** 2 / np.maximum(sigma[order], floor),
         bucket[order],
         starts,
         columns,
@@ -148,13 +149,14 @@ def _estimate(xyz: Array, uv: Array, sigma: Array, radius: float) -> Array:
 class _PointGrid(NamedTuple):
     """N points sorted into square buckets of side `radius` px, `columns` × `rows` of them.
 
-    `bucket` (N,) of each point; `starts` where in the points each bucket begins, and ends at the next one's begin;
-    `angle` is that of one pixel.
+    `sharpness` (N,) is 1/σ of the inverse depths; `bucket` (N,) of each point; `starts` where in the points each bucket
+    begins, and ends at the next one's begin; `angle` is that of one pixel.
     """
 
     xyz: Array
     uv: Array
     sigma: Array
+    sharpness: Array
     bucket: NDArray[np.int64]
     starts: NDArray[np.int64]
     columns: int
@@ -167,7 +169,7 @@ class _PointGrid(NamedTuple):
 def _fit_all(points: _PointGrid) -> Array:
     """A robust plane in inverse depth around each point; see the module's docstring."""
     xyz, sigma, radius, angle = points.xyz, points.sigma, points.radius, points.angle
-    normals, near, weights = zero_table(len(xyz), 3), new_indices(4 * MOST_NEIGHBOURS), new_row(4 * MOST_NEIGHBOURS)
+    normals, near, weights = zero_table(len(xyz), 3), new_table(4, 4 * MOST_NEIGHBOURS), new_row(4 * MOST_NEIGHBOURS)
     for i in range(len(xyz)):
         count = _neighbours(i, points, near)
         if count < LEAST_NEIGHBOURS:
@@ -178,10 +180,10 @@ def _fit_all(points: _PointGrid) -> Array:
         a = b = c = 0.0
         narrow = 0.0
         for _ in range(3):
-            a, b, c, narrow = _inverse_depth_plane(i, points, near, weights, count)
+            a, b, c, narrow = _inverse_depth_plane(near, weights, count)
             if narrow < (LEAST_WIDTH_SHARE * radius) ** 2:
                 break
-            scale = _reweight(i, points, near, weights, count, (a, b, c))
+            scale = _reweight(near, weights, count, (a, b, c))
         if narrow < (LEAST_WIDTH_SHARE * radius) ** 2:
             continue
         # 1/z = a + b du + c dv  →  π over the ray coordinates, of which one pixel is `angle`.
@@ -197,8 +199,11 @@ def _fit_all(points: _PointGrid) -> Array:
 
 
 @inlined()
-def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
-    """Neighbours of point i on its own surface into `near`, evenly thinned to about MOST_NEIGHBOURS; how many."""
+def _neighbours(i: int, points: _PointGrid, near: Array) -> int:
+    """Neighbours of point i on its own surface into `near`, evenly thinned to about MOST_NEIGHBOURS; how many.
+
+    Of each, one below the other: how far it is along u and v, its inverse depth, and 1/σ of that.
+    """
     xyz, uv, sigma, starts = points.xyz, points.uv, points.sigma, points.starts
     columns, rows = points.columns, points.rows
     row, column = points.bucket[i] // columns, points.bucket[i] % columns
@@ -217,39 +222,36 @@ def _neighbours(i: int, points: _PointGrid, near: NDArray[np.int64]) -> int:
             noise = math.sqrt(sigma[i] ** 2 + sigma[j] ** 2)
             if abs(xyz[j, 2] - xyz[i, 2]) > LAYER_SIGMAS * noise + STEEPEST * apart * points.angle * xyz[i, 2]:
                 continue
-            if count < len(near):
-                near[count] = j
+            if count < near.shape[1]:
+                near[0, count], near[1, count] = du, dv
+                near[2, count], near[3, count] = 1 / xyz[j, 2], points.sharpness[j]
                 count += 1
     return count
 
 
-@inlined()
-def _inverse_depth_plane(
-    i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int
-) -> tuple[float, float, float, float]:
-    """Weighted fit 1/z = a + b du + c dv about point i, and the variance (px²) of the neighbours across."""
-    xyz, uv, sigma = points.xyz, points.uv, points.sigma
+@inlined(fastmath={"reassoc"})
+def _inverse_depth_plane(near: Array, weights: Array, count: int) -> tuple[float, float, float, float]:
+    """Weighted fit 1/z = a + b du + c dv about a point, and the variance (px²) of the neighbours across."""
     sw = su = sv = sq = 0.0
     for k in range(count):
-        j = near[k]
-        w = weights[k] * (xyz[j, 2] ** 2 / sigma[j]) ** 2
+        w = weights[k] * near[3, k] ** 2
         sw += w
-        su += w * (uv[j, 0] - uv[i, 0])
-        sv += w * (uv[j, 1] - uv[i, 1])
-        sq += w / xyz[j, 2]
+        su += w * near[0, k]
+        sv += w * near[1, k]
+        sq += w * near[2, k]
     if sw <= 0:
         return 0.0, 0.0, 0.0, 0.0
     mu, mv, mq = su / sw, sv / sw, sq / sw
     uu = vv = cross = uq = vq = 0.0
     for k in range(count):
-        j = near[k]
-        w = weights[k] * (xyz[j, 2] ** 2 / sigma[j]) ** 2 / sw
-        du, dv, dq = uv[j, 0] - uv[i, 0] - mu, uv[j, 1] - uv[i, 1] - mv, 1 / xyz[j, 2] - mq
+        w = weights[k] * near[3, k] ** 2
+        du, dv, dq = near[0, k] - mu, near[1, k] - mv, near[2, k] - mq
         uu += w * du * du
         vv += w * dv * dv
         cross += w * du * dv
         uq += w * du * dq
         vq += w * dv * dq
+    uu, vv, cross, uq, vq = uu / sw, vv / sw, cross / sw, uq / sw, vq / sw
     half = math.sqrt(((uu - vv) / 2) ** 2 + cross * cross)
     narrow = (uu + vv) / 2 - half
     determinant = uu * vv - cross * cross
@@ -260,24 +262,17 @@ def _inverse_depth_plane(
     return mq - b * mu - c * mv, b, c, narrow
 
 
-@inlined()
-def _reweight(
-    i: int, points: _PointGrid, near: NDArray[np.int64], weights: Array, count: int, plane: tuple[float, float, float]
-) -> float:
+@inlined(fastmath={"reassoc"})
+def _reweight(near: Array, weights: Array, count: int, plane: tuple[float, float, float]) -> float:
     """Tukey's weights from the residuals in units of σ; returns the residuals' scale, at least 1."""
-    xyz, uv, sigma = points.xyz, points.uv, points.sigma
     a, b, c = plane
     total = squares = 0.0
     for k in range(count):
-        j = near[k]
-        predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])
-        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / sigma[j]
+        e = (near[2, k] - (a + b * near[0, k] + c * near[1, k])) * near[3, k]
         total += weights[k]
         squares += weights[k] * e * e
     scale = max(math.sqrt(squares / total), 1.0) if total > 0 else 1.0
     for k in range(count):
-        j = near[k]
-        predicted = a + b * (uv[j, 0] - uv[i, 0]) + c * (uv[j, 1] - uv[i, 1])
-        e = (1 / xyz[j, 2] - predicted) * xyz[j, 2] ** 2 / (TUKEY * scale * sigma[j])
+        e = (near[2, k] - (a + b * near[0, k] + c * near[1, k])) * near[3, k] / (TUKEY * scale)
         weights[k] = (1 - e * e) ** 2 if abs(e) < 1 else 0.0
     return scale
