@@ -25,7 +25,7 @@ from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
 from core.model.residuals import over_picture
-from core.model.robust import mad_sd
+from core.model.robust import mad_sd, median
 from core.scan.features.frames import FrameFeatures
 from core.scan.network.datum import MAIN_PLANE_MM, main_plane
 from core.scan.network.geometry import inverse_depth_gradient
@@ -66,7 +66,7 @@ def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array],
         part, per_mm = over_picture(uv, camera.image_size, GRID), _px_per_mm(uv, sheets[number], surfaces, camera)
         for one in np.unique(part[np.isfinite(per_mm)]):
             mine = (part == one) & np.isfinite(per_mm)
-            rows.append((number, int(one), float(np.median(square[mine])), float(np.median(per_mm[mine] ** 2))))
+            rows.append((number, int(one), median(square[mine]), median(per_mm[mine] ** 2)))
     found = np.full((len(frames), 2), np.nan)
     if not rows:
         return found
