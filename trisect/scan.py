@@ -216,7 +216,7 @@ def solve_scan(
     features = extract_features(seen, named, len(pictures), looking, progress)
     sweeps = [piece for frame in features.frames for piece in frame.centrelines]
     faults = (*faults_of(seen), *notes_on_shine(features.fan, sweeps, seen.full_scale))
-    features = replace(features, notes=(*faults, *features.notes))
+    features = replace(features, faults=(*faults, *features.faults))
     calibration = Calibration(camera, fan)
     solved = solved_scan(features, calibration, solving, progress)
     change_by = partial(_change_by_scan, calibration, stability)

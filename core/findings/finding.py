@@ -46,8 +46,6 @@ class Finding:
     fact
         Of what takes away a proof: the fact that does so, by its name in files, which is that of a field of
         `core.findings.proof.ScanFacts` if it is one of a scan.
-    of_pictures
-        Whether it is a fault of a scan's pictures themselves, which may be why what is made of them is refused.
 
     Raises
     ------
@@ -62,7 +60,6 @@ class Finding:
     text: str
     many: str = ""
     fact: str = ""
-    of_pictures: bool = False
 
     def __post_init__(self) -> None:
         if self.effect in (Effect.NO_PROOF, Effect.NO_RESULT) and self.weight != Weight.GRAVE:

@@ -23,22 +23,22 @@ ROWS = (
             "global shutter."),
     Finding("scan.compressed", Weight.CAUTION, Effect.WIDENS_U,
             "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
-            "it; record PNG.", of_pictures=True),
+            "it; record PNG."),
     Finding("scan.colour_mosaic", Weight.CAUTION, Effect.NONE,
             "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are finer than its "
             "tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), or "
-            "stripes of σ {tile} px or more.", of_pictures=True),
+            "stripes of σ {tile} px or more."),
     Finding("scan.raw_mosaic", Weight.CAUTION, Effect.NONE,
             "The pictures look like the raw ones of a colour camera: the laser is seen {times:.1f} times as bright "
-            "at some pixels of each 2 × 2 as at others. State mosaic in rig.toml.", of_pictures=True),
+            "at some pixels of each 2 × 2 as at others. State mosaic in rig.toml."),
     Finding("scan.speckled", Weight.CAUTION, Effect.WIDENS_U,
             "The fan's light scatters by {percent:.0f} % from point to point beyond noise: strong speckle, or a "
-            "grainy surface. Open the lens's aperture, spray the part, or use wider lines.", of_pictures=True),
+            "grainy surface. Open the lens's aperture, spray the part, or use wider lines."),
     Finding("scan.shines", Weight.CAUTION, Effect.NONE,
             "{fan:.1f} % of the fan's points and {sweeps:.1f} % of the hand-held laser's are saturated: the surface "
             "shines there (gloss), or the exposure is too long. Nothing is measured there, and points beside it may "
             "be off: expose {stops:g} EV less, add second exposures that much shorter (NAME@2.png beside NAME.png), "
-            "or spray the part matt.", of_pictures=True),
+            "or spray the part matt."),
     Finding("scan.brightness_changed", Weight.CAUTION, Effect.NONE,
             "The brightness of {n} of {all} frames, the first {name}, differs from that of the reference by up to "
             "{percent:.0f} %, as with automatic exposure or a laser that is not steady: taken off by the fan's light. "
@@ -46,7 +46,7 @@ ROWS = (
     Finding("scan.room_light_changed", Weight.CAUTION, Effect.NONE,
             "The room's light changed in {n} of {all} frames, the first {name}: the background is up to "
             "{percent:.0f} % {which} than in the reference, which makes stripes less sure. Keep the light as it is "
-            "during a scan, or scan again.", of_pictures=True),
+            "during a scan, or scan again."),
     # Frames without points
     Finding("scan.frames_without_points", Weight.CAUTION, Effect.NONE,
             "{n} of {all} frames gave no points ({reason}): {names}."),

@@ -50,12 +50,6 @@ def is_grave(note: Message) -> bool:
     return weight_of(note) == Weight.GRAVE
 
 
-def is_fault_of_pictures(note: Message) -> bool:
-    """Whether a note tells a fault of a scan's pictures themselves."""
-    row = FINDINGS.get(note.code)
-    return row is not None and row.of_pictures
-
-
 def fact_of(note: Message) -> str:
     """The fact by which nothing is proven that a note tells; "" where it tells none."""
     row = FINDINGS.get(note.code)

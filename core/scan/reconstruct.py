@@ -158,7 +158,7 @@ def reconstruct(
         fan_lines=lines,
         scale=sweeps.scale,
         notes=bounces.notes
-        + _ordered(features.notes, solved)
+        + _ordered(features.notes + features.faults, solved)
         + _datum_notes(solved.datum, found, camera)
         + (() if too_bright is None else (too_bright,))
         + notes_on_blur(exposure_blurs(features.frames, sheets, cloud, camera))

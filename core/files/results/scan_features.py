@@ -52,6 +52,7 @@ FEATURES_MEMBERS: Mapping[str, Member] = {
     "frame_shift_px": real("frames"),
     "frame_gain": real("frames", optional=True),
     "notes": texts(None),
+    "faults": texts(None, optional=True),
     "stripes": real(2, 2),
     "frame_fan_shifts_px": real("frames", None, optional=True),
     "frame_fan_known": truth("frames", optional=True),
@@ -94,6 +95,7 @@ def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
         "frame_reasons": pack_messages([frame.reason for frame in features.frames]),
         "frame_shift_px": np.array([frame.shift_px for frame in features.frames], dtype=np.float64),
         "notes": pack_messages(features.notes),
+        "faults": pack_messages(features.faults),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
         **_pack_shifts(features),
         **_pack_gains(features),
@@ -128,6 +130,7 @@ def unpack_features(arrays: Arrays) -> ScanFeatures:
         sweep_stripe=sweep_stripe,
         fan_stripe=fan_stripe,
         notes=tuple(filter(None, unpack_messages(arrays["notes"]))),
+        faults=tuple(filter(None, unpack_messages(arrays["faults"]))) if "faults" in arrays else (),
     )
 
 

@@ -60,7 +60,7 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         regions = _regions(spec)
-        with _no_thickness(), movement_first(scan), faults_first(scan.features.notes), unsure_first(scan):
+        with _no_thickness(), movement_first(scan), faults_first(scan.features.faults), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),

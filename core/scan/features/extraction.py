@@ -27,7 +27,7 @@ from core.messages import Message
 from core.progress import Progress, StepProgress, silent, steps
 from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingTable
-from core.scan.features.frames import FrameFeatures, notes_on
+from core.scan.features.frames import FrameFeatures, light_faults, notes_on
 from core.scan.features.reference import FeatureOptions, Picture, ReferenceFeatures, check_reference, read_reference
 from core.scan.features.straightening import bent_back, straightened
 from core.stage_times import StageTimes, stage
@@ -63,7 +63,11 @@ LOOK_AHEAD = 8
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanFeatures:
-    """All that a scan's pictures show; frames in the order of the recording, `frames[i].index == i`."""
+    """All that a scan's pictures show; frames in the order of the recording, `frames[i].index == i`.
+
+    `faults` tell what is wrong with the pictures themselves, which may be why what is made of them is refused; `notes`
+    whatever else they tell.
+    """
 
     image_size: tuple[int, int]
     fan: tuple[Centreline, ...]
@@ -72,6 +76,7 @@ class ScanFeatures:
     sweep_stripe: StripeSettings | None
     fan_stripe: StripeSettings
     notes: tuple[Message, ...] = ()
+    faults: tuple[Message, ...] = ()
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -208,7 +213,8 @@ def crossed(
         straight = [straightened(pieces, camera) for pieces in lines]
         crossings = bent_back(all_crossings(straightened(seen.fan, camera), straight, window, progress), camera)
     of_fan, of_sweeps = seen.stripes
-    return ScanFeatures(seen.image_size, kept.fan, kept.frames, crossings, of_sweeps, of_fan, notes_on(seen.frames))
+    found = notes_on(seen.frames), light_faults(seen.frames)
+    return ScanFeatures(seen.image_size, kept.fan, kept.frames, crossings, of_sweeps, of_fan, *found)
 
 
 def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:

@@ -12,7 +12,7 @@ from contextlib import contextmanager
 import numpy as np
 
 from core.errors import InputError, OwnCause
-from core.findings.table import is_fault_of_pictures, note_of
+from core.findings.table import note_of
 from core.image.mosaic import PERIOD_PX, is_interpolated
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.noise import NoiseModel
@@ -103,14 +103,13 @@ def _scatter(pieces: Sequence[Centreline], noise: NoiseModel) -> float:
 
 
 @contextmanager
-def faults_first(notes: Sequence[Message]) -> Iterator[None]:
-    """A complaint about what was made of pictures begins with their faults, if `notes` tell any: that may be why."""
+def faults_first(faults: Sequence[Message]) -> Iterator[None]:
+    """A complaint about what was made of pictures begins with their `faults`, if there are any: that may be why."""
     try:
         yield
     except OwnCause:
         raise
     except InputError as error:
-        faults = list(filter(is_fault_of_pictures, notes))
         if not faults:
             raise
         what = Message(

@@ -20,6 +20,7 @@ from core.files.results.ply import read_cloud, read_mesh, write_cloud, write_mes
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.results.run_file import RunRecord, read_run, write_run
 from core.files.results.scan_file import ScanFile, read_scan, write_scan
+from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import StripeSettings
 from core.image.targets.target_view import TargetView
@@ -37,6 +38,7 @@ from core.scan.surface.fused_surface import Mesh
 from tests.files.conftest import square
 
 NOTE = Message("scan.fan_disagrees", "{n} of them.", n=3)
+FAULTS = (note_of("scan.compressed", grey=3.0, noise=1.0),)
 
 
 def edited(path, change):
@@ -375,7 +377,7 @@ def scan():
         FrameFeatures(2, "scan/ß.png", (centreline(rng, 3),), None, 0.2),
     )
     fan = (centreline(rng, 4), centreline(rng, 7))
-    features = ScanFeatures((99, 88), fan, frames, crossings, None, StripeSettings(10.0, 80.0), (NOTE,))
+    features = ScanFeatures((99, 88), fan, frames, crossings, None, StripeSettings(10.0, 80.0), (NOTE,), FAULTS)
     return ScanFile(
         features, rng.normal(size=(2, 3)), square(rng, 6, 1e-6), np.array([0, 2]), (0, -1), rng.normal(size=(4, 2)), 2,
         "abc",
@@ -395,6 +397,7 @@ def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
     assert [frame.name for frame in features.frames] == ["scan/a.png", "scan/b.png", "scan/ß.png"]
     assert features.frames[1].reason == plain("the picture ends early")
     assert [(note.code, str(note)) for note in features.notes] == [(NOTE.code, str(NOTE))]
+    assert features.faults == FAULTS
     assert np.array_equal(features.crossings.along_b, scan.features.crossings.along_b)
     assert (features.sweep_stripe, features.fan_stripe) == (None, StripeSettings(10.0, 80.0))
     assert (back.fan_line, back.shown, back.calibration_id) == ((0, -1), 2, "abc")

@@ -13,10 +13,10 @@ from core.pipeline.steps import gauge_step
 from core.scan.features.picture_faults import faults_first
 
 
-def scan_of(*, unsure_share, saturated=0, notes=(), sweeps=36):
+def scan_of(*, unsure_share, saturated=0, faults=(), sweeps=36):
     """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
     line = SimpleNamespace(saturated=np.arange(100) < saturated)
-    features = SimpleNamespace(fan=[line], frames=[], notes=notes)
+    features = SimpleNamespace(fan=[line], frames=[], notes=(), faults=faults)
     return SimpleNamespace(unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps))
 
 
@@ -65,8 +65,8 @@ def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():
     assert "less sure than" not in str(refused.value)
 
 
-@pytest.mark.parametrize("first", [gauge_step.unsure_first, lambda scan: faults_first(scan.features.notes)])
+@pytest.mark.parametrize("first", [gauge_step.unsure_first, lambda scan: faults_first(scan.features.faults)])
 def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(first):
-    doubtful = scan_of(unsure_share=0.8, saturated=53, notes=(note_of("scan.speckled", percent=12.0),))
+    doubtful = scan_of(unsure_share=0.8, saturated=53, faults=(note_of("scan.speckled", percent=12.0),))
     with pytest.raises(OwnCause, match=r"^point cloud: among 1 plane faces"), first(doubtful):
         raise OwnCause(NO_FACES, where="point cloud")

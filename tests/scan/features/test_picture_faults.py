@@ -1,6 +1,7 @@
 """Faults of a scan's pictures are told, and come first where a scan is refused."""
 
 from dataclasses import replace
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -10,6 +11,7 @@ from core.errors import InputError
 from core.image.mosaic import sites_of
 from core.image.stripes.noise import Compression, NoiseModel
 from core.messages import Message
+from core.pipeline.steps.scan import judgement
 from core.scan.features.picture_faults import (
     faults_first,
     faults_of,
@@ -81,15 +83,28 @@ def test_frames_are_told_to_be_jpeg_where_that_rules_their_noise():
 
 def test_a_refusal_begins_with_the_faults_of_the_pictures():
     faults = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    with pytest.raises(InputError) as refused, faults_first((Message("scan.datum", "a datum"), *faults)):
+    with pytest.raises(InputError) as refused, faults_first(faults):
         raise InputError(MOVED, where="scan", todo=Message("x.y", "hold both still"))
     assert refused.value.what.values["faults"] == faults
     assert str(refused.value).startswith("scan: The frames are JPEG")
     assert "may be why object or camera moved; mend that first" in str(refused.value)
 
 
+def test_a_refusal_asks_for_faults_and_for_no_notes(monkeypatch):
+    def refuse(*_):
+        raise InputError(MOVED, where="scan")
+
+    monkeypatch.setattr(judgement, "reconstruct_twice", refuse)
+    told = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
+    rig = SimpleNamespace(camera=SimpleNamespace(camera=None), fan=SimpleNamespace(fan=None))
+    for notes, faults in (((), told), (told, ())):
+        with pytest.raises(InputError) as refused:
+            judgement.solved_scan(SimpleNamespace(notes=notes, faults=faults), rig, None, None)
+        assert ("The frames are JPEG" in str(refused.value)) == bool(faults)
+
+
 def test_a_refusal_of_faultless_pictures_stays_as_it_is():
     error = InputError(MOVED, where="scan")
-    with pytest.raises(InputError) as refused, faults_first((Message("scan.datum", "a datum"),)):
+    with pytest.raises(InputError) as refused, faults_first(()):
         raise error
     assert refused.value is error

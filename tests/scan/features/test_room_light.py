@@ -31,7 +31,7 @@ def test_stripes_are_found_where_they_are_in_light_that_stays(effects):
     still = extract_features(reference, frames, len(frames))
     changed = extract_features(*(made := frames_of(Scenario(scale=0.25, frames=36, seed=3, **effects))), len(made[1]))
     assert [frame.reason for frame in changed.frames] == [None] * len(frames)
-    assert any(note.code == "scan.room_light_changed" for note in changed.notes)
+    assert any(note.code == "scan.room_light_changed" for note in changed.faults)
     for one, other in zip(still.frames, changed.frames, strict=True):
         points, there = (np.concatenate([piece.uv for piece in frame.centrelines]) for frame in (one, other))
         normals = np.concatenate([piece.normal for piece in one.centrelines])

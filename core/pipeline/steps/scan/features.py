@@ -64,7 +64,8 @@ def scan_features(
 def crossed_scan(looked: SeenScan, camera: Camera, progress: Progress = silent) -> ScanFeatures:
     """The features of a scan whose pictures have been looked at."""
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
-    return replace(features, notes=(*looked.notes, *features.notes))
+    notes, faults = (*looked.notes, *features.notes), (*looked.faults, *features.faults)
+    return replace(features, notes=notes, faults=faults)
 
 
 def _watching(

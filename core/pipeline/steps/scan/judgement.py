@@ -88,7 +88,7 @@ def solved_scan(
     InputError
         If it cannot be solved; what is wrong with its pictures is told first.
     """
-    with faults_first(features.notes):
+    with faults_first(features.faults):
         found = reconstruct_twice(features, calibration.camera.camera, calibration.fan.fan, options, progress)
     return Solved(*found, calibration)
 

@@ -52,13 +52,14 @@ FEWEST_FOR_QUANTILE = 3
 class SeenScan:
     """What the pictures of a scan show, and what its reader has found: a `PictureReader` learns it.
 
-    `averaged` are the same `lines`, averaged along themselves; `reference` is the picture that shows the fan alone, or
-    the first of those it was made from.
+    `averaged` are the same `lines`, averaged along themselves; `notes` and `faults` are those of `ScanFeatures`;
+    `reference` is the picture that shows the fan alone, or the first of those it was made from.
     """
 
     lines: SeenLines
     averaged: SeenLines
     notes: tuple[Message, ...]
+    faults: tuple[Message, ...]
     reference: Path
     hashes: Mapping[str, str]
     channels: Mapping[str, LaserChannel]
@@ -118,9 +119,9 @@ def look_at_scan(
     of_width = told_width_notes(settings.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
-    notes = (*channel.notes("scan"), *note, *of_width, *faults_of(reference), *shine)
+    notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference), *shine)
     path = found.reference or taken_frames(found, settings)[0]
-    return SeenScan(lines, averaged, notes, path, pictures.hashes, pictures.channels)
+    return SeenScan(lines, averaged, notes, faults, path, pictures.hashes, pictures.channels)
 
 
 def begin_looking(
