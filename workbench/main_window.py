@@ -100,8 +100,8 @@ class MainWindow(QMainWindow):
         self._scan_presenter().offer_whole(self._project_presenter().whole)
         self.pages: dict[str, StepPage] = {step.name: step.page(self.presenters[step.name]) for step in STEPS}
         self.rail = StepRail([(step.name, tr(step.title), step.icon) for step in STEPS])
-        self.banner, self.notice_list, self.task_bar = Banner(), NoticeList(), TaskBar()
-        self.instructions = InstructionBar()
+        self.notice_list, self.task_bar = NoticeList(), TaskBar()
+        self.instructions = InstructionBar([tr(each.text) for each in first_measurement.ORDER])
         self._led_in: Path | None = None
         self.welcome = WelcomePage(self.projects)
         self._title, self._help = QLabel(), Elided()
@@ -272,9 +272,10 @@ class MainWindow(QMainWindow):
         self.missing.setAlignment(Qt.AlignmentFlag.AlignRight | Qt.AlignmentFlag.AlignVCenter)
         self._head = holding(in_column(self._title, self._help, margins=(14, 6, 14, 0), spacing=1))
         self._foot = holding(in_row(self.back, (self.missing, 1), self.next, margins=(14, 4, 14, 4)))
-        column = in_column(self._head, self.instructions, self.banner, (self._pages, 1), self._foot, spacing=2)
+        page = holding(in_column(self._head, self.instructions, (self._pages, 1), self._foot, spacing=2))
+        self.banner = Banner(page, self._head)
         whole = QWidget()
-        in_row(self.rail, (column, 1), on=whole, spacing=0)
+        in_row(self.rail, (page, 1), on=whole, spacing=0)
         return whole
 
     def _messages_dock(self) -> QDockWidget:

@@ -16,6 +16,7 @@ from core.translations import PSEUDO, language
 from tests.workbench.clipped import clipped
 from workbench.app import build_window
 from workbench.bench import Bench
+from workbench.first_measurement import ORDER
 from workbench.language import choose, tr
 from workbench.main_window import SMALLEST, MainWindow
 from workbench.menus import SHORTCUTS
@@ -190,25 +191,58 @@ def test_a_long_word_of_a_job_makes_the_window_no_wider(window: MainWindow, qapp
     assert window.minimumSizeHint().width() <= SMALLEST.width()
 
 
+def places(window: MainWindow, qapp: QApplication) -> list[QRect]:
+    """Where the parts of the page shown are."""
+    for _ in range(3):
+        qapp.processEvents()
+    page = window.pages[window.current]
+    parts = (window.rail, page, page.scrolled, window.next)
+    return [QRect(part.mapTo(window, QPoint(0, 0)), part.size()) for part in parts]
+
+
 def test_nothing_moves_when_a_job_begins_goes_on_and_ends(
     window: MainWindow, qapp: QApplication, measured_project: Path
 ) -> None:
     window.resize(SMALLEST)
     window.model.open(measured_project)
-
-    def places() -> list[QRect]:
-        for _ in range(3):
-            qapp.processEvents()
-        parts = (window.rail, window.pages[window.current], window.pages[window.current].scrolled, window.next)
-        return [QRect(part.mapTo(window, QPoint(0, 0)), part.size()) for part in parts]
-
-    before = places()
+    before = places(window, qapp)
     window.task_bar.begin("Measuring the recording")
-    assert places() == before
+    assert places(window, qapp) == before
     window.task_bar.progress("Measuring the recording", "sweeps", 0.5, "about 2 minutes left")
-    assert places() == before
+    assert places(window, qapp) == before
     window.task_bar.end()
-    assert places() == before
+    assert places(window, qapp) == before
+
+
+@pytest.mark.parametrize("size", [SMALLEST, QSize(1280, 800)])
+def test_nothing_moves_when_a_banner_comes_and_it_tells_all_its_words(
+    window: MainWindow, qapp: QApplication, measured_project: Path, size: QSize
+) -> None:
+    window.resize(size)
+    window.model.open(measured_project)
+    before = places(window, qapp)
+    for words in ("Nothing here opens the report.", "The board was found in none of the pictures of this folder. " * 4):
+        window.bench.notices.warning(words)
+        assert places(window, qapp) == before
+        assert window.banner.isVisible() and clipped(window.banner) == {}
+    window.banner.hide()
+    assert places(window, qapp) == before
+
+
+@pytest.mark.parametrize("name", ["en", "de"])
+def test_nothing_moves_as_one_instruction_follows_the_other(
+    bench: Bench, qapp: QApplication, qtbot: Any, measured_project: Path, name: str
+) -> None:
+    with window_in(name, bench, qapp, qtbot) as window:
+        window.resize(SMALLEST)
+        window.model.open(measured_project)
+        window.projects.first_measurement_begun.emit()
+        before = places(window, qapp)
+        for number, each in enumerate(ORDER):
+            for can_show in (True, False):
+                window.instructions.show_instruction(number, len(ORDER), tr(each.text), can_show=can_show)
+                assert places(window, qapp) == before
+                assert clipped(window.instructions) == {}
 
 
 def test_a_folded_panel_shows_nothing_that_keys_could_reach_and_an_open_one_all_of_it(

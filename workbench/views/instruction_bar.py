@@ -2,28 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from PySide6.QtCore import QEvent, Signal
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QToolButton, QWidget
 
 from workbench.language import tr
 from workbench.views.common import IconLabel, dress_edged
-from workbench.views.layouts import in_row
+from workbench.views.layouts import RoomySentence, in_row
 
 
 class InstructionBar(QFrame):
-    """Which instruction of how many, what is to be done, a button that shows where, and one that leaves."""
+    """Which instruction of how many, what is to be done, a button that shows where, and one that leaves.
+
+    It has room for the longest of `texts`: the page below it stays where it is as one follows the other.
+    """
 
     show_me = Signal()
     left = Signal()
 
-    def __init__(self, parent: QWidget | None = None) -> None:
+    def __init__(self, texts: Iterable[str], parent: QWidget | None = None) -> None:
         super().__init__(parent)
-        self._symbol, self._place, self.words = IconLabel(18), QLabel(), QLabel()
+        self._symbol, self._place, self.words = IconLabel(18), QLabel(), RoomySentence(texts)
         self._place.setObjectName("heading")
-        self.words.setWordWrap(True)
         self.show_button = QPushButton(tr("Show me"))
         self.show_button.setToolTip(tr("Go to the page, and to the button that is meant"))
         self.show_button.clicked.connect(self.show_me)
+        room = self.show_button.sizePolicy()
+        room.setRetainSizeWhenHidden(True)
+        self.show_button.setSizePolicy(room)
         self.leave_button = QToolButton()
         self.leave_button.setText("✕")
         self.leave_button.setAutoRaise(True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Final, TypeVar
 
-from PySide6.QtCore import QEvent, QObject, QSize, Qt, Signal
+from PySide6.QtCore import QEvent, QObject, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QAction, QPaintEvent, QResizeEvent
 from PySide6.QtWidgets import (
     QAbstractButton,
@@ -223,6 +223,22 @@ class Sentence(QLabel):
 
     def setText(self, text: str) -> None:
         super().setText(unparted(text))
+
+
+class RoomySentence(Sentence):
+    """As high as the highest of the texts that are to come needs it: what stands below it stays where it is."""
+
+    def __init__(self, to_come: Iterable[str] = ()) -> None:
+        super().__init__()
+        self.to_come = tuple(to_come)
+
+    def heightForWidth(self, width: int) -> int:
+        room = QRect(0, 0, width, 10_000)
+        heights = (
+            self.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, unparted(text)).height()
+            for text in self.to_come
+        )
+        return max(super().heightForWidth(width), *heights, 0)
 
 
 class TwoLines(Sentence):

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from PySide6.QtCore import QRect, Qt
 from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWidget
 
 from workbench.theme import icon
 from workbench.views.common import IconLabel
-from workbench.views.layouts import Sentence, TwoLines, enable, in_column, in_row
+from workbench.views.layouts import RoomySentence, TwoLines, enable, in_column, in_row
 from workbench.views.lists.value_rows import VERDICT_ICONS, VerdictKind
 
 
@@ -30,7 +29,7 @@ class StageCard(QFrame):
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self.title, self.words, self.sign = _Title(), TwoLines(), IconLabel(16)
+        self.title, self.words, self.sign = RoomySentence(), TwoLines(), IconLabel(16)
         self.sign.hide()
         self.sign.setSizePolicy(
             QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored
@@ -88,15 +87,3 @@ class StageCard(QFrame):
                 button.setProperty("primary", main)
                 button.style().unpolish(button)
                 button.style().polish(button)
-
-
-class _Title(Sentence):
-    """As high as what is to come needs it, where that is known."""
-
-    usual = ""
-    """A text of the usual length of the longest one: there is always room for it."""
-
-    def heightForWidth(self, width: int) -> int:
-        room = QRect(0, 0, width, 10_000)
-        usual = self.fontMetrics().boundingRect(room, Qt.TextFlag.TextWordWrap, self.usual).height()
-        return max(super().heightForWidth(width), usual if self.usual else 0)

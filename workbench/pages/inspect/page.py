@@ -64,7 +64,7 @@ class InspectPage(StepPage):
             ]
         )
         self.card.title.setObjectName("title")
-        self.card.title.usual = USUAL
+        self.card.title.to_come = (USUAL,)
         self.pin_to_side(self.card)
         self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
         self.pin_to_side(self.features)

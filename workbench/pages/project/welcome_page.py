@@ -35,7 +35,7 @@ class WelcomePage(QWidget):
     def __init__(self, projects: ProjectActions, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._projects = projects
-        self.banner, self._listed = Banner(), TreeModel(self)
+        self._listed = TreeModel(self)
         self._refreshing = Refresh(self.refresh, self)  # a project may be forgotten by an action of the list itself
         title = QLabel("Trisect")
         title.setStyleSheet("font-size: 34px; font-weight: 300;")
@@ -110,10 +110,11 @@ class WelcomePage(QWidget):
         columns.addLayout(left, 3)
         columns.addLayout(right, 2)
         inside.addLayout(columns, 1)
-        layout = in_column(self.banner, STRETCH, on=self, margins=(24, 12, 24, 24))
+        layout = in_column(STRETCH, on=self, margins=(24, 12, 24, 24))
         row = in_row(STRETCH, (card, 20), STRETCH)
         layout.addLayout(row)
         layout.addStretch(1)
+        self.banner = Banner(self)
         projects.sample.changed.connect(self._show_sample)
         projects.bench.settings.recent_changed.connect(self._refreshing.soon)
         self._show_sample()

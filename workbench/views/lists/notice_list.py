@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from PySide6.QtCore import QEvent, QModelIndex, Qt
+from PySide6.QtCore import QEvent, QModelIndex, QObject, Qt
 from PySide6.QtGui import QGuiApplication
 from PySide6.QtWidgets import (
     QFrame,
@@ -83,10 +83,16 @@ class NoticeList(QWidget):
 
 
 class Banner(QFrame):
-    """One line across the page for what must not be overlooked; it stays until closed or replaced."""
+    """What must not be overlooked, across the top of `page` and over it: nothing moves as it comes and goes.
 
-    def __init__(self, parent: QWidget | None = None) -> None:
-        super().__init__(parent)
+    It stays until closed or replaced. Of `head`, the line of the page's title, it covers all, however short it is.
+    """
+
+    def __init__(self, page: QWidget, head: QWidget | None = None) -> None:
+        super().__init__(page)
+        self._page, self._head = page, head
+        for widget in filter(None, (page, head)):
+            widget.installEventFilter(self)
         self._level, self._text, self._more = "info", "", ""
         self._symbol = IconLabel(18)
         self._label = QLabel()
@@ -109,15 +115,33 @@ class Banner(QFrame):
         self._copy.setVisible(bool(details))
         self._dress()
         self.show()
+        self._place()
 
     def text(self) -> str:
         """The message shown."""
         return self._text if not self.isHidden() else ""
 
+    def eventFilter(self, watched: QObject, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.Resize and watched in (self._page, self._head):
+            self._place()
+        return super().eventFilter(watched, event)
+
+    def event(self, event: QEvent) -> bool:
+        if event.type() == QEvent.Type.LayoutRequest:  # its words, or their font, are others
+            self._place()
+        return super().event(event)
+
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange and self._text:
             self._dress()
+
+    def _place(self) -> None:
+        if not self.isHidden():
+            width, head = self._page.width(), self._head
+            of_head = head.geometry().bottom() + 1 if head is not None and not head.isHidden() else 0
+            self.setGeometry(0, 0, width, max(self.heightForWidth(width), self.minimumSizeHint().height(), of_head))
+            self.raise_()
 
     def _dress(self) -> None:
         symbol, colour = SYMBOLS[self._level]
