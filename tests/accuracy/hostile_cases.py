@@ -236,7 +236,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
     "glossy part": ("inspection.light_is_skewed", "scan.shines"),
     "glossy part with a lay": ("inspection.light_is_skewed", "scan.shines"),
-    "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy"),
+    "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy", "gauge.bent_and_no_faces"),
     "speckle": ("scan.speckled", "form.scatter"),
     "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll"),
     "something moves within the scan": MOVEMENT,

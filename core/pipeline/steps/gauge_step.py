@@ -7,6 +7,8 @@ from contextlib import contextmanager
 from dataclasses import replace
 from typing import NamedTuple, TypeVar
 
+import numpy as np
+
 from core.errors import InputError, NoThickness, OwnCause
 from core.files.recording.rig import GaugeSpec, Rig, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
@@ -28,6 +30,7 @@ from core.scan.fan_watch import WARM_UP
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.features.picture_faults import faults_first
 from core.scan.standstill import HOLD_STILL
+from core.scan.surface.cloud import FAN, Cloud
 
 Why = TypeVar("Why")
 
@@ -60,7 +63,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         regions = _regions(spec)
-        with _no_thickness(), movement_first(scan), faults_first(scan.features.faults), unsure_first(scan):
+        unsure = unsure_first(scan, bent=is_bent(cloud, calibration.fan.bends))
+        with _no_thickness(), movement_first(scan), faults_first(scan.features.faults), unsure:
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -131,11 +135,11 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
 
 
 @contextmanager
-def unsure_first(scan: ScanFile) -> Iterator[None]:
+def unsure_first(scan: ScanFile, *, bent: bool = False) -> Iterator[None]:
     """A complaint about faces begins with stripes that are overexposed, or with how many points the σ cut left out.
 
     With these only if they are most: that may be why. Where the frames are few, their number is: with as many as are
-    usual, the same sweeps have faces.
+    usual, the same sweeps have faces. Where the fan's lines are `bent`, that is.
     """
     try:
         yield
@@ -165,6 +169,19 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
             )
             todo = Message("gauge.advice_more_frames", "record {n} frames or more", n=USUAL_FRAMES)
             raise InputError(what, where=error.where, todo=todo) from error
+        if bent:
+            what = Message(
+                "gauge.bent_and_no_faces",
+                "by their calibration the fan's lines are no planes of light, and {percent:.0f} % of the sweeps' "
+                "points are less sure than the σ cut; of the rest: {reason}",
+                percent=100 * scan.unsure_share,
+                reason=error.what,
+            )
+            todo = Message(
+                "gauge.advice_straight_lines",
+                "see what the calibration of the light planes says of the lines, mend that, and calibrate them again",
+            )
+            raise InputError(what, where=error.where, todo=todo) from error
         what = Message(
             "gauge.unsure_and_no_faces",
             "{percent:.0f} % of the sweeps' points are less sure than the σ cut, and left out; of the rest: {reason}",
@@ -176,6 +193,19 @@ def unsure_first(scan: ScanFile) -> Iterator[None]:
             "raise the scan's σ cut, cross more of the fan with each sweep, or take sharper or larger pictures",
         )
         raise InputError(what, where=error.where, todo=todo) from error
+
+
+def is_bent(cloud: Cloud, bends: Array | None) -> bool:
+    """Whether the fan's light is so far off its planes, by `bends` (N, 3, 3) in 1/mm, that many points are unsure.
+
+    That is by half the largest σ that a point of the cloud has, at most of those that the fan measured itself.
+    """
+    own = cloud.sweep <= FAN
+    if bends is None or not own.any():
+        return False
+    points, line = cloud.points[own], FAN - cloud.sweep[own]
+    off_mm = np.abs(np.einsum("ni,nij,nj->n", points, bends[line], points))
+    return bool(np.median(off_mm) > cloud.sigma.max() / 2)
 
 
 def point_errors(scan: ScanFile) -> PointErrors:

@@ -129,13 +129,13 @@ class FrameRecord:
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What all frames of a scan tell the technician: of movements and further exposures."""
-    return _moved_notes(frames) + _exposure_notes(frames)
+    """What all frames of a scan tell the technician: of movements, brightness that was taken off, further exposures."""
+    return _moved_notes(frames) + _gain_notes(frames) + _exposure_notes(frames)
 
 
 def light_faults(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What is wrong with the light of all frames of a scan: the lasers', or the room's, changed."""
-    return _gain_notes(frames) + _light_notes(frames)
+    """What is wrong with the light of all frames of a scan: the room's changed."""
+    return _light_notes(frames)
 
 
 def _exposure_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:

@@ -11,6 +11,7 @@ from core.findings.table import note_of
 from core.messages import Message
 from core.pipeline.steps import gauge_step
 from core.scan.features.picture_faults import faults_first
+from core.scan.surface.cloud import FAN
 
 
 def scan_of(*, unsure_share, saturated=0, faults=(), sweeps=36):
@@ -54,6 +55,19 @@ def test_few_frames_are_named_before_points_that_are_too_unsure():
     for said in ("only 11 frames", "no two are parallel", "record 30 frames or more"):
         assert said in str(refused.value)
     assert "raise the scan's σ cut" not in str(refused.value)
+
+
+@pytest.mark.parametrize(("off_mm", "bent"), [(0.05, True), (0.01, False), (None, False)])
+def test_lines_that_are_no_planes_are_named_before_points_that_are_too_unsure(off_mm, bent):
+    """By what the light is off its planes at 500 mm, beside points of σ up to 0.05 mm."""
+    bends = None if off_mm is None else np.diag([0, 0, off_mm / 500**2])[None]
+    points = np.tile([0.0, 0.0, 500.0], (4, 1))
+    cloud = SimpleNamespace(points=points, sweep=np.array([FAN, FAN, FAN, 0]), sigma=np.array([0.01, 0.01, 0.01, 0.05]))
+    assert gauge_step.is_bent(cloud, bends) == bent
+    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=0.8), bent=bent):
+        raise InputError(NO_FACES, where="point cloud")
+    assert ("no planes of light" in str(refused.value)) == bent
+    assert ("raise the scan's σ cut" in str(refused.value)) != bent
 
 
 def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():

@@ -45,7 +45,7 @@ def test_a_fan_brighter_than_in_the_reference_is_no_sweep(scan):
     bright = [(name, exposed(picture, 1.5)) for name, picture in frames]
     still = extract_features(reference, frames, len(frames))
     found = extract_features(reference, bright, len(frames))
-    note = next(note for note in found.faults if note.code == "scan.brightness_changed")
+    note = next(note for note in found.notes if note.code == "scan.brightness_changed")
     assert note.values["n"] == len(frames) and note.values["percent"] == pytest.approx(50, abs=10)
     assert not any(note.code == "scan.room_light_changed" for note in found.faults), "it is the exposure"
     for one, other in zip(still.frames, found.frames, strict=True):
