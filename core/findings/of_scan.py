@@ -15,7 +15,7 @@ ROWS = (
             "moved are used. Hold part and camera still and scan again.", fact="moved"),
     Finding("scan.drifted", Weight.GRAVE, Effect.NO_PROOF,
             "The rig drifts: from the first frame to the last the fan's light moves evenly, by {shift_px:.2g} px, "
-            "which is {shift_mm:.2g} mm in depth. All frames are used. Let camera and lasers warm up before a scan, "
+            "which is {shift_mm:.2g} mm in depth. Let camera and lasers warm up before a scan, "
             "and scan faster.", fact="drifted"),
     Finding("scan.rest_not_judged", Weight.GRAVE, Effect.NO_PROOF,
             "Whether the rig drifted or anything moved during the scan cannot be told from {n} frames with {stretches} "

@@ -277,6 +277,7 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
+    moved = part.movements and not watched.drifts  # a drift makes crossings disagree, too
     explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed
     if explanation is None and not explained and (sweeps.fan_silenced or sweeps.judged):
         explanation = explain_by_change(among, line[kept], camera, fan, progress)
@@ -287,12 +288,12 @@ def _solve(
         weights,
         reasons_of(crossings.with_fan, weights, kept, np.ones(len(crossings), dtype=np.bool_)),
         watched.note(names, len(sweeps.frames))
-        + part.note(names, len(sweeps.frames))
+        + (part.note(names, len(sweeps.frames)) if moved else ())
         + of_hand
         + (judged if explanation is None else (explanation.note,)),
         datum,
         read_out,
-        bool(watched.first_after or part.movements) if watched.known or part.known else None,
+        bool(watched.first_after or moved) if watched.known or part.known else None,
         explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
     )

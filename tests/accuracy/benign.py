@@ -99,19 +99,29 @@ def first_cause(figures: Figures) -> str:
 
 
 def first_table(cases: Sequence[HostileCase], results: Mapping[str, Figures]) -> list[str]:
-    """A line for each effect: how often the first cause told is its own, and which others were; and the share."""
+    """A line for each effect: how often the first cause told is its own, and which others were; and the share.
+
+    Of a scan that is right within half its U, and proves nothing wrong, nothing needs to be told: it is counted apart.
+    """
     lines = ["| effect | strength | first cause is the true one | others told first |", "|---|---|---|---|"]
     known = [case for case in cases if case.name in results]
-    right = 0
+    right = untold = 0
     for title in dict.fromkeys(case.effect for case in known):
         mine = [case for case in known if case.effect == title]
         first = [first_cause(results[case.name]) for case in mine]
         true = sum(code in case.causes for case, code in zip(mine, first, strict=True))
         others = sorted({code or "nothing" for case, code in zip(mine, first, strict=True) if code not in case.causes})
         right += true
+        untold += sum(not code and harmless(results[case.name]) for case, code in zip(mine, first, strict=True))
         lines.append(f"| {title} | {mine[0].strength} | {true} of {len(mine)} | {', '.join(others) or '–'} |")
     return [
         *lines,
         "",
-        f"Of {len(known)} sets the first cause told of {right} is the true one ({right / max(len(known), 1):.0%}).",
+        f"Of {len(known)} sets, {untold} are right within half their U and nothing is told of them. Of the others, the "
+        f"first cause told of {right} is the true one ({right / max(len(known) - untold, 1):.0%}).",
     ]
+
+
+def harmless(figures: Figures) -> bool:
+    """Whether an effect left the thickness right, within half its U."""
+    return "error" in figures and abs(figures["error"]) <= figures["U"] / 2

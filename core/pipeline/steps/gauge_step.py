@@ -63,8 +63,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         regions = _regions(spec)
-        unsure = unsure_first(scan, bent=is_bent(cloud, calibration.fan.bends))
-        with _no_thickness(), movement_first(scan), faults_first(scan.features.faults), unsure:
+        bent = bent_first(cloud, calibration.fan.bends)
+        with _no_thickness(), bent, movement_first(scan), faults_first(scan.features.faults), unsure_first(scan):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -112,6 +112,37 @@ def _no_thickness() -> Iterator[None]:
 
 
 @contextmanager
+def bent_first(cloud: Cloud, bends: Array | None) -> Iterator[None]:
+    """A complaint about faces begins with fan lines that are no planes of light: crossings disagree by that, too.
+
+    That is told if the light is off its planes, by `bends` (N, 3, 3) in 1/mm, by half the largest σ that a point of the
+    cloud has, at most of those that the fan measured itself.
+    """
+    try:
+        yield
+    except InputError as error:
+        own = cloud.sweep <= FAN
+        if bends is None or not own.any():
+            raise
+        points, line = cloud.points[own], FAN - cloud.sweep[own]
+        off_mm = float(np.median(np.abs(np.einsum("ni,nij,nj->n", points, bends[line], points))))
+        if off_mm < cloud.sigma.max() / 2:
+            raise
+        what = Message(
+            "gauge.bent_and_no_faces",
+            "by their calibration the fan's lines are no planes of light, but {off_mm:.2g} mm off them; of what is "
+            "measured so: {reason}",
+            off_mm=off_mm,
+            reason=error.what,
+        )
+        todo = Message(
+            "gauge.advice_straight_lines",
+            "see what the calibration of the light planes says of the lines, mend that, and calibrate them again",
+        )
+        raise InputError(what, where=error.where, todo=todo) from error
+
+
+@contextmanager
 def movement_first(scan: ScanFile) -> Iterator[None]:
     """A complaint about faces begins with what moved or drifted in the scan, if anything did: that is why."""
     try:
@@ -135,11 +166,11 @@ def movement_first(scan: ScanFile) -> Iterator[None]:
 
 
 @contextmanager
-def unsure_first(scan: ScanFile, *, bent: bool = False) -> Iterator[None]:
+def unsure_first(scan: ScanFile) -> Iterator[None]:
     """A complaint about faces begins with stripes that are overexposed, or with how many points the σ cut left out.
 
     With these only if they are most: that may be why. Where the frames are few, their number is: with as many as are
-    usual, the same sweeps have faces. Where the fan's lines are `bent`, that is.
+    usual, the same sweeps have faces.
     """
     try:
         yield
@@ -169,19 +200,6 @@ def unsure_first(scan: ScanFile, *, bent: bool = False) -> Iterator[None]:
             )
             todo = Message("gauge.advice_more_frames", "record {n} frames or more", n=USUAL_FRAMES)
             raise InputError(what, where=error.where, todo=todo) from error
-        if bent:
-            what = Message(
-                "gauge.bent_and_no_faces",
-                "by their calibration the fan's lines are no planes of light, and {percent:.0f} % of the sweeps' "
-                "points are less sure than the σ cut; of the rest: {reason}",
-                percent=100 * scan.unsure_share,
-                reason=error.what,
-            )
-            todo = Message(
-                "gauge.advice_straight_lines",
-                "see what the calibration of the light planes says of the lines, mend that, and calibrate them again",
-            )
-            raise InputError(what, where=error.where, todo=todo) from error
         what = Message(
             "gauge.unsure_and_no_faces",
             "{percent:.0f} % of the sweeps' points are less sure than the σ cut, and left out; of the rest: {reason}",
@@ -193,19 +211,6 @@ def unsure_first(scan: ScanFile, *, bent: bool = False) -> Iterator[None]:
             "raise the scan's σ cut, cross more of the fan with each sweep, or take sharper or larger pictures",
         )
         raise InputError(what, where=error.where, todo=todo) from error
-
-
-def is_bent(cloud: Cloud, bends: Array | None) -> bool:
-    """Whether the fan's light is so far off its planes, by `bends` (N, 3, 3) in 1/mm, that many points are unsure.
-
-    That is by half the largest σ that a point of the cloud has, at most of those that the fan measured itself.
-    """
-    own = cloud.sweep <= FAN
-    if bends is None or not own.any():
-        return False
-    points, line = cloud.points[own], FAN - cloud.sweep[own]
-    off_mm = np.abs(np.einsum("ni,nij,nj->n", points, bends[line], points))
-    return bool(np.median(off_mm) > cloud.sigma.max() / 2)
 
 
 def point_errors(scan: ScanFile) -> PointErrors:

@@ -58,16 +58,16 @@ def test_few_frames_are_named_before_points_that_are_too_unsure():
 
 
 @pytest.mark.parametrize(("off_mm", "bent"), [(0.05, True), (0.01, False), (None, False)])
-def test_lines_that_are_no_planes_are_named_before_points_that_are_too_unsure(off_mm, bent):
+def test_lines_that_are_no_planes_are_named_before_what_seems_to_have_moved(off_mm, bent):
     """By what the light is off its planes at 500 mm, beside points of σ up to 0.05 mm."""
     bends = None if off_mm is None else np.diag([0, 0, off_mm / 500**2])[None]
     points = np.tile([0.0, 0.0, 500.0], (4, 1))
     cloud = SimpleNamespace(points=points, sweep=np.array([FAN, FAN, FAN, 0]), sigma=np.array([0.01, 0.01, 0.01, 0.05]))
-    assert gauge_step.is_bent(cloud, bends) == bent
-    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=0.8), bent=bent):
+    moved = gauge_step.movement_first(SimpleNamespace(facts=ScanFacts(moved=True)))
+    with pytest.raises(InputError) as refused, gauge_step.bent_first(cloud, bends), moved:
         raise InputError(NO_FACES, where="point cloud")
-    assert ("no planes of light" in str(refused.value)) == bent
-    assert ("raise the scan's σ cut" in str(refused.value)) != bent
+    assert refused.value.code == ("gauge.bent_and_no_faces" if bent else "gauge.moved_and_no_faces")
+    assert "no two are parallel" in str(refused.value)
 
 
 def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():
