@@ -277,7 +277,7 @@ def _solve(
     weights[kept] = sweeps.weights
     of_hand = hand_notes(sweeps, among, camera, read_out, stated=options.row_time_us is not None)
     middle, covariance = sweeps.middle_planes
-    moved = part.movements and not watched.drifts  # a drift makes crossings disagree, too
+    moved = bool(part.movements) and not watched.drifts  # a drift makes crossings disagree, too
     explained = watched.unsteady or part.movements or of_hand or sweeps.collapsed
     if explanation is None and not explained and (sweeps.fan_silenced or sweeps.judged):
         explanation = explain_by_change(among, line[kept], camera, fan, progress)
