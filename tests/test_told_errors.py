@@ -96,7 +96,7 @@ def test_tables_and_repeats_of_which_no_study_can_be_made(tmp_path):
     with refused("a gauge R&R study needs values that differ"):
         keep_study(tmp_path, "grr", table, tmp_path, {})
     with refused("a type-1 study needs two finite values or more"):
-        keep_type1(tmp_path, [50.0], 50.0, 1.0)
+        keep_type1(tmp_path, [("scan", 50.0, ())], 50.0, 1.0)
 
 
 def test_a_study_file_of_which_no_study_can_be_made(tmp_path):

@@ -32,6 +32,8 @@ from core.findings.table import note_of
 from core.inspect.conformity import Limits, Verdict, decide
 from core.messages import Message, label
 from core.model.arrays import Array
+from core.study.artefact_check import left_by_check
+from core.study.doubted import doubted_among, doubts_of_study
 
 LEFT_OUT = 0.003
 """Share of the points that may be left out."""
@@ -155,6 +157,8 @@ class Reading:
         Of the artefact, in mm; 0 for form and flatness, whose artefact must be much better than the limit.
     u
         Standard uncertainty of the calibrated value (and of whatever else the check adds), in mm; 0 if not stated.
+    doubts
+        By what facts of its scan it proves nothing; those that an artefact is measured to clear up do not count.
     """
 
     quantity: Quantity
@@ -162,6 +166,7 @@ class Reading:
     measured: float
     calibrated: float = 0.0
     u: float = 0.0
+    doubts: Doubts = ()
 
     @property
     def error(self) -> float:
@@ -207,11 +212,17 @@ class CheckedQuantity:
 
     def verdict_of(self, reading: Reading) -> Verdict:
         """Decision on one reading, none without a limit; without an uncertainty of its artefact it proves nothing."""
-        doubts = self.doubts if reading.u <= 0 else ()
+        doubts = (*left_by_check(reading.doubts), *(self._of_artefact if reading.u <= 0 else ()))
         return decide(reading.error, Limits.around(0.0, self.limit), self.k * reading.u, doubts)
 
     @property
     def doubts(self) -> Doubts:
+        """That readings prove nothing, by their own scans or as their artefact has no uncertainty; () for none."""
+        doubted = doubted_among((reading.position, left_by_check(reading.doubts)) for reading in self.readings)
+        return (*doubts_of_study(doubted), *self._of_artefact)
+
+    @property
+    def _of_artefact(self) -> Doubts:
         """That readings prove nothing whose artefact has no uncertainty; () where all have one."""
         if all(reading.u > 0 for reading in self.readings):
             return ()
@@ -255,7 +266,7 @@ class AcceptanceCheck:
                 )
             if one.limit is not None:
                 said += notes_of(one.doubts)
-        return tuple(said)
+        return tuple(dict.fromkeys(said))  # what is in doubt by a scan is so for each quantity read from it
 
 
 def acceptance_check(

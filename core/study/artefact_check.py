@@ -24,6 +24,12 @@ CHECKED = frozenset((
 ))  # fmt: skip
 """Facts that an artefact is measured to clear up: its own check is not in doubt by them."""
 
+
+def left_by_check(doubts: Doubts) -> Doubts:
+    """The doubts of what was measured of an artefact but those that it is measured to clear up."""
+    return tuple(doubt for doubt in doubts if doubt.fact not in CHECKED)
+
+
 ArtefactKind: TypeAlias = Literal["block", "sphere", "step"]
 KINDS: Mapping[ArtefactKind, str] = {
     "block": label("block, thickness"),
@@ -113,7 +119,7 @@ class ArtefactCheck:
     @property
     def own_doubts(self) -> Doubts:
         """The doubts but those that it is measured to clear up."""
-        return tuple(doubt for doubt in self.doubts if doubt.fact not in CHECKED)
+        return left_by_check(self.doubts)
 
     @property
     def verdict(self) -> Literal["passed", "doubtful", "failed"]:

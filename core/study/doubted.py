@@ -21,8 +21,12 @@ Doubted: TypeAlias = tuple[DoubtedResult, ...]
 
 
 def doubted_among(results: Iterable[tuple[str, Doubts]]) -> Doubted:
-    """Those of the results, each a label with its doubts, that have any."""
-    return tuple(DoubtedResult(label, doubts) for label, doubts in results if doubts)
+    """Those of the results, each a label with its doubts, that have any; each label once."""
+    found: dict[str, dict[Doubt, None]] = {}
+    for label, doubts in results:
+        if doubts:
+            found.setdefault(label, {}).update(dict.fromkeys(doubts))
+    return tuple(DoubtedResult(label, tuple(doubts)) for label, doubts in found.items())
 
 
 def doubts_of_study(doubted: Doubted) -> Doubts:

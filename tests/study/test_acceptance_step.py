@@ -1,12 +1,17 @@
 """Artefacts found in clouds: the two spheres of a bar, and what is said where there is none."""
 
+from dataclasses import asdict, replace
+
 import numpy as np
 import pytest
 
 from core.errors import InputError
+from core.files.arrays_file import write_arrays
 from core.files.results.ply import write_cloud
 from core.pipeline.steps.acceptance_step import read_positions
 from core.scan.surface.cloud import Cloud
+from core.study.acceptance import acceptance_check
+from tests.scan_facts import NOTHING_WRONG
 from tests.study.test_acceptance_points import cap
 
 TABLE_Z, RADIUS = 600.0, 15.0
@@ -32,6 +37,13 @@ def bar(folder, centres, noise=0.01, seed=0):
     return folder
 
 
+def with_facts(folder, facts):
+    """The folder with a scan.npz, as far as its facts are read."""
+    known = {f"fact_{name}": np.array(holds) for name, holds in asdict(facts).items() if name != "of_the_day"}
+    write_arrays(folder / "scan.npz", known)
+    return folder
+
+
 def test_the_spacing_of_a_bars_two_spheres_is_the_distance_of_their_centres(tmp_path):
     centres = [(-40.0, 10.0, 570.0), (40.0, 5.0, 575.0)]
     truth = float(np.linalg.norm(np.subtract(*centres)))
@@ -54,3 +66,25 @@ def test_a_sphere_of_another_size_is_not_taken_for_the_artefact(tmp_path):
     form, size = read_positions([folder], "sphere", calibrated_mm=2 * RADIUS)
     assert abs(size.error) < 0.01
     assert 0.03 < form.measured < 0.12
+
+
+@pytest.mark.parametrize(
+    ("facts", "verdict"),
+    [
+        (NOTHING_WRONG, "conforming"),
+        (replace(NOTHING_WRONG, moved=True), "not proven"),
+        (replace(NOTHING_WRONG, size_unconfirmed=True, points_off_alike=True), "conforming"),
+        (None, "not proven"),
+    ],
+)
+def test_readings_prove_nothing_by_the_facts_of_their_scan_but_those_that_an_artefact_clears_up(
+    tmp_path, facts, verdict
+):
+    folder = bar(tmp_path / "p", [(-40.0, 10.0, 570.0)])
+    if facts is not None:
+        with_facts(folder, facts)
+    readings = read_positions([folder], "sphere", calibrated_mm=2 * RADIUS, u_mm=0.001)
+    check = acceptance_check(readings, {"size": 0.1})
+    assert check.verdict == verdict
+    told = [str(note) for note in check.notes if "prove nothing" in str(note)]
+    assert len(told) == (verdict == "not proven"), "once, though the scan gives several readings"

@@ -16,8 +16,10 @@ from core.model import LightPlane
 from core.study.grr import GrrStudy
 from core.study.type1 import Type1Study
 from tests.inspect.fit.test_round import RADIUS, scan
+from tests.scan_facts import NOTHING_WRONG
 from tests.simulated import trisect
 from tests.study.grr_tables import AIAG
+from tests.study.test_acceptance_step import with_facts
 from tests.study.test_repeats import TABLE_1
 
 NO_POINTS = np.arange(0)
@@ -218,6 +220,7 @@ def test_clouds_of_a_sphere_give_its_probing_errors_position_by_position(tmp_pat
         folders.append(tmp_path / f"position{seed}")
         folders[-1].mkdir()
         write_cloud(folders[-1] / "cloud.ply", cloud, "abc")
+        with_facts(folders[-1], NOTHING_WRONG)
     said = trisect("study", "acceptance", *folders, "--nominal", 2 * RADIUS, "--u", 0.001, "--size", 0.05, "--json")
     form, size = json.loads(said.out)["quantities"]
     assert said.code == 0, said.err

@@ -52,6 +52,11 @@ _OLDER_SOURCES = {str(cause): source for source, cause in CALIBRATIONS.items()}
 _SPECKLE = tuple(one.name for one in fields(FanSpeckle))
 
 
+_FACT_MEMBERS = {
+    **{f"fact_{name}": truth(optional=True) for name in _FACTS},
+    "of_the_day": texts(None, optional=True),
+    "of_the_day_facts": texts(None, optional=True),
+}
 _MEMBERS = {
     **FEATURES_MEMBERS,
     "calibration_id": texts(),
@@ -61,9 +66,7 @@ _MEMBERS = {
     "fan_line": whole("fan pieces"),
     "shown": whole(),
     "crossings_used": real(None, 2),
-    **{f"fact_{name}": truth(optional=True) for name in _FACTS},
-    "of_the_day": texts(None, optional=True),
-    "of_the_day_facts": texts(None, optional=True),
+    **_FACT_MEMBERS,
     "unsure_share": real(optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "common_sources": texts(None, optional=True),
@@ -173,6 +176,15 @@ def read_scan(path: Path) -> ScanFile:
             raise InputError(wrong_shape(name, arrays[name], shape), where=path, todo=_TODO)
     with unpacking(path, todo=_TODO):
         return _unpacked(arrays)
+
+
+def scan_facts_of(path: Path) -> ScanFacts:
+    """The facts in scan.npz alone; nothing is known where there is none. InputError if it is damaged."""
+    if not path.exists():
+        return ScanFacts()
+    arrays = read_arrays(path, _FACT_MEMBERS, todo=_TODO)
+    with unpacking(path, todo=_TODO):
+        return _facts(arrays)
 
 
 def _unpacked(arrays: Arrays) -> ScanFile:

@@ -6,7 +6,8 @@ Columns (others are passed over):
   `k` (else k = 2);
 - grr: `part`, `operator`, and `value`, or `result`: the folder of results of that measurement, seen from the table;
 - acceptance: `quantity` (form, size, spacing, flatness), `position`, `measured_mm`, and if you like `calibrated_mm`,
-  `u_mm`.
+  `u_mm`;
+- all of them: `doubts`, the facts by which the result of a row proves nothing (`core.files.study.table.DOUBTS`).
 """
 
 from __future__ import annotations
@@ -108,7 +109,8 @@ def repeats_of(table: Table, name: str = THICKNESS) -> Repeats:
         u = u or tuple(one / k for one, k in zip(expanded, factors, strict=True))
     if u is not None:
         _not_negative(table, "u_mm", u)
-    return Repeats(name, labels, values, u, expanded or (), (), "deg" if column == "value_deg" else "mm")
+    unit, doubted = "deg" if column == "value_deg" else "mm", doubted_among(zip(labels, table.doubts, strict=True))
+    return Repeats(name, labels, values, u, expanded or (), (), unit, doubted=doubted)
 
 
 def read_crossed(path: Path, name: str = THICKNESS) -> Crossed:
@@ -131,14 +133,15 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
     path = table.path
     parts, operators = table.texts("part"), table.texts("operator")
     unit = "mm"
-    doubted: Doubted = ()
     if "result" in table.columns:
         folders = table.texts("result")
         measured = [measured_in(path.parent / folder, name) for folder in folders]
         values, unit = [one.value for one in measured], measured[0].unit
-        doubted = doubted_among((folder, one.doubts) for folder, one in zip(folders, measured, strict=True))
+        doubts = [(*one.doubts, *told) for one, told in zip(measured, table.doubts, strict=True)]
+        labels = folders
     else:
-        values = list(table.numbers(*VALUE))
+        values, doubts = list(table.numbers(*VALUE)), list(table.doubts)
+        labels = tuple(f"{part}/{operator}" for part, operator in zip(parts, operators, strict=True))
     names = tuple(dict.fromkeys(parts)), tuple(dict.fromkeys(operators))
     cells: dict[tuple[str, str], list[float]] = {(part, operator): [] for part in names[0] for operator in names[1]}
     for part, operator, value in zip(parts, operators, values, strict=True):
@@ -172,7 +175,7 @@ def crossed_of(table: Table, name: str = THICKNESS) -> Crossed:
             todo=Message("advice.measure_two_of_each", "measure 2 or more of each"),
         )
     shaped = np.array([[cells[part, operator] for operator in names[1]] for part in names[0]])
-    return Crossed(shaped, *names, unit, doubted)
+    return Crossed(shaped, *names, unit, doubted_among(zip(labels, doubts, strict=True)))
 
 
 def read_readings(path: Path) -> tuple[Reading, ...]:
@@ -212,7 +215,8 @@ def readings_of(table: Table) -> tuple[Reading, ...]:
                 ),
                 where=path,
             )
-    return tuple(map(Reading, cast(tuple[Quantity, ...], quantities), positions, measured, calibrated, u))
+    known = cast(tuple[Quantity, ...], quantities)
+    return tuple(map(Reading, known, positions, measured, calibrated, u, table.doubts))
 
 
 def _table_among(paths: Sequence[Path]) -> Table | None:

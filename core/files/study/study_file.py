@@ -201,6 +201,7 @@ def _quantity(one: CheckedQuantity) -> dict[str, Any]:
                 "measured": reading.measured,
                 "calibrated": reading.calibrated,
                 "u": reading.u,
+                "doubts": [doubt.fact for doubt in reading.doubts],
                 "error": reading.error,
                 "verdict": one.verdict_of(reading),
             }
@@ -361,6 +362,7 @@ class _Reading(ResultFile):
     measured: Finite
     calibrated: Finite
     u: Finite
+    doubts: list[str] = Field(default_factory=list)
 
 
 class _Quantity(ResultFile):
@@ -376,7 +378,9 @@ class _Acceptance(ResultFile):
 
     def study(self) -> AcceptanceCheck:
         readings = [
-            Reading(one.quantity, row.position, row.measured, row.calibrated, row.u)
+            Reading(
+                one.quantity, row.position, row.measured, row.calibrated, row.u, doubts_named(row.doubts, complete=True)
+            )
             for one in self.quantities
             for row in one.readings
         ]

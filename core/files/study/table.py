@@ -15,9 +15,14 @@ from pathlib import Path
 from core.errors import InputError
 from core.files.limits import LARGEST
 from core.files.reading import csv_rows, read_text
+from core.findings.proof import Doubt, Doubts
 from core.messages import Message
 
 SEPARATORS = ";\t,"
+DOUBTS = "doubts"
+"""The column of facts, by their names in files with spaces between them, by which the result of a row proves nothing.
+
+A table without it says of no result that it is doubted, as tables typed by hand and those of earlier versions do."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -54,6 +59,12 @@ class Table:
                     todo=Message("advice.fill_cell", "fill it in"),
                 )
         return self.columns[name]
+
+    @property
+    def doubts(self) -> tuple[Doubts, ...]:
+        """Of the result of each row; () where nothing stands in its column, or there is no such column."""
+        cells = self.columns.get(DOUBTS, ("",) * len(self))
+        return tuple(tuple(map(Doubt.named, cell.split())) for cell in cells)
 
     def numbers(self, *names: str) -> tuple[float, ...]:
         """Of the column called by one of `names`; InputError if there is none, or a cell is no finite number."""
@@ -125,6 +136,35 @@ def read_table(path: Path) -> Table:
 def separator_of(head: str) -> str:
     """What stands between the cells of a table whose head line is `head`."""
     return next((one for one in SEPARATORS if one in head), ",")
+
+
+def with_rows(text: str, more: str) -> str:
+    """A table with the rows of another below its own, in the same order but for their doubts, which have a column.
+
+    Parameters
+    ----------
+    text
+        The table, whatever is wrong with it; nothing: the other with its head.
+    more
+        The other one, with semicolons and its doubts, if it has them, in its last column.
+    """
+    lines = text.splitlines()
+    told = [number for number, line in enumerate(lines) if line.strip() and not line.lstrip().startswith("#")]
+    if not told:
+        return more
+    separator = separator_of(lines[told[0]])
+    head, *rows = (line.split(";") for line in more.splitlines())
+    columns = [cell.strip() for cell in lines[told[0]].split(separator)]
+    if DOUBTS in head and DOUBTS not in columns:
+        for number in told:
+            lines[number] += separator + (DOUBTS if number == told[0] else "")
+        columns.append(DOUBTS)
+    for row in rows:
+        cells = row[:-1] if DOUBTS in head else row
+        if DOUBTS in columns:
+            cells.insert(columns.index(DOUBTS), row[-1] if DOUBTS in head else "")
+        lines.append(separator.join(cells))
+    return "\n".join(lines) + "\n"
 
 
 def table_of(text: str, path: Path) -> Table:

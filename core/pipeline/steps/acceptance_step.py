@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Literal, TypeAlias
 
@@ -11,6 +12,7 @@ from numpy.typing import NDArray
 
 from core.errors import InputError, WrongValue
 from core.files.results.ply import read_cloud
+from core.files.results.scan_file import scan_facts_of
 from core.files.step_graph import FILES
 from core.inspect.fit.plane_search import find_planes
 from core.inspect.fit.round import find_sphere
@@ -31,10 +33,12 @@ def read_positions(
 ) -> tuple[Reading, ...]:  # fmt: skip
     """Form and size of the sphere, spacing of the two of a bar, or flatness of the largest plane of each cloud.
 
+    Each has the doubts of its scan; of a cloud without a scan.npz nothing is known.
+
     Parameters
     ----------
     folders
-        With a cloud.ply each: the positions.
+        With a cloud.ply each, and the scan.npz it was measured with: the positions.
     artefact
         What stands there.
     calibrated_mm
@@ -47,7 +51,7 @@ def read_positions(
     Raises
     ------
     InputError
-        If there is no cloud, or nothing of that shape in it.
+        If there is no cloud, or nothing of that shape in it, or the scan.npz is damaged.
     """
     found: list[Reading] = []
     for number, folder in enumerate(folders):
@@ -64,7 +68,7 @@ def read_positions(
                 ),
             )
         try:
-            found += _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm, diameter_mm)
+            readings = _readings(read_cloud(path).cloud, folder.name, artefact, calibrated_mm, u_mm, diameter_mm)
         except (InputError, WrongValue) as error:
             raise InputError(
                 Message(
@@ -72,6 +76,8 @@ def read_positions(
                 ),
                 where=path,
             ) from error
+        doubts = scan_facts_of(folder / FILES["scan"]).doubts
+        found += [replace(reading, doubts=doubts) for reading in readings]
     progress("positions", len(folders), len(folders))
     return tuple(found)
 

@@ -6,7 +6,7 @@ import hashlib
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Literal, cast
+from typing import Literal, TypeAlias, cast
 
 from core.errors import InputError, WrongValue
 from core.files.atomic import make_inner_folder, write_bytes, write_text
@@ -18,12 +18,13 @@ from core.files.reading import read_bytes, read_text
 from core.files.study.input import Repeats, crossed_of, readings_of, repeats_of
 from core.files.study.results import measured_in
 from core.files.study.study_file import STUDIES, read_study, study_path, study_values, write_study
-from core.files.study.table import separator_of, table_of
+from core.files.study.table import DOUBTS, separator_of, table_of
+from core.findings.proof import Doubts
 from core.messages import Message, label
 from core.pipeline.steps.acceptance_step import Artefact, read_positions
 from core.progress import Progress, silent
 from core.study.acceptance import AcceptanceCheck, Quantity, acceptance_check
-from core.study.doubted import Doubted
+from core.study.doubted import doubted_among
 from core.study.grr import GrrStudy, grr_study
 from core.study.repeats import THICKNESS
 from core.study.series import SeriesStudy, series_study, stated_uncertainty
@@ -38,6 +39,8 @@ HEADS: Mapping[str, str] = {
     "acceptance": "quantity;position;measured_mm;calibrated_mm;u_mm",
     "series": "part;value_mm;u_mm",
 }
+_Row: TypeAlias = tuple[Sequence[object], Sequence[str]]
+"""Cells of a row, and the doubts of its result."""
 _ID = 12
 """Hex digits of a study's hash that name it."""
 
@@ -93,9 +96,9 @@ def keep_study(
 
 
 def keep_type1(
-    folder: Path, values: Sequence[float], nominal: float, tolerance: float, doubted: Doubted = ()
+    folder: Path, repeats: Sequence[tuple[str, float, Doubts]], nominal: float, tolerance: float
 ) -> KeptStudy:
-    """Keep the type-1 study of repeats, some of them `doubted`, against T = `tolerance`, the full width; all in mm.
+    """Keep the type-1 study of repeats (label, value, doubts) against T = `tolerance`, the full width; all in mm.
 
     Raises
     ------
@@ -103,10 +106,12 @@ def keep_type1(
         If there are too few values, or nothing can be written.
     """
     try:
-        study = type1_study(values, nominal, tolerance, doubted)
+        doubted = doubted_among((label, doubts) for label, _, doubts in repeats)
+        study = type1_study([value for _, value, _ in repeats], nominal, tolerance, doubted)
     except WrongValue as error:
         raise InputError(error.what, where="repeats") from error
-    return _kept(folder, study, "\n".join(["value_mm", *(repr(float(value)) for value in values)]) + "\n")
+    rows = [((name, float(value)), _facts(doubts)) for name, value, doubts in repeats]
+    return _kept(folder, study, _table("scan;value_mm", rows))
 
 
 def look_at_study(folder: Path, id_: str) -> Study:
@@ -138,7 +143,7 @@ def project_rows(
     kind: Kind, folder: Path, artefact: Artefact, calibrated_mm: float, u_mm: float, diameter_mm: float,
     name: str = THICKNESS, progress: Progress = silent,
 ) -> str:  # fmt: skip
-    """Rows of a study's table, under its HEADS, from another project's results.
+    """Rows of a study's table, under a head line, from another project's results, with their doubts if they have any.
 
     For a gauge R&R study its part, operator and thickness, a row for each of its repeats if there are any. For an
     acceptance check what `read_positions` finds in its cloud, the project standing for the position. For a series its
@@ -179,22 +184,39 @@ def project_rows(
                 where=folder,
                 todo=Message("advice.enter_operator", "enter one on its Project page"),
             )
-        values = [one.thickness_mm for one in project.repeats]
-        values = values or [measured_in(results_folder(folder), THICKNESS).value]
-        rows: list[Sequence[object]] = [(part, operator, value) for value in values]
+        kept: list[tuple[float, Sequence[str]]] = [(one.thickness_mm, one.doubts) for one in project.repeats]
+        if not kept:
+            found = measured_in(results_folder(folder), THICKNESS)
+            kept = [(found.value, _facts(found.doubts))]
+        rows: list[_Row] = [((part, operator, value), doubts) for value, doubts in kept]
     elif kind == "series":
         found = measured_in(results_folder(folder), name)
         if found.unit != "mm":
             raise InputError(Message("study.no_length", "the {name} is no length", name=name), where=folder)
-        rows = [(project.info.serial or project.info.name or folder.name, found.value, found.u)]
+        part = project.info.serial or project.info.name or folder.name
+        rows = [((part, found.value, found.u), _facts(found.doubts))]
     else:
         readings = read_positions(
             [results_folder(folder)], artefact, calibrated_mm=calibrated_mm, u_mm=u_mm, diameter_mm=diameter_mm,
             progress=progress,
         )  # fmt: skip
         place = project.info.name or folder.name
-        rows = [(one.quantity, place, one.measured, one.calibrated, one.u) for one in readings]
-    return "".join(";".join(_cell(cell) for cell in row) + "\n" for row in rows)
+        rows = [((one.quantity, place, one.measured, one.calibrated, one.u), _facts(one.doubts)) for one in readings]
+    return _table(HEADS[kind], rows)
+
+
+def _table(head: str, rows: Sequence[_Row]) -> str:
+    """Rows under a head line, and their doubts in a column more where one of them has any."""
+    doubted = any(doubts for _, doubts in rows)
+    lines = [head + (f";{DOUBTS}" if doubted else "")]
+    for cells, doubts in rows:
+        lines.append(";".join(map(_cell, (*cells, " ".join(doubts)) if doubted else cells)))
+    return "\n".join(lines) + "\n"
+
+
+def _facts(doubts: Doubts) -> tuple[str, ...]:
+    """Their names, as tables and files have them."""
+    return tuple(doubt.fact for doubt in doubts)
 
 
 def _cell(value: object) -> str:
@@ -221,6 +243,7 @@ def _series(found: Repeats, limits: Mapping[str, float], name: str) -> SeriesStu
         labels=found.labels,
         unit=found.unit,
         name=name,
+        doubted=found.doubted,
     )
 
 

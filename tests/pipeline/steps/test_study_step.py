@@ -12,8 +12,10 @@ from core.cli import studying
 from core.errors import InputError
 from core.files.project.data import ProjectFile, Repeat
 from core.files.project.folder import create_project
+from core.files.study.input import read_repeats
 from core.files.study.results import Measured
 from core.files.study.study_file import study_path, study_values, write_study
+from core.findings.proof import Doubt
 from core.pipeline.project.report import project_content
 from core.pipeline.steps import study_step
 from core.pipeline.steps.study_step import (
@@ -64,7 +66,8 @@ def test_a_studys_title_is_told_in_the_readers_language_and_names_as_they_were_t
 def test_an_acceptance_check_and_a_type1_study_are_kept_and_handed_over(tmp_path):
     check = keep_study(tmp_path, "acceptance", READINGS, tmp_path, {"size": 0.02})
     assert look_at_study(tmp_path, check.id).verdict == "not conforming"
-    type1 = keep_type1(tmp_path, [50.0, 50.01, 49.99, 50.0], 50.0, 0.4)
+    repeats = [(f"scan {n}", value, ()) for n, value in enumerate([50.0, 50.01, 49.99, 50.0])]
+    type1 = keep_type1(tmp_path, repeats, 50.0, 0.4)
     study = look_at_study(tmp_path, type1.id)
     assert (study.n, study.tolerance, type1.kind) == (4, 0.4, "type1")
     assert export_study(tmp_path, check.id, tmp_path / "readings.csv").read_text() == READINGS
@@ -96,13 +99,21 @@ def test_rows_come_from_other_projects(done, tmp_path):
     info = replace(done.project.info, part="Block", serial="no; 7", operator="Ada", name="left below")
     create_project(folder, ProjectFile(replace(done.project, info=info)))
     thickness = done.summary.gauge.thickness_mm
-    assert project_rows("grr", folder, "plane", 0, 0, 0) == f"no 7;Ada;{thickness!r}\n"
+    assert project_rows("grr", folder, "plane", 0, 0, 0) == f"part;operator;value\nno 7;Ada;{thickness!r}\n"
     repeats = tuple(Repeat("scan", 50 + 0.25 * n, 0.02, 2.0, "c", datetime(2026, 1, 2, tzinfo=UTC)) for n in range(2))
     create_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
-    assert project_rows("grr", folder, "plane", 0, 0, 0) == "no 7;Ada;50.0\nno 7;Ada;50.25\n"
-    part, value, u = project_rows("series", folder, "plane", 0, 0, 0).strip().split(";")
+    head, first, second = project_rows("grr", folder, "plane", 0, 0, 0).splitlines()
+    assert (first, second) == ("no 7;Ada;50.0", "no 7;Ada;50.25")
+    repeats = (replace(repeats[0], doubts=("moved", "rig_changed")), repeats[1])
+    create_project(folder, ProjectFile(replace(done.project, info=info, repeats=repeats)))
+    assert project_rows("grr", folder, "plane", 0, 0, 0).splitlines() == [
+        f"{head};doubts", f"{first};moved rig_changed", f"{second};",
+    ]  # fmt: skip
+    part, value, u = project_rows("series", folder, "plane", 0, 0, 0).splitlines()[1].split(";")
     assert (part, float(value)) == ("no 7", thickness) and 0 < float(u) < 0.1
-    quantity, position, flatness, _, u = project_rows("acceptance", folder, "plane", 0.0, 0.0002, 0).strip().split(";")
+    quantity, position, flatness, _, u = (
+        project_rows("acceptance", folder, "plane", 0.0, 0.0002, 0).splitlines()[1].split(";")[:5]
+    )
     assert (quantity, position, u) == ("flatness", "left below", "0.0002") and 0 < float(flatness) < 2
     with pytest.raises(InputError, match="no project"):
         project_rows("grr", tmp_path, "plane", 0, 0, 0)
@@ -133,9 +144,45 @@ def test_a_series_is_of_any_length_and_of_no_angle(done, tmp_path, monkeypatch):
     folder.mkdir()
     create_project(folder, ProjectFile(done.project))
     rows = project_rows("series", folder, "plane", 0, 0, 0, "top flatness")
-    assert rows.strip().split(";")[1:] == ["0.031", "0.004"]
+    assert rows.splitlines()[1].split(";")[1:] == ["0.031", "0.004"]
+    found["top flatness"] = replace(found["top flatness"], doubts=(Doubt.named("moved"),))
+    assert project_rows("series", folder, "plane", 0, 0, 0, "top flatness").endswith(";0.031;0.004;moved\n")
     with pytest.raises(InputError, match="top to side is no length"):
         project_rows("series", folder, "plane", 0, 0, 0, "top to side")
     table = "part;value_mm;u_mm\n" + "".join(f"{n};{0.03 + n / 1000};0.004\n" for n in range(5))
     kept = keep_study(tmp_path, "series", table, tmp_path, {"size": 1}, "top flatness")
     assert '"top flatness"' in study_path(tmp_path, kept.id).read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize(
+    ("kind", "table", "limits"),
+    [
+        ("grr", crossed(AIAG), {"tolerance": 50.0}),
+        ("series", "part;value_mm\n" + "".join(f"{n};{10 + n % 3 / 100}\n" for n in range(30)), {"upper": 20.0}),
+        ("acceptance", READINGS, {"size": 1.0}),
+    ],
+)
+def test_what_was_doubted_of_a_row_is_in_doubt_in_its_study(tmp_path, kind, table, limits):
+    head, *rows = table.splitlines()
+    study = look_at_study(tmp_path, keep_study(tmp_path, kind, table, tmp_path, limits).id)
+    assert study.verdict in ("acceptable", "capable", "conforming")
+    none = "\n".join([f"{head};doubts", *(f"{row};" for row in rows)])
+    assert (
+        keep_study(tmp_path, kind, none, tmp_path, limits).id == keep_study(tmp_path, kind, table, tmp_path, limits).id
+    )
+    rows[0] += ";moved"
+    doubted = "\n".join([f"{head};doubts", rows[0], *(f"{row};" for row in rows[1:])])
+    kept = keep_study(tmp_path, kind, doubted, tmp_path, limits)
+    study = look_at_study(tmp_path, kept.id)
+    assert study.verdict == "not proven"
+    assert any("something moved during the scan" in str(note) for note in study.notes)
+    assert read_study_table(study_path(tmp_path, kept.id).with_name("table.csv")) == doubted + "\n"
+
+
+def test_the_doubts_of_repeats_are_in_the_table_of_their_type1_study(tmp_path):
+    repeats = [("scan 1", 50.0, (Doubt.named("moved"),)), ("scan 2", 50.01, ()), ("scan 3", 49.99, ())]
+    kept = keep_type1(tmp_path, repeats, 50.0, 4.0)
+    assert look_at_study(tmp_path, kept.id).verdict == "not proven"
+    table = study_path(tmp_path, kept.id).with_name("table.csv")
+    assert table.read_text() == "scan;value_mm;doubts\nscan 1;50.0;moved\nscan 2;50.01;\nscan 3;49.99;\n"
+    assert [one.label for one in read_repeats([table]).doubted] == ["scan 1"]

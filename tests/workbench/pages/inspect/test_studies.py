@@ -168,7 +168,7 @@ def test_a_short_series_draws_no_limits_and_says_why(tab, studies, qtbot):
 def test_rows_of_other_projects_and_of_a_file_go_into_the_table(tab, studies, presenter, qtbot, monkeypatch, tmp_path):
     lane = cast(HandLane, presenter.bench.measuring)
     asked = []
-    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "7;Ada;50.01\n"
+    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "part;operator;value\n7;Ada;50.01\n"
     (tmp_path / "other.csv").write_text("part;operator;result\n1;A;run1\n")
     tab.buttons["grr"].click()
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path)
@@ -291,7 +291,7 @@ def test_the_characteristic_of_a_series_is_asked_of_the_projects_that_are_added(
 ):
     asked = []
     lane = cast(HandLane, presenter.bench.measuring)
-    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "7;0.03;0.004\n"
+    lane.answers[jobs.PROJECT_ROWS] = lambda *what: asked.append(what) or "part;value_mm;u_mm\n7;0.03;0.004\n"
     tab.buttons["series"].click()
     assert studies.draft.values["name"] == "thickness"
     studies.set_value("name", "top flatness")

@@ -10,6 +10,8 @@ from typing import Any, Literal, NamedTuple
 from PySide6.QtCore import QObject, Signal
 
 from core.files.project.data import KeptStudy
+from core.files.study.table import with_rows
+from core.findings.proof import Doubt
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.inspect.repeats.repeats import InspectRepeats
@@ -151,9 +153,9 @@ class InspectStudies(QObject):
         spec, repeats = self._repeats.spec, self._repeats.all
         if self.buttons.type1 or spec.tolerance_mm is None:
             return
-        values = [repeat.thickness_mm for repeat in repeats]
+        values = [(one.scan, one.thickness_mm, tuple(map(Doubt.named, one.doubts))) for one in repeats]
         self._run(
-            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm, self._repeats.doubted,
+            jobs.KEEP_TYPE1, values, spec.nominal_mm, 2 * spec.tolerance_mm,
             label=tr("Studying the repeats"), on_done=self._keep, offers={},
         )  # fmt: skip
 
@@ -220,8 +222,7 @@ class InspectStudies(QObject):
 
         def done(rows: Any) -> None:
             if self.draft is not None and self.draft.kind == draft.kind:
-                text = self.draft.text
-                self.draft = replace(self.draft, text=text + ("" if text.endswith("\n") or not text else "\n") + rows)
+                self.draft = replace(self.draft, text=with_rows(self.draft.text, rows))
 
         self._run(
             jobs.PROJECT_ROWS, draft.kind, folder, values.get("artefact", "plane"), *settings, _name(values),
