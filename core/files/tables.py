@@ -47,6 +47,8 @@ def _date(value: object) -> object:
 
 OptionalDay = Annotated[date | None, BeforeValidator(_date), Field(description=label("a date, as 2028-03-01"))]
 
+ShortText = Annotated[str, Field(max_length=100, description=label("a text of at most 100 letters"))]
+
 
 def _bounded(value: float) -> float:
     if abs(value) > LARGEST:

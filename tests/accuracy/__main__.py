@@ -14,9 +14,9 @@ import numpy as np
 
 from core.files.atomic import write_text
 from tests.accuracy import bounds, coverage, hostile, points
-from tests.accuracy.benign import benign_cases, benign_table, first_cases, first_table
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
+from tests.accuracy.causes import benign_cases, benign_table, first_cases, first_table
 from tests.accuracy.hostile_cases import CHECK_POSES, NOTHING_STATED, SEEDS, hostile_cases
 from tests.accuracy.table import between, table, within_2_sigma
 

@@ -29,9 +29,11 @@ from core.errors import InputError
 from core.files.reading import file_hash, resolved
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
+    NAMES_SHOWN,
     PlanePair,
     check_sizes,
     further_exposures,
+    names_not_read,
     notes_on_not_read,
     pictures_in,
     plane_pairs,
@@ -212,12 +214,12 @@ def gather_set(
 
 def _nothing_in(recording_set: RecordingSet, part: str, what: Message, todo: Message) -> InputError:
     """The error of a part without pictures; where there are some of a kind that is not read, these are to be told."""
-    unread = recording_set.not_read(part)
+    unread = names_not_read(recording_set.folders.get(part))
     if unread:
         todo = Message(
             "advice.convert_pictures",
             "convert {names} to png, a film picture by picture",
-            names=unread[0].values["names"],
+            names=unread[:NAMES_SHOWN],
         )
     return InputError(what, where=recording_set.where(part), todo=todo)
 

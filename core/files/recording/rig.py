@@ -18,7 +18,7 @@ from core.calibrate.drift import NO_DRIFT, Air, Drift
 from core.errors import InputError, WrongValue
 from core.files.complaints import Clash, checked
 from core.files.reading import read_toml
-from core.files.tables import OptionalDay
+from core.files.tables import OptionalDay, ShortText
 from core.files.toml_text import toml_text
 from core.image.mosaic import Pattern
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
@@ -51,7 +51,6 @@ _UOfAlpha = Annotated[float, Field(ge=0, le=1e-3, allow_inf_nan=False)]
 _A_TEMPERATURE = label("a temperature in °C from −50 to 200")
 _A_TEMPERATURE_DIFFERENCE = label("a temperature, 0 to 200 K")
 _AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
-_A_NAME = label("a text of at most 100 letters")
 
 
 class Table(BaseModel):
@@ -72,8 +71,8 @@ class _Printed(Table):
     u_celsius: _UOfCelsius | None = Field(None, description=_A_TEMPERATURE_DIFFERENCE)
     alpha_per_K: _Alpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815  (as units are written)
     u_alpha_per_K: _UOfAlpha | None = Field(None, description=_AN_ALPHA)  # noqa: N815
-    certificate: str = Field("", max_length=100, description=_A_NAME)
-    laboratory: str = Field("", max_length=100, description=_A_NAME)
+    certificate: ShortText = ""
+    laboratory: ShortText = ""
     due: OptionalDay = None
 
     @model_validator(mode="after")

@@ -33,7 +33,7 @@ _NOT_READ = frozenset(
 )
 """Endings (lower case) of pictures and films that a camera or a telephone may have written beside those that are read:
 what coding they have lost, a stripe's noise does not show."""
-_NAMES_SHOWN = 3
+NAMES_SHOWN = 3
 """So many files are named in a note."""
 
 
@@ -59,24 +59,23 @@ def pictures_in(folder: Path | None) -> tuple[Path, ...]:
     return tuple(path for path in _all_in(folder) if not is_further(path))
 
 
-def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
-    """A note on files in a folder, of names that fit, that look like pictures or films of a kind that is not read."""
+def names_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[str, ...]:
+    """Names, in order, of files in a folder that fit and look like pictures or films of a kind that is not read."""
     if folder is None or not folder.is_dir():
         return ()
     try:
         names = [path.name for path in folder.iterdir() if path.suffix.lower() in _NOT_READ and fits(path.name)]
     except OSError as error:
         raise cannot_read(folder, error) from error
-    if not names:
+    return tuple(sorted(names))
+
+
+def notes_on_not_read(folder: Path | None, fits: Callable[[str], bool] = bool) -> tuple[Message, ...]:
+    """A note on these files, naming the first; none where there are none."""
+    names = names_not_read(folder, fits)
+    if folder is None or not names:
         return ()
-    return (
-        note_of(
-            "set.not_read",
-            n=len(names),
-            folder=folder.name,
-            names=tuple(sorted(names)[:_NAMES_SHOWN]),
-        ),
-    )
+    return (note_of("set.not_read", n=len(names), folder=folder.name, names=names[:NAMES_SHOWN]),)
 
 
 def further_exposures(folder: Path | None) -> dict[Path, dict[int, Path]]:

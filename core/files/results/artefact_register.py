@@ -35,7 +35,7 @@ from core.files.complaints import checked
 from core.files.reading import read_toml
 from core.files.recording.rig import Table
 from core.files.results.rig_history import own_folder
-from core.files.tables import OptionalDay
+from core.files.tables import OptionalDay, ShortText
 from core.files.toml_text import toml_text
 from core.messages import Message
 from core.study.artefact_check import Artefact, ArtefactKind
@@ -57,7 +57,7 @@ class ArtefactTable(Table):
     certificate: str = ""
     due: OptionalDay = None
     kind: ArtefactKind = Field("block", description='"block", "sphere" or "step"')
-    laboratory: str = Field("", max_length=100, description="a text of at most 100 letters")
+    laboratory: ShortText = ""
 
     def artefact(self) -> Artefact:
         """What it says."""

@@ -91,13 +91,6 @@ class SeenLines:
     frames: tuple[FrameFeatures, ...]
     stripes: tuple[StripeSettings, StripeSettings | None]
 
-    def averaged(self, progress: Progress = silent) -> SeenLines:
-        """The same, with the centrelines averaged along themselves, several at a time."""
-        step, total = StepProgress(progress), len(self.frames)
-        idle = partial(step.within_step, "smoothing", 0, total)
-        frames = tuple(steps(ordered_map(_averaged, self.frames, idle=idle), step, "smoothing", total))
-        return replace(self, fan=refined(self.fan), frames=frames)
-
 
 def extract_features(
     reference: Picture | ReferenceFeatures,
@@ -194,7 +187,12 @@ def gather(
     centrelines stay as they are.
     """
     seen = SeenLines(image_size, fan, tuple(frames), stripes)
-    return crossed(seen, seen.averaged(progress) if smoothed else seen, options, progress)
+    if not smoothed:
+        return crossed(seen, seen, options, progress)
+    step, total = StepProgress(progress), len(seen.frames)
+    idle = partial(step.within_step, "smoothing", 0, total)
+    averaged = tuple(steps(ordered_map(_averaged, seen.frames, idle=idle), step, "smoothing", total))
+    return crossed(seen, replace(seen, fan=refined(fan), frames=averaged), options, progress)
 
 
 def crossed(

@@ -10,6 +10,7 @@ from core.files.pictures import write_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set, require_camera, require_planes, require_scan
 from core.files.recording.rig import Channels, default_rig, rig_to_toml
+from core.files.recording.set_listing import names_not_read
 from core.image.exclusion import Exclusion
 from core.image.mosaic import ALL_SITES, Sites
 from core.messages import Message
@@ -292,6 +293,7 @@ def test_films_and_pictures_that_are_not_read_are_told_beside_those_that_are(fol
     (note,) = found.not_read("camera")
     assert str(note).startswith("2 files in camera are of a kind that is not read (one.webp, two.mov)")
     assert found.not_read("scan") == ()
+    assert names_not_read(found.folders["camera"]) == note.values["names"]
 
 
 def test_of_equal_pictures_in_a_stream_the_first_one_counts(folder):

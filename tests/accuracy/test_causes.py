@@ -2,7 +2,7 @@
 
 import pytest
 
-from tests.accuracy.benign import (
+from tests.accuracy.causes import (
     BENIGN,
     CLAIMS,
     benign_cases,
