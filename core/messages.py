@@ -13,6 +13,7 @@ language writes it in its own way. A sequence takes how it is joined as its form
 from __future__ import annotations
 
 import json
+import math
 import re
 import string
 from collections.abc import Callable, Mapping, Sequence
@@ -261,6 +262,14 @@ def unparted(text: str) -> str:
     for space in (_WITH_UNIT, _STANDARD, _COUNTED, _SPREAD):
         text = space.sub(NO_BREAK_SPACE, text)
     return _EQUATION.sub(f"{NO_BREAK_SPACE}={NO_BREAK_SPACE}", text)
+
+
+def decimals_of(uncertainty: float) -> int:
+    """Decimals that show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not a positive number."""
+    if not math.isfinite(uncertainty) or uncertainty <= 0:
+        return 3
+    exponent = int(f"{uncertainty:.1e}".partition("e")[2])  # after rounding: 0.0996 is shown as 0.10
+    return 1 - exponent
 
 
 def capital(text: str) -> str:

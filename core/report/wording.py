@@ -14,7 +14,7 @@ from core.image.targets import Charuco, Checkerboard, CircleGrid, Target
 from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.results import GaugeResult
-from core.messages import NO_BREAK_SPACE, Language, Message, capital, label, plain, plural_message
+from core.messages import NO_BREAK_SPACE, Language, Message, capital, decimals_of, label, plain, plural_message
 from core.states import DECISIONS
 from core.study.repeats import THICKNESS
 from core.translations import language
@@ -102,14 +102,6 @@ COVERAGE = {1.0: "68", 2.0: "95", 3.0: "99.7"}
 
 SIGNS = {Verdict.CONFORMING: "✓", Verdict.NOT_CONFORMING: "✗", Verdict.NOT_PROVEN: "?", Verdict.NONE: "–"}
 """Of each verdict: it is never told by colour alone."""
-
-
-def decimals_of(uncertainty: float) -> int:
-    """Decimals that show `uncertainty` with two significant digits (GUM 7.2.6); 3 if it is not a positive number."""
-    if not math.isfinite(uncertainty) or uncertainty <= 0:
-        return 3
-    exponent = int(f"{uncertainty:.1e}".partition("e")[2])  # after rounding: 0.0996 is shown as 0.10
-    return 1 - exponent
 
 
 def fixed(value: float, decimals: int, *, signed: bool = False) -> str:

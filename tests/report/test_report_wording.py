@@ -6,11 +6,10 @@ import pytest
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Limits
 from core.inspect.results import Face, GaugeResult
-from core.messages import plain
+from core.messages import decimals_of, plain
 from core.model import LightPlane
 from core.report.wording import (
     Words,
-    decimals_of,
     decision_sentence,
     fixed,
     grouped,

@@ -16,7 +16,7 @@ from scipy.special import fdtrc
 from core.calibrate.fan.bundle import Bundle
 from core.calibrate.fan.pencil import FreePlanes, Pencil, PlaneSet, pencil_near
 from core.calibrate.levenberg import DenseProblem, minimise
-from core.messages import Message
+from core.messages import Message, decimals_of
 from core.model import Fan, LightPlane
 from core.model.arrays import Array
 
@@ -131,7 +131,13 @@ def _sentence(
     """What the comparison found and which planes are used."""
     fan = fan_of(free.planes, free.covariance)
     angles = tuple(
-        Message("fan.angle_with_sd", "{angle:.3f}° ± {sd:.3f}°", angle=found, sd=sd)
+        Message(
+            "fan.angle_with_sd",
+            "{angle:.{places}f}° ± {sd:.{places}f}°",
+            angle=found,
+            sd=sd,
+            places=max(decimals_of(sd), 0),
+        )
         for found, sd in zip(np.degrees(fan.angles), np.degrees(fan.angle_sds), strict=True)
     )
     if angle is None:

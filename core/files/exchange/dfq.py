@@ -28,8 +28,8 @@ from pathlib import Path
 from core.files.atomic import write_bytes
 from core.files.exchange.records import one_line, result_row
 from core.inspect.characteristic import Characteristic
+from core.messages import decimals_of
 from core.report.content import ReportContent
-from core.report.wording import decimals_of
 
 _NAME, _TEXT = 80, 255
 """Longest name and remark that the format takes, in characters."""

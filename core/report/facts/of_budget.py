@@ -10,9 +10,9 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.plan.kinds import expands
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.coverage import effective_dof
-from core.messages import Message, label
+from core.messages import Message, decimals_of, label
 from core.report.facts.fact import Fact, Reader
-from core.report.wording import decimals_of, shown_unit
+from core.report.wording import shown_unit
 
 DISTRIBUTIONS = (label("normal"), label("rectangular"), label("triangular"), label("arcsine"), label("t"))
 """Of an input, as a budget names them."""

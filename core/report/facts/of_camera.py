@@ -8,10 +8,9 @@ from core.calibrate.camera.changes import parameter_values
 from core.calibrate.camera.expected_error import ExpectedError
 from core.calibrate.grades import TILT, VIEWS
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
-from core.messages import Message, label
+from core.messages import Message, decimals_of, label
 from core.report.facts.fact import Fact, Reader
 from core.report.facts.pictures import grade, limits_tip, used_fact
-from core.report.wording import decimals_of
 
 PARAMETERS = {
     "alpha": ("α (fx)", "px", label("Focal length across")),

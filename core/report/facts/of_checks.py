@@ -8,11 +8,10 @@ from datetime import datetime
 from typing import Protocol
 
 from core.calibrate.results import ProposedReadjustment
-from core.messages import Message, label, plain, plural_message
+from core.messages import Message, decimals_of, label, plain, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, Value, named
 from core.report.facts.pictures import Picture, used_fact
 from core.report.facts.table import Column, FactTable
-from core.report.wording import decimals_of
 from core.states import CHECKS, VERDICT
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart

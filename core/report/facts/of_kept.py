@@ -8,11 +8,10 @@ from datetime import datetime
 from typing import Protocol
 
 from core.calibrate.camera.changes import CameraChanges
-from core.messages import Message, label, plain
+from core.messages import Message, decimals_of, label, plain
 from core.report.facts.fact import Fact, Grade, Value
 from core.report.facts.of_camera import CORNERS, parameter_fact
 from core.report.facts.table import Column, FactTable
-from core.report.wording import decimals_of
 
 CHANGE_HEADS = (label("parameter"), label("chosen"), label("shown"), label("change"), label("sd"))
 """Of the rows of `change_cells`, what they are of before them."""

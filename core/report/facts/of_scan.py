@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from core.messages import Message, label
+from core.messages import Message, decimals_of, label
 from core.model.arrays import Array
 from core.report.facts.fact import Fact, Reader
 from core.report.facts.pictures import Picture, used_fact
-from core.report.wording import decimals_of
 
 SMALL_MM = 10.0
 """A scan that is smaller than this in all directions is told with decimals."""

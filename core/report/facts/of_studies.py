@@ -6,11 +6,11 @@ import math
 
 import numpy as np
 
-from core.messages import Message, label, plain
+from core.messages import Message, decimals_of, label, plain
 from core.report.facts.fact import Fact, Grade, Reader
 from core.report.facts.of_budget import EFFECTIVE, freedom_fact
 from core.report.facts.table import Column, FactTable
-from core.report.wording import ENGLISH, Words, decimals_of, study_name
+from core.report.wording import ENGLISH, Words, study_name
 from core.states import DECISIONS, SPREAD, VERDICT
 from core.study.acceptance import AcceptanceCheck
 from core.study.budget import UncertaintyBudget

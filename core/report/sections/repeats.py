@@ -7,12 +7,11 @@ import re
 from reportlab.lib.units import mm
 from reportlab.platypus import Flowable
 
-from core.messages import label
+from core.messages import decimals_of, label
 from core.report.content import RepeatLine, ReportContent
 from core.report.facts.of_studies import repeat_facts
 from core.report.layout.blocks import Cell, figures, heads, more_line, ruled_table
 from core.report.layout.style import ReportLook
-from core.report.wording import decimals_of
 
 WIDTHS = [shares * mm for shares in (7, 41, 29, 21, 17, 9, 22, 24)]
 """Number, scan, time, thickness, U, k, deviation, calibration."""

@@ -10,7 +10,7 @@ from reportlab.platypus import Flowable, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
-from core.messages import plural_message
+from core.messages import decimals_of, plural_message
 from core.report.content import ReportContent
 from core.report.facts.fact import Reader, for_reader
 from core.report.facts.of_features import HEADS, characteristic_cells, characteristic_facts
@@ -33,7 +33,6 @@ from core.report.layout.style import (
 )
 from core.report.wording import (
     SIGNS,
-    decimals_of,
     decision_sentence,
     grouped,
     headed_name,

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from core.files.csv_text import harmless
 from core.files.project.data import Repeat
+from core.messages import decimals_of
 from core.report.facts.fact import Fact
-from core.report.wording import decimals_of, thickness_line, with_uncertainty
+from core.report.wording import thickness_line, with_uncertainty
 from workbench.language import time_of, tr
 from workbench.pages.inspect.picks import Pick, Span
 from workbench.pages.words import wording
