@@ -20,6 +20,7 @@ from workbench.pages.inspect.clicked import InspectClicked, Target
 from workbench.pages.inspect.clicked import Mode as ClickMode
 from workbench.pages.inspect.comparison import InspectComparison
 from workbench.pages.inspect.cut import InspectCut
+from workbench.pages.inspect.drawn import InspectDrawn
 from workbench.pages.inspect.faces import FACES, InspectFaces
 from workbench.pages.inspect.features.conditions import InspectConditions
 from workbench.pages.inspect.features.edit import LINE, InspectFeatureEdit
@@ -72,6 +73,9 @@ class InspectPresenter(StepPresenter):
         self.clicked = InspectClicked(self.features, self.scan)
         self.cut = InspectCut(self.features, self.scan, lambda: self.frame)
         self.comparison = InspectComparison(bench, self.scan)
+        self.drawn = InspectDrawn(
+            self.faces, self.features, self.feature, lambda: self.scan.gauge is not None and not self._thickness_is_old
+        )
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
         for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked, self.comparison):
             part.changed.connect(self.changed)
@@ -99,10 +103,14 @@ class InspectPresenter(StepPresenter):
             measuring=self._measuring is not None,
             failed=bool(self._unmeasurable),
             thickness=scan.gauge is not None,
-            outdated=self.state.state is not State.DONE,
+            outdated=self._thickness_is_old,
             face_missing=bool(self.faces.missing()),
             read_only=self.model.is_read_only,
         )
+
+    @property
+    def _thickness_is_old(self) -> bool:
+        return self.scan.stale or self.state.state is not State.DONE
 
     def blocker(self) -> str:
         return tr("Scan the part first.") if "scan" not in self.model.results else ""
@@ -281,11 +289,13 @@ class InspectPresenter(StepPresenter):
         self.outlining = face
         meant = face if face in FACES else self.feature.meant
         feature = "" if face in FACES else self.features.chosen
+        self.drawn.begin(feature, face, view.points[: len(chosen)][chosen])
 
         def done(outline: Any) -> None:
             if feature and feature != self.features.chosen:
                 self.bench.notices.warning(tr("Another feature was chosen before the region was there: draw it again."))
             elif view is self.scan.view:
+                self.drawn.outlined(feature, face, outline)
                 self.set_region(face, outline)
 
         task = self.bench.run_quick(
@@ -311,6 +321,7 @@ class InspectPresenter(StepPresenter):
 
     def _outlined(self) -> None:
         self.outlining = ""
+        self.drawn.end_outlining()
         self.changed.emit()
 
     # ---- what happens elsewhere
@@ -347,6 +358,7 @@ class InspectPresenter(StepPresenter):
             self.comparison.forget()
             self.faces.forget_regions()
             self.clip_mm, self.outlining, self._unmeasurable = None, "", ""
+            self.drawn.forget()
         if self.scan.view is None or self.picture not in (RELIEF, *self.scan.view.pictures):
             self.picture = RELIEF
         self.read_picture()

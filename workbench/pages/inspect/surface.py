@@ -14,6 +14,7 @@ from PySide6.QtGui import QAction, QColor, QHideEvent, QResizeEvent, QShowEvent
 from PySide6.QtWidgets import QHBoxLayout, QLabel, QWidget
 
 from core.inspect.shown.shown_scan import DEPTH
+from core.model.arrays import Array
 from core.report.wording import grouped
 from workbench.language import tr
 from workbench.pages.frame_tool import FrameTool
@@ -80,6 +81,9 @@ CUT_OPACITY = 0.15
 NEXT_FACES = "next pair"
 """Name of the outlines of the faces that could be meant as well."""
 
+DRAWN = "drawn region"
+"""Name of the highlight of what was drawn round."""
+
 PROPOSALS = ("proposed 1", "proposed 2")
 """Names of the highlights of faces that were clicked."""
 
@@ -111,6 +115,7 @@ class SurfaceTab(QWidget):
         self._other: ShownComparison | None = None
         self._nominal: ShownFeature | None = None
         self._next: NextPair | None = None
+        self._region: tuple[Array, ...] = ()
         self._picking = ""
         self._later = QTimer(self)
         self._later.setSingleShot(True)
@@ -201,6 +206,7 @@ class SurfaceTab(QWidget):
         self._show_other()
         self._show_nominal()
         self._show_proposal()
+        self._show_drawn()
         self._show_picks()
         self._show_tool()
         self._show_cut()
@@ -253,6 +259,7 @@ class SurfaceTab(QWidget):
         self.scene.hide_side(None)
         self._marked, self._feature, self._highlights = [], [], []
         self._proposal = self._other = self._nominal = self._next = None
+        self._region = ()
         self.frame.show(None)
         self.scene.clear(p.scan.problem or tr("Reading the scan …"))
         self.line.setText("")
@@ -451,6 +458,17 @@ class SurfaceTab(QWidget):
             self.scene.remove_highlight(name)
         for name, face in zip(PROPOSALS, () if proposal is None else proposal.faces, strict=False):
             self.scene.set_highlight(name, face.places, PROPOSED)
+
+    def _show_drawn(self) -> None:
+        """The points that were drawn round, until there is a result of them."""
+        places = self._presenter.drawn.places
+        if [id(one) for one in places] == [id(one) for one in self._region]:
+            return
+        self._region = places
+        if places:
+            self.scene.set_highlight(DRAWN, np.concatenate(places), PROPOSED)
+        else:
+            self.scene.remove_highlight(DRAWN)
 
     def _grey(self) -> list[str]:
         """What is grey beside the colours of the bar."""

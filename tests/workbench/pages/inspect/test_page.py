@@ -17,6 +17,7 @@ from PySide6.QtWidgets import (
 )
 
 from core.errors import InputError
+from core.files.project.keys import finished
 from core.inspect.results import PairCandidate
 from core.inspect.shown.shown_scan import NextPair
 from core.messages import plain
@@ -25,6 +26,7 @@ from tests.workbench.pages import inspect_cases as cases
 from tests.workbench.pages.places import moved, places
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import Stage
+from workbench.views.scene.contents import Marks
 from workbench.work import jobs
 
 LEFT = Qt.MouseButton.LeftButton
@@ -460,6 +462,50 @@ def test_a_lasso_in_3d_becomes_a_region(shown, qtbot):
     undo(shown)
     shown.refreshing.at_once()
     assert "found automatically" in shown.faces.states["upper"].text()
+
+
+def drawn(page) -> bool:
+    """Whether points that were drawn round are marked in 3D."""
+    page.refreshing.at_once()
+    return (Marks, "drawn region") in page.surface.scene._scene.items
+
+
+def draw_round(page, name, *, some=100):
+    """As a lasso round the first points of the view."""
+    p = page.presenter
+    chosen = np.zeros(p.points_shown(), bool)
+    chosen[:some] = True
+    p.outline(name, chosen)
+
+
+def test_what_was_drawn_round_in_3d_stays_marked_until_it_is_measured_or_dropped(shown, measuring, qtbot):
+    p = shown.presenter
+    draw_round(shown, "upper")
+    assert drawn(shown), "at once"
+    qtbot.waitUntil(lambda: p.faces.own)
+    assert drawn(shown), "as long as the thickness is of other faces"
+    undo(shown)
+    assert not drawn(shown), "dropped"
+    draw_round(shown, "upper")
+    qtbot.waitUntil(lambda: p.faces.own)
+    p.model.record("gauge", finished("gauge", p.project, p.model.results))
+    qtbot.waitUntil(lambda: not p.scan.stale)
+    assert not drawn(shown), "measured"
+
+
+def test_what_was_drawn_round_for_a_feature_stays_marked_while_that_is_chosen(shown, measuring, qtbot):
+    measuring.held = {jobs.MEASURE_GAUGE, jobs.MEASURE_FEATURES}
+    p = shown.presenter
+    p.feature.add("plane")
+    draw_round(shown, p.feature.region_name(0))
+    qtbot.waitUntil(lambda: p.outlining == "")
+    assert drawn(shown)
+    p.features.choose("")
+    assert not drawn(shown)
+    p.features.choose("plane 1")
+    assert drawn(shown)
+    p.features.remove("plane 1")
+    assert not drawn(shown)
 
 
 def test_a_polygon_in_the_picture_becomes_a_region(shown, qtbot):
