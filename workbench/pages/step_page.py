@@ -63,9 +63,14 @@ class StepPage(QWidget):
         self.splitter.setSizes([900, SIDE_WIDTH])
         in_column(self.splitter, on=self)
         presenter.changed.connect(self.refreshing.soon)
+        self.presenter.model.opened.connect(self.scroll_to_top)
 
     def refresh(self) -> None:
         """Show what the presenter says now."""
+
+    def scroll_to_top(self) -> None:
+        """Show the side from its top: as another project is open, or something else is edited there."""
+        self.scrolled.verticalScrollBar().setValue(0)
 
     def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False, kept: str = "") -> QCollapsible:
         """A titled panel at the side that can be folded away; under the name `kept` it is remembered whether it is."""

@@ -77,6 +77,7 @@ class CalloutsTool(QObject):
         if gauge is not None and len(gauge.upper.indices) and not any(one[3].kind == "thickness" for one in worst):
             value, uncertainty = with_uncertainty(gauge.thickness_mm, gauge.U_mm, wording())
             sign = VERDICT_ICONS[gauge.verdict] if gauge.verdict else None
+            sign = OUTDATED if self._presenter.scan.is_thickness_old else sign
             yield self._callout(
                 THICKNESS, _of_thickness(view, gauge), tr("Thickness"), f"{value} ± {uncertainty} mm", sign
             )

@@ -41,11 +41,11 @@ class InspectDrawn:
         self._all: dict[tuple[str, str], _Drawn] = {}
 
     def begin(self, feature: str, name: str, places: Array) -> None:
-        """These points were drawn round; their outline is not known yet."""
+        """Keep the points that were drawn round; their outline is not known yet."""
         self._all[feature, name] = _Drawn(places)
 
     def outlined(self, feature: str, name: str, corners: Array) -> None:
-        """This outline became the region."""
+        """Keep the outline that became the region."""
         if (feature, name) in self._all:
             self._all[feature, name] = _Drawn(self._all[feature, name].places, corners)
 

@@ -87,6 +87,7 @@ class InspectPage(StepPage):
         self.add_to_side(self.features.notes)  # what results say is last: there it pushes nothing as it comes
         self.result = ResultPanel(presenter)
         self.result_fold = self.add_panel(tr("Result"), self.result, kept="result")
+        self._chosen = ""
         self.tabs.currentChanged.connect(self._tab_changed)
         self.faces.draw.connect(self._draw)
         self.features.draw.connect(self._draw)
@@ -107,6 +108,9 @@ class InspectPage(StepPage):
     def refresh(self) -> None:
         p = self.presenter
         self._show_stage(p.stage)
+        if p.features.chosen != self._chosen:
+            self._chosen = p.features.chosen
+            self.scroll_to_top()  # where its form begins
         self.result_fold.setVisible(p.scan.gauge is not None)
         self.conditions_fold.setVisible(bool(p.features.plan.features))
         said = p.conditions.in_short

@@ -74,7 +74,10 @@ class InspectPresenter(StepPresenter):
         self.cut = InspectCut(self.features, self.scan, lambda: self.frame)
         self.comparison = InspectComparison(bench, self.scan)
         self.drawn = InspectDrawn(
-            self.faces, self.features, self.feature, lambda: self.scan.gauge is not None and not self._thickness_is_old
+            self.faces,
+            self.features,
+            self.feature,
+            lambda: self.scan.gauge is not None and not self.scan.is_thickness_old,
         )
         self.conditions, self.templates = InspectConditions(self.features), InspectTemplates(self.features)
         for part in (self.faces, self.picks, self.repeats, self.studies, self.features, self.clicked, self.comparison):
@@ -103,14 +106,10 @@ class InspectPresenter(StepPresenter):
             measuring=self._measuring is not None,
             failed=bool(self._unmeasurable),
             thickness=scan.gauge is not None,
-            outdated=self._thickness_is_old,
+            outdated=self.state.state is not State.DONE,
             face_missing=bool(self.faces.missing()),
             read_only=self.model.is_read_only,
         )
-
-    @property
-    def _thickness_is_old(self) -> bool:
-        return self.scan.stale or self.state.state is not State.DONE
 
     def blocker(self) -> str:
         return tr("Scan the part first.") if "scan" not in self.model.results else ""

@@ -67,6 +67,11 @@ class InspectScan(QObject):
         return self._model.states["scan"].state is State.OUTDATED
 
     @property
+    def is_thickness_old(self) -> bool:
+        """Whether the thickness shown is not what the project would give now."""
+        return self.stale or self._model.states["inspect"].state is not State.DONE
+
+    @property
     def recording(self) -> str:
         """The recording the scan was measured from, as the project names it."""
         done = self._model.results.get("scan")
@@ -105,7 +110,7 @@ class InspectScan(QObject):
 
         def cancelled() -> None:
             if is_wanted():
-                self._asked = self._shown
+                self._asked = ()  # what is shown stays old, and is asked for again
 
         self._bench.run_quick(
             self,

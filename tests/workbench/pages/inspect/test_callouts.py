@@ -87,6 +87,13 @@ def test_an_outdated_value_stays_and_is_marked(page, measuring, qtbot):
     assert shown["gap"].outdated and not shown["table"].outdated
 
 
+def test_a_thickness_of_other_faces_than_those_drawn_now_is_marked_as_old(page):
+    assert not called(page)[THICKNESS].outdated
+    page.presenter.faces.set_region("upper", [[20.0, 15.0], [40.0, 15.0], [40.0, 20.0]])
+    page.refreshing.at_once()
+    assert called(page)[THICKNESS].outdated and called(page)[THICKNESS].sign == OUTDATED
+
+
 def test_of_many_features_the_worst_and_the_chosen_one_are_shown(page, qtbot):
     many = InspectionPlan(
         tuple(

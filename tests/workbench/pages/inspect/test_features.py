@@ -565,6 +565,26 @@ def test_the_list_stays_in_sight_and_results_do_not_move_the_form_of_the_one_cho
     assert not page.features.measure.visibleRegion().isEmpty()
 
 
+def test_the_form_of_a_feature_begins_at_its_top(page, features, presenter, qtbot):
+    for kind in ("plane", "cylinder"):
+        presenter.feature.add(kind)
+    page.resize(1000, 640)
+    bar = page.scrolled.verticalScrollBar()
+    page.refreshing.at_once()
+    qtbot.waitUntil(lambda: bar.maximum() > 300)
+    bar.setValue(300)
+    presenter.feature.set_value("limits upper diameter", 0.1)
+    page.refreshing.at_once()
+    assert bar.value() == 300, "nothing moves while it is edited"
+    features.choose("plane 1")
+    page.refreshing.at_once()
+    qtbot.wait(50)
+    assert bar.value() == 0
+    bar.setValue(300)
+    presenter.model.opened.emit()
+    assert bar.value() == 0, "another project"
+
+
 @pytest.mark.parametrize("notes", [(), (plain("The stated uncertainty does not hold that of the fan. " * 9),)])
 @pytest.mark.parametrize("chosen", ["plane 1", "lost", ""])
 def test_measured_features_push_no_section(page, features, presenter, measuring, qtbot, chosen, notes):

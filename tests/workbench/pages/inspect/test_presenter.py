@@ -179,6 +179,18 @@ def test_a_cancelled_measurement_leaves_everything_as_it_was(shown, measuring):
     assert shown.stage is Stage.MEASURED and dict(shown.model.results) == before
 
 
+def test_no_old_value_stands_under_a_new_time_where_reading_the_new_one_was_cancelled(shown, quick, qtbot):
+    quick.held = {jobs.INSPECTION_VIEW}
+    model = shown.model
+    model.record("gauge", finished("gauge", shown.project, model.results))
+    assert shown.stage is Stage.READING
+    quick.cancel(quick.current)
+    assert shown.stage is Stage.READING, "the value shown is of the measurement before"
+    quick.held = set()
+    shown.entered()
+    qtbot.waitUntil(lambda: shown.stage is Stage.MEASURED)
+
+
 def test_a_measurement_of_a_project_that_was_closed_is_dropped(shown, measuring, tmp_path):
     shown.do_run()
     task, *_ = measuring.waiting[0]

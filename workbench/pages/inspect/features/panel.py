@@ -30,7 +30,6 @@ from workbench.pages.inspect.features.form import FeatureForm, choose_nominal
 from workbench.pages.inspect.features.plan import THICKNESS, InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
 from workbench.pages.inspect.scan import InspectScan
-from workbench.step_state import State
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
@@ -150,7 +149,7 @@ class FeaturesPanel(QWidget):
         """The feature chosen is marked, and no other."""
         features = self._features
         results = [(features.result(name), features.outdated(name)) for name in features.plan.names]
-        shown = (features.plan, results, features.measuring, self._scan.gauge, self._is_thickness_old)
+        shown = (features.plan, results, features.measuring, self._scan.gauge, self._scan.is_thickness_old)
         if shown != self._shown:
             self._shown = shown
             self._frames, self._datums = words.asked_frames(features.plan), words.datum_frames(features.plan)
@@ -159,11 +158,6 @@ class FeaturesPanel(QWidget):
             self._fit_list()
         self.list.choose(features.chosen)
 
-    @property
-    def _is_thickness_old(self) -> bool:
-        """Whether the thickness shown is not what the project would give now."""
-        return self._scan.stale or self._features.model.states["inspect"].state is not State.DONE
-
     def _thickness_row(self) -> TreeRow:
         """The gauge's thickness: the first of all results."""
         name, gauge = tr("Thickness"), self._scan.gauge
@@ -171,7 +165,7 @@ class FeaturesPanel(QWidget):
             return TreeRow(
                 THICKNESS, (Cell(name, icon=icon("mdi6.arrow-expand-vertical")), Cell(tr("not measured"), right=True))
             )
-        row, old = thickness_characteristic(gauge), self._is_thickness_old
+        row, old = thickness_characteristic(gauge), self._scan.is_thickness_old
         tip = tr("Out of date: measure again.") if old else words.tip(row)
         value = self._value(words.value(row), tip, _verdict_icon(row.verdict), old)
         return TreeRow(THICKNESS, (Cell(name, tip, icon("mdi6.arrow-expand-vertical")), value))
