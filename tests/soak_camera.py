@@ -199,9 +199,9 @@ def run_live(request: LiveRequest, channel) -> LiveEnded:
     return ended
 
 
-def true_calibration(folder: Path, project, progress: Progress) -> tuple[Camera, Fan]:
+def true_calibration(folder: Path, project, progress: Progress) -> tuple[Camera, Fan, None]:
     """The window's job that reads the accepted calibrations."""
-    return calibration(Path(os.environ[FOLDER]))
+    return *calibration(Path(os.environ[FOLDER])), None
 
 
 if __name__ == "__main__":

@@ -36,6 +36,8 @@ class Technician:
     def __init__(self, window: MainWindow, qtbot: Any, monkeypatch: pytest.MonkeyPatch) -> None:
         self.window, self.bench, self.model = window, window.bench, window.model
         self._qtbot, self._patch = qtbot, monkeypatch
+        self.clicks = 0
+        """So many buttons were pressed."""
 
     # ---- waiting
 
@@ -90,6 +92,7 @@ class Technician:
         if isinstance(button, QCheckBox):
             where.setX(min(10, where.x()))
         self._qtbot.mouseClick(button, Qt.MouseButton.LeftButton, pos=where)
+        self.clicks += 1
 
     def buttons(self, text: str) -> list[QAbstractButton]:
         """The buttons of the page that are seen and say or are called this."""

@@ -335,6 +335,14 @@ def enable(button: QAbstractButton | QAction, why_not: str, tip: str) -> None:
     button.setToolTip(why_not or tip)
 
 
+def mark_primary(button: QAbstractButton, primary: bool) -> None:
+    """Show whether a button is the next thing to do."""
+    if button.property("primary") != primary:
+        button.setProperty("primary", primary)
+        button.style().unpolish(button)
+        button.style().polish(button)
+
+
 def rename(button: QAbstractButton, text: str) -> None:
     """Say what it does now. Where that is another thing, it leaves the focus beside itself: Space was for the first.
 

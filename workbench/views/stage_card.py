@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWi
 
 from workbench.theme import icon
 from workbench.views.common import IconLabel
-from workbench.views.layouts import RoomySentence, TwoLines, enable, in_column, in_row
+from workbench.views.layouts import RoomySentence, TwoLines, enable, in_column, in_row, mark_primary
 from workbench.views.lists.value_rows import VERDICT_ICONS, VerdictKind
 
 
@@ -83,7 +83,4 @@ class StageCard(QFrame):
             button, main = self.buttons[key], key == primary
             enable(button, why_not, tip)
             button.setIcon(icon(self._symbols[key], colour="on_accent" if main and not why_not else ""))
-            if button.property("primary") != main:
-                button.setProperty("primary", main)
-                button.style().unpolish(button)
-                button.style().polish(button)
+            mark_primary(button, main)

@@ -118,8 +118,8 @@ def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | 
             "unknown",
             Message(
                 "live.not_checked_today",
-                "Camera and laser are not checked today: before the scan, press Take pictures on the card of the check "
-                "and hold the plane target into the fan.",
+                "Camera and laser are not checked today: before the scan, press Take 3 pictures on the card of the "
+                "check and hold the plane target into the fan.",
             ),
         )
     return Check("check", "ok" if check.passed else "failed", check.sentence)

@@ -11,6 +11,7 @@ import numpy as np
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.fan.poses.pose_stages import PoseStages
 from core.calibrate.results import FanCalibration
+from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.project.calibration_store import read_stored_planes, read_stored_poses
 from core.files.project.data import Project
@@ -55,13 +56,16 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
 
 def accepted_calibration(
     folder: Path, project: Project, progress: Progress = silent
-) -> tuple[Camera | None, Fan | None]:
-    """The accepted camera and fan, as far as there are any; InputError if one is damaged or they are not a pair."""
+) -> tuple[Camera | None, Fan | None, Taken | None]:
+    """The accepted camera and fan, as far as there are any, and how the fan's pictures were taken, where that is known.
+
+    InputError if one is damaged or they are not a pair.
+    """
     camera = accepted_camera(folder, project) if project.accepted.camera else None
-    fan = (
-        read_stored_planes(folder, project.accepted.planes, camera).fan if camera and project.accepted.planes else None
-    )
-    return camera, fan
+    if camera is None or not project.accepted.planes:
+        return camera, None, None
+    planes = read_stored_planes(folder, project.accepted.planes, camera)
+    return camera, planes.fan, planes.taken
 
 
 def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:

@@ -46,7 +46,7 @@ def test_what_a_measured_project_shows_of_its_rig_is_planned(
     project = cut(read_project(finished_project_folder).project)
     foretell_project(finished_project_folder, project, "en")
     (design,) = planned
-    camera, fan = accepted_calibration(finished_project_folder, project)
+    camera, fan, _ = accepted_calibration(finished_project_folder, project)
     assert camera is not None and fan is not None
     assert design.pixels == camera.image_size
     assert design.focal_px == pytest.approx(float(np.sqrt(camera.matrix[0, 0] * camera.matrix[1, 1])), rel=1e-3)

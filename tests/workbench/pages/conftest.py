@@ -129,7 +129,7 @@ def scan_bench(hand_bench: Bench, tmp_path: Path) -> Bench:
     """An open project with both calibrations accepted; measuring waits for the test, frames are looked at at once."""
     cast(HandLane, hand_bench.measuring).held = {jobs.WATCH_SCAN}
     quick = cast(HandLane, hand_bench.quick)
-    quick.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan")
+    quick.answers[jobs.ACCEPTED_CALIBRATION] = lambda folder, project: ("camera", "fan", None)
     quick.answers[jobs.ARTEFACT_CHECKS] = lambda folder, project: ()
     quick.answers[jobs.ARTEFACT_CHARTS] = lambda folder, project: ()
     quick.answers[jobs.SHOW_SCAN] = lambda folder: scan_cases.look()

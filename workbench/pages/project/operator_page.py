@@ -20,7 +20,7 @@ from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
 from workbench.views.common import IconLabel, dress
-from workbench.views.layouts import STRETCH, Elided, enable, in_column, in_row
+from workbench.views.layouts import STRETCH, Elided, enable, in_column, in_row, mark_primary
 from workbench.views.lists.notice_list import Banner
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -124,11 +124,8 @@ class OperatorPage(QWidget):
         for button_name, button in self.buttons.items():
             enable(button, getattr(can, button_name), tips[button_name])
             primary = onwards.get(stage) == button_name
-            if button.property("primary") != primary:
-                button.setProperty("primary", primary)
-                button.setIcon(icon(SYMBOLS[button_name], colour="on_accent" if primary else ""))
-                button.style().unpolish(button)
-                button.style().polish(button)
+            mark_primary(button, primary)
+            button.setIcon(icon(SYMBOLS[button_name], colour="on_accent" if primary else ""))
         symbol, colour, headline, detail = self._said(stage)
         self.sign.show_icon(symbol, colour)
         self.headline.setText(headline)

@@ -32,7 +32,7 @@ from workbench.views import ask
 from workbench.views.colours import Level
 from workbench.views.common import Choice, IconLabel, dress
 from workbench.views.forms.live_panel import ask_to_stop_other
-from workbench.views.layouts import enable, heading, in_column, in_row, muted, rename, say
+from workbench.views.layouts import enable, heading, in_column, in_row, mark_primary, muted, rename, say
 from workbench.views.lists.value_rows import LEVEL_ICONS, ValueRows
 from workbench.views.plots.control import ControlPlot
 
@@ -46,6 +46,7 @@ class CheckCard(QFrame):
         super().__init__(parent)
         self.setObjectName("card")
         self._check, self._artefacts, self._live, self._seen = check, artefacts, live, ""
+        self._wanted = False
         self.sign, self.word, self.sentence, self.rows = IconLabel(18), QLabel(), muted(), ValueRows()
         self.word.setWordWrap(True)
         self.chart, self.charted = ControlPlot(), Choice()
@@ -79,8 +80,9 @@ class CheckCard(QFrame):
     def _ask_to_stop_other(self, question: str) -> None:
         ask_to_stop_other(self, self._live, question)
 
-    def refresh(self) -> None:
-        """Show how far the check is."""
+    def refresh(self, *, wanted: bool = False) -> None:
+        """Show how far the check is; `wanted`: to take its pictures is the next thing to do."""
+        self._wanted = wanted
         check, stage = self._check, self._check.stage
         taking = self._live.running
         level, word, sentence = self._taking() if taking else self._said(stage)
@@ -98,9 +100,11 @@ class CheckCard(QFrame):
         self._show_chart({} if taking else self._charts(check.history, past))
         self.rows.setVisible(bool(told))
         checking = stage is CheckStage.CHECKING
-        rename(self.take, tr("Stop") if taking else tr("Take pictures"))
-        self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris"))
+        rename(self.take, tr("Stop") if taking else tr("Take 3 pictures"))
         can = self._buttons()
+        primary = wanted and not can.take
+        self.take.setIcon(icon("mdi6.stop" if taking else "mdi6.camera-iris", colour="on_accent" if primary else ""))
+        mark_primary(self.take, primary)
         enable(
             self.take,
             can.take,
@@ -167,12 +171,12 @@ class CheckCard(QFrame):
         seen = text_of(sentence) if sentence is not None else ""
         if seen != self._seen:
             self._seen = seen
-            self.refresh()
+            self.refresh(wanted=self._wanted)
 
     def changeEvent(self, event: QEvent) -> None:
         super().changeEvent(event)
         if event.type() == QEvent.Type.PaletteChange:
-            self.refresh()
+            self.refresh(wanted=self._wanted)
 
     def _taking(self) -> tuple[Level, str, str]:
         """Level, word and sentence while pictures are taken."""
@@ -243,7 +247,7 @@ class CheckCard(QFrame):
 
     def _choose_chart(self) -> None:
         self._wanted_chart = self.charted.currentText()
-        self.refresh()
+        self.refresh(wanted=self._wanted)
 
     def _run(self) -> None:
         if self._check.stage is CheckStage.CHECKING:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 from typing import Any
 
+from core.calibrate.sitting import Taken, hours_of_sitting
 from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import changed, inputs_of
@@ -14,6 +16,7 @@ from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
 from core.messages import label
+from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.scan.features.frames import FrameRecord
 from workbench.bench import Bench
@@ -22,7 +25,7 @@ from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.scan import stability
 from workbench.pages.scan.artefacts import KnownArtefacts
-from workbench.pages.scan.check import RigCheck
+from workbench.pages.scan.check import CheckStage, RigCheck
 from workbench.pages.scan.guidance import Guidance, Situation, guidance, is_enough, is_recording
 from workbench.pages.scan.run import ScanRun, short
 from workbench.pages.scan.scrub import FrameScrub
@@ -30,7 +33,7 @@ from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_o
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
 from workbench.pages.scan_settings import changed_options, values_of
-from workbench.pages.sources import folder_of, put_source
+from workbench.pages.sources import folder_of, put_source, scan_begins_live
 from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
 
@@ -171,6 +174,21 @@ class ScanPresenter(StepPresenter):
     def calibrated(self) -> bool:
         """Whether a camera and laser planes are accepted: without them there are stripes, but no points."""
         return bool(self.project.accepted.camera and self.project.accepted.planes)
+
+    @property
+    def check_wanted(self) -> bool:
+        """Whether pictures of the check are the next thing to do: none is of today, and the scan is still to come.
+
+        Planes that were calibrated a moment ago are as good as a check.
+        """
+        if self.stage is not Stage.NONE or not (self.calibrated and self.work.calibrations_read):
+            return False
+        if self.check.stage is CheckStage.CHECKING or not scan_begins_live(self.model):
+            return False
+        now, planes = datetime.now().astimezone(), self.work.planes_taken
+        here = None if planes is None else Taken(planes.camera, now, now)
+        hours = hours_of_sitting(planes, here, self.project.rig.validity.fresh_hours)
+        return rig_check(self.check.valid, now, hours).state == "unknown"
 
     # ---- recording
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from PySide6.QtCore import QObject, Signal
 
+from core.calibrate.sitting import Taken
 from core.model import Camera, Fan
 from core.scan.features.frames import FrameRecord
 from core.scan.preview.shown import ShownScan
@@ -40,6 +41,7 @@ class ScanWork(QObject):
         self.no_frames = ""
         self.camera: Camera | None = None
         self.fan: Fan | None = None
+        self.planes_taken: Taken | None = None
         self.calibrations_read = False
         self.look: ShownScan | None = None
         self._listed = self._calibrated = self._looked = self._thickness = ""
@@ -122,14 +124,14 @@ class ScanWork(QObject):
         wanted = f"{project.accepted.camera}|{project.accepted.planes}"
         if wanted == self._calibrated:
             return
-        self._calibrated, self.camera, self.fan = wanted, None, None
+        self._calibrated, self.camera, self.fan, self.planes_taken = wanted, None, None, None
         self.calibrations_read = not project.accepted.camera
         if self.calibrations_read:
             return
 
-        def read(found: tuple[Camera | None, Fan | None]) -> None:
+        def read(found: tuple[Camera | None, Fan | None, Taken | None]) -> None:
             if self._calibrated == wanted and folder == self._model.folder:
-                self.camera, self.fan = found
+                self.camera, self.fan, self.planes_taken = found
                 self.calibrations_read = True
                 self.changed.emit()
 
@@ -140,7 +142,7 @@ class ScanWork(QObject):
             project,
             label=tr("Reading the calibrations"),
             on_done=read,
-            on_failed=lambda _: read((None, None)),  # what is wrong is told when it is measured with them
+            on_failed=lambda _: read((None, None, None)),  # what is wrong is told when it is measured with them
         )
 
     def _read_result(self, folder: Path) -> None:

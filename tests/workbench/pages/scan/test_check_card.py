@@ -1,7 +1,7 @@
 """The Check card of the scan page: pictures of the day, run, light, figures."""
 
 from dataclasses import replace
-from datetime import date, timedelta
+from datetime import date, datetime, timedelta
 from typing import cast
 
 import numpy as np
@@ -9,6 +9,7 @@ import pytest
 from PySide6.QtCore import Qt
 
 from core.calibrate.results import CameraCalibration, FanCalibration, ProposedReadjustment, Readjustment
+from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.project.data import Accepted, new_project
 from core.files.results.check_file import write_check
@@ -63,6 +64,27 @@ def test_without_pictures_it_says_how_to_take_them(page, qtbot):
     assert "pictures of the plane target in the fan" in card.sentence.text()
     assert not card.run.isEnabled() and card.run.toolTip() == "Choose the pictures of the check first."
     assert card.rows.isHidden()
+
+
+def primary(page):
+    page.refresh()
+    buttons = (page.check.take, page.live_panel.start)
+    return [one.text() for one in buttons if one.property("primary")]
+
+
+def test_where_nobody_has_checked_today_three_pictures_are_the_next_step_and_asked_for_once(page, qtbot, measuring):
+    p = page.presenter
+    page.source.set_mode("live")
+    qtbot.waitUntil(lambda: p.work.calibrations_read)
+    assert primary(page) == ["Take 3 pictures"]
+    p.work.planes_taken = Taken("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=1)])
+    assert primary(page) == ["Start live"], "planes of this sitting are as good as a check"
+    p.work.planes_taken = Taken("Camera 1", *2 * [datetime.now().astimezone() - timedelta(hours=9)])
+    assert primary(page) == ["Take 3 pictures"]
+    p.check.use_folder(p.model.folder)
+    assert primary(page) == ["Start live"], "it is being checked"
+    measuring.finish(replace(check(), taken_at=datetime.now().astimezone()))
+    assert primary(page) == ["Start live"]
 
 
 def test_nothing_is_measured_checked_or_recorded_in_a_project_that_is_read_only(page, monkeypatch):
