@@ -13,10 +13,11 @@ from workbench.bench import Bench
 from workbench.language import printed, tr
 from workbench.theme import icon
 from workbench.views import ask
-from workbench.views.layouts import in_column, in_row, muted, resize_on_screen
+from workbench.views.layouts import enable, in_column, in_row, muted, resize_on_screen
 from workbench.views.lists.data_table import DataTable
 from workbench.views.plots.map import HeatMap
 from workbench.work import jobs
+from workbench.work.tasks import Task
 
 if TYPE_CHECKING:
     from core.pipeline.project.rig_plan import ForetoldRig
@@ -32,7 +33,7 @@ class RigPlans(QObject):
         super().__init__(window)
         self._bench, self._window = bench, window
         self.shown: PlanWindow | None = None
-        """The plan that was made last."""
+        """The plan that was made last, or that is being made."""
 
     def open(self) -> None:
         """Plan the rig of the open project; without one, of a file that is asked for."""
@@ -61,49 +62,65 @@ class RigPlans(QObject):
         self._run(jobs.FORETELL_RIG, (rig,), rig.name, str(rig))
 
     def _run(self, job: jobs.Job, what: tuple[object, ...], name: str, said: str) -> None:
-        self._bench.run_long(
-            self,
+        """Plan, in a window that is there at once; closed before there is a plan, it needs none any more."""
+        if self.shown is not None:
+            self.shown.close()
+        self.shown = shown = PlanWindow(self._bench, name, said, self._window)
+        task = self._bench.run_long(
+            shown,
             job,
             *what,
             printed(),
             label=tr("Planning the rig"),
-            on_done=lambda foretold: self._show(name, said, foretold),
+            on_done=shown.show_plan,
+            on_failed=lambda _: shown.close(),
+            on_cancelled=shown.close,
         )
+        shown.closed.connect(lambda: self._closed(shown, task))
+        shown.other.clicked.connect(self.choose)
+        shown.show()
 
-    def _show(self, name: str, said: str, foretold: ForetoldRig) -> None:
-        if self.shown is not None:
-            self.shown.close()
-        self.shown = PlanWindow(self._bench, name, said, foretold, self._window)
-        self.shown.closed.connect(self._closed)
-        self.shown.other.clicked.connect(self.choose)
-        self.shown.show()
-
-    def _closed(self) -> None:
-        self.shown = None
+    def _closed(self, window: PlanWindow, task: Task) -> None:
+        if self.shown is window:
+            self.shown = None
+        if not window.is_planned:
+            task.cancel()
 
 
 class PlanWindow(QWidget):
-    """What a rig will measure: rows, and where in the picture how well."""
+    """What a rig will measure: rows, and where in the picture how well. Empty until `show_plan`."""
 
     closed = Signal()
 
-    def __init__(self, bench: Bench, name: str, said: str, foretold: ForetoldRig, parent: QWidget) -> None:
+    def __init__(self, bench: Bench, name: str, said: str, parent: QWidget) -> None:
         super().__init__(parent, Qt.WindowType.Window)
         self.setAttribute(Qt.WidgetAttribute.WA_DeleteOnClose)
         self.setWindowTitle(tr("Plan of {rig}", rig=name))
         resize_on_screen(self, *SIZE)
-        self._bench, self._foretold = bench, foretold
+        self._bench = bench
+        self._foretold: ForetoldRig | None = None
         self.table, self.map, self.where = DataTable(), HeatMap(), muted(said)
         self.table.set_headers([(tr("Foretold"), ""), (tr("Value"), "")])
-        self.table.set_rows(foretold.rows, [value for _, value in foretold.rows])
-        self.map.set_map(foretold.sigma_mm, size=foretold.image_size, label=tr("σ of a depth"), unit="mm")
+        self.map.clear(tr("The plan is being worked out …"))
         self.save = QPushButton(icon("mdi6.content-save-outline"), tr("Save …"))
-        self.save.setToolTip(tr("Write plan.json and sigma.png into a folder"))
+        enable(self.save, tr("The plan is being worked out."), "")
         self.save.clicked.connect(self._save)
         self.other = QPushButton(icon("mdi6.file-outline"), tr("Another rig …"))
         self.other.setToolTip(tr("Plan the rig of a rig.toml"))
         foot = in_row((self.where, 1), self.other, self.save)
         in_column((self.table, 1), (self.map, 1), foot, on=self, margins=(8, 8, 8, 8))
+
+    @property
+    def is_planned(self) -> bool:
+        """Whether the plan is there."""
+        return self._foretold is not None
+
+    def show_plan(self, foretold: ForetoldRig) -> None:
+        """Show what came of it."""
+        self._foretold = foretold
+        self.table.set_rows(foretold.rows, [value for _, value in foretold.rows])
+        self.map.set_map(foretold.sigma_mm, size=foretold.image_size, label=tr("σ of a depth"), unit="mm")
+        enable(self.save, "", tr("Write plan.json and sigma.png into a folder"))
 
     def closeEvent(self, event: QCloseEvent) -> None:
         super().closeEvent(event)

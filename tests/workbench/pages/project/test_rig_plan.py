@@ -48,7 +48,7 @@ def test_a_chosen_rig_is_planned_shown_and_written(
     qtbot.waitUntil(lambda: plans.shown is not None)
     shown = plans.shown
     assert shown is not None and shown.isVisible() and shown.windowTitle() == "Plan of rig.toml"
-    assert [tuple(row) for row in shown.table.rows()] == ROWS
+    qtbot.waitUntil(lambda: [tuple(row) for row in shown.table.rows()] == ROWS)
     written: list[tuple[Any, ...]] = []
     cast(HandLane, bench.quick).answers[jobs.WRITE_RIG_PLAN] = lambda *words: written.append(words)
     monkeypatch.setattr(ask, "choose_folder", lambda *_: tmp_path / "plan")
@@ -79,11 +79,22 @@ def test_with_a_project_its_own_rig_is_planned_and_another_can_be_chosen(
     assert (
         shown is not None and shown.windowTitle() == "Plan of Block" and "as they are calibrated" in shown.where.text()
     )
-    assert asked == [(tmp_path / "block", bench.model.project, "en")]
+    qtbot.waitUntil(lambda: asked == [(tmp_path / "block", bench.model.project, "en")])
     monkeypatch.setattr(ask, "choose_file_to_open", lambda *_: tmp_path / "rig.toml")
     shown.other.click()
     qtbot.waitUntil(lambda: plans.shown is not shown)
     assert plans.shown is not None and plans.shown.windowTitle() == "Plan of rig.toml"
+
+
+def test_the_window_is_there_at_once_and_closed_before_its_plan_ends_the_work(plans: RigPlans, tmp_path: Path) -> None:
+    lane = cast(HandLane, plans._bench.measuring)
+    lane.held = {jobs.FORETELL_RIG}
+    plans.plan(tmp_path / "rig.toml")
+    shown = plans.shown
+    assert shown is not None and shown.isVisible() and not shown.save.isEnabled()
+    assert shown.map._empty.message == "The plan is being worked out …"
+    shown.close()
+    assert plans.shown is None and not lane.busy
 
 
 def test_a_rig_that_cannot_be_planned_is_told_and_nothing_is_shown(
