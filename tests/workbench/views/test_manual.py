@@ -89,3 +89,13 @@ def test_pictures_of_a_page_are_found(manual: ManualWindow) -> None:
     manual.pages.open_page("inspect")
     source = manual.pages.source().resolved(QUrl("../pictures/inspect.png"))
     assert manual.pages.loadResource(2, source) is not None
+
+
+def test_the_page_on_inspecting_begins_with_the_tools_of_the_mouse_and_has_the_file_at_its_end(
+    manual: ManualWindow,
+) -> None:
+    manual.pages.open_page("inspect")
+    titles = [one.text() for one in blocks(manual) if one.blockFormat().headingLevel() == 2]
+    assert titles[0] == "Click a face" and titles[-1] == "A plan as a file"
+    said = manual.pages.toPlainText()
+    assert "[[feature]]" not in said[: said.index(titles[-1])]
