@@ -46,6 +46,7 @@ from workbench.pages.project.operator_page import OperatorPage
 from workbench.pages.project.presenter import ProjectPresenter
 from workbench.pages.project.rig_plan import RigPlans
 from workbench.pages.project.welcome_page import WelcomePage
+from workbench.pages.report.page import ReportPage
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.step_page import StepPage
 from workbench.refresh import Refresh
@@ -130,7 +131,10 @@ class MainWindow(QMainWindow):
         self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
         self.operator = OperatorPage(self.operator_mode, self.model)
         self._stack.addWidget(self.operator)
-        self.menus = Menus(self, bench.settings, self.model.undo_stack, self._commands(), self.projects.open_project)
+        report = self.pages["report"]
+        assert isinstance(report, ReportPage)
+        undo_stack, commands = self.model.undo_stack, self._commands()
+        self.menus = Menus(self, bench.settings, undo_stack, commands, self.projects.open_project, report.export_menu())
         self._connect()
         self.back.setIcon(icon("mdi6.chevron-left"))
         restore_layout(self, self.pages, bench.settings)

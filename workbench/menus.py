@@ -67,6 +67,7 @@ NEED_A_PROJECT = (
     "next part",
     "copy",
     "pack",
+    "export",
     "audit",
     "sign in",
     "operator mode",
@@ -129,6 +130,8 @@ class Menus(QObject):
         What the window does, by the name of the entry: "new", "open", … as in `_fill`; "step NAME" goes to a step.
     open_project
         Opens one of the recent projects.
+    exports
+        What the open project has to hand over.
     """
 
     def __init__(
@@ -138,13 +141,14 @@ class Menus(QObject):
         undo_stack: QUndoStack,
         commands: Mapping[str, Callable[[], object]],
         open_project: Callable[[Path], object],
+        exports: QMenu,
     ) -> None:
         super().__init__(window)
         self._window, self._settings, self._commands, self._open_project = window, settings, commands, open_project
         self.actions: dict[str, QAction] = {}
         self._tips = {name: tr(meaning) for name, _, meaning in SHORTCUTS}
         self._recent = QMenu(tr("Open &recent"), window)
-        self._fill(undo_stack)
+        self._fill(undo_stack, exports)
         # In the next turn: the entry that opens a project is deleted when that project goes to the top of the list.
         self._recent_changed = Refresh(self._fill_recent, self)
         settings.recent_changed.connect(self._recent_changed.soon)
@@ -161,7 +165,7 @@ class Menus(QObject):
         self._recent.setEnabled(not facts.operator and not self._recent.isEmpty())
         self._window.menuBar().setVisible(not facts.operator)
 
-    def _fill(self, undo_stack: QUndoStack) -> None:
+    def _fill(self, undo_stack: QUndoStack, exports: QMenu) -> None:
         bar = self._window.menuBar()
         file = bar.addMenu(tr("&File"))
         self._add(file, "new", tr("&New project …"))
@@ -178,6 +182,7 @@ class Menus(QObject):
         self._add(file, "copy", tr("Save a c&opy …"))
         self._add(file, "pack", tr("Pac&k into one file …"))
         self._add(file, "unpack", tr("&Unpack a project …"))
+        self.actions["export"] = file.addMenu(exports)
         self._add(file, "audit", tr("Au&dit trail …"))
         self._add(file, "sign in", tr("S&ign in or out …"))
         self._add(file, "close", tr("&Close project"))

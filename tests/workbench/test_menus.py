@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import pytest
 import shiboken6
 from PySide6.QtGui import QAction
-from PySide6.QtWidgets import QApplication
+from PySide6.QtWidgets import QApplication, QMenu
 
 from core.files.project.data import new_project
+from core.files.results.export_list import EXPORTS
 from workbench.main_window import MainWindow
+from workbench.views import ask
 
 
 def test_an_entry_of_the_recent_projects_outlives_its_own_signal(window: MainWindow, tmp_path: Path) -> None:
@@ -34,6 +37,28 @@ def test_without_a_project_there_is_nothing_to_save(window: MainWindow, tmp_path
     window.model.create(tmp_path / "one", new_project("one"))
     QApplication.processEvents()
     assert entries["save"].isEnabled() and entries["step scan"].isEnabled()
+
+
+def test_results_are_exported_from_the_file_menu(
+    window: MainWindow, measured_project: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    entry: QAction = window.menus.actions["export"]
+    assert not entry.isEnabled()
+    window.model.create(tmp_path / "empty", new_project("empty"))
+    QApplication.processEvents()
+    menu = entry.menu()
+    assert isinstance(menu, QMenu) and entry.isEnabled()
+    menu.aboutToShow.emit()
+    kinds = {str(one.data()): one for one in menu.actions()}
+    assert list(kinds) == list(EXPORTS)
+    assert not kinds["stl"].isEnabled() and kinds["stl"].toolTip() == "Scan the part first."
+    window.model.open(measured_project)
+    menu.aboutToShow.emit()
+    written: list[tuple[str, Path]] = []
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "part.stl")
+    monkeypatch.setattr(window.presenters["report"], "export", lambda kind, path: written.append((kind, path)))
+    kinds["stl"].trigger()
+    assert written == [("stl", tmp_path / "part.stl")]
 
 
 def test_a_language_is_chosen_by_its_own_name_and_wanted_at_once(window: MainWindow, qtbot) -> None:

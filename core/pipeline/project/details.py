@@ -49,7 +49,7 @@ def show_frame(folder: Path, project: Project, name: str, progress: Progress = s
         As `frame_stages`, or if an accepted calibration is damaged.
     """
     recording_set = project_set(folder, project)
-    camera, fan = accepted_calibration(folder, project)
+    camera, fan, _ = accepted_calibration(folder, project)
     settled = _settled(results_folder(folder), recording_set.path_of(name), name, project)
     return frame_stages(recording_set, name, camera, fan, project.options.for_scan, progress, settled)
 

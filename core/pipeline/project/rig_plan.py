@@ -104,7 +104,7 @@ def write_foretold(foretold: ForetoldRig, folder: Path) -> Mapping[str, Path]:
 
 def _known(folder: Path, project: Project) -> dict[str, Any]:
     """The table [plan] of what is known of a project's rig."""
-    camera, fan = accepted_calibration(folder, project)
+    camera, fan, _ = accepted_calibration(folder, project)
     gauge = load_results(folder).gauge
     known = {**_of_camera(camera), **_of_fan(fan), **_of_part(gauge, project), **_counts(folder, project)}
     return {name: value for name, value in known.items() if name not in RANGES or _possible(name, value)}

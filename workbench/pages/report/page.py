@@ -193,6 +193,23 @@ class ReportPage(StepPage):
         grid.addWidget(self.folder, 3, 1)
         return inside
 
+    def export_menu(self) -> QMenu:
+        """All that can be handed over, for the window's menu; greyed as the buttons are."""
+        menu = QMenu(tr("&Export"), self)
+        menu.setToolTipsVisible(True)
+        for kind in EXPORTS:
+            title, _, symbol = export_words(kind)
+            action = menu.addAction(icon(symbol), title)
+            action.setData(kind)
+            action.triggered.connect(lambda _=False, k=kind: self._export(k))
+        menu.aboutToShow.connect(lambda: self._grey_exports(menu))
+        return menu
+
+    def _grey_exports(self, menu: QMenu) -> None:
+        for action in menu.actions():
+            kind = str(action.data())
+            enable(action, self.presenter.export_missing(kind), self._export_help(kind))
+
     def _export_help(self, kind: str) -> str:
         if kind == "pdf" and self.presenter.stage is not Stage.MADE:
             return tr("Make the report as it is shown here, and write a copy where you want it")
