@@ -9,7 +9,6 @@ from datetime import datetime
 from core.calibrate.sitting import Taken, hours_of_sitting
 from core.errors import InputError
 from core.files.project.calibration_store import READJUSTED_FROM, read_stored, read_stored_planes, read_stored_poses
-from core.files.results.check_file import InterimCheck
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.pipeline.live.commands import LiveRequest
@@ -17,6 +16,7 @@ from core.pipeline.live.context import LiveContext
 from core.pipeline.live.events import LiveChecks
 from core.pipeline.live.exposure import ExposureAdviser
 from core.pipeline.live.preview import ScanPreviewer
+from core.pipeline.live.rig_check import rig_check
 from core.scan.changed_section import ChangedSection, Section, changed_section
 from core.scan.preview.preflight import FRESH_DAYS, Check, Preflight, stripe_width
 
@@ -95,34 +95,6 @@ class ScanChecks:
         if checks != self._told:
             self._told = checks
             self._context.emit(LiveChecks(checks))
-
-
-def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | None = None) -> Check:
-    """Whether camera and laser were checked on the day of `now`, which has a time zone, and what came of it.
-
-    Planes calibrated in this sitting, so many hours ago, are as good as a check.
-    """
-    if check is None and sitting_hours is not None:
-        return Check(
-            "check",
-            "ok",
-            Message(
-                "live.calibrated_in_this_sitting",
-                "The light planes were calibrated {hours:.1f} h ago with this camera: no check is needed.",
-                hours=sitting_hours,
-            ),
-        )
-    if check is None or check.taken_at.astimezone(now.tzinfo).date() != now.date():
-        return Check(
-            "check",
-            "unknown",
-            Message(
-                "live.not_checked_today",
-                "Camera and laser are not checked today: before the scan, press Take 3 pictures on the card of the "
-                "check and hold the plane target into the fan.",
-            ),
-        )
-    return Check("check", "ok" if check.passed else "failed", check.sentence)
 
 
 def planes_taken(request: LiveRequest) -> Taken | None:

@@ -4,7 +4,7 @@ from datetime import timedelta
 
 import pytest
 
-from core.pipeline.live.checks import rig_check
+from core.pipeline.live.rig_check import rig_check
 from tests.check_cases import TAKEN, check
 
 NOON = TAKEN.replace(hour=12)

@@ -16,8 +16,8 @@ from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
 from core.messages import label
-from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
+from core.pipeline.live.rig_check import rig_check
 from core.scan.features.frames import FrameRecord
 from workbench.bench import Bench
 from workbench.language import tr

@@ -16,8 +16,8 @@ from core.files.results.check_file import write_check
 from core.files.results.rig_history import PastCheck, RigHistory
 from core.messages import plain
 from core.model import Camera, Fan, LightPlane
-from core.pipeline.live.checks import rig_check
 from core.pipeline.live.events import LiveChecks, LiveEnded, LiveStarted, LiveView, PlanesDetail
+from core.pipeline.live.rig_check import rig_check
 from core.scan.preview.preflight import Check
 from core.study.artefact_check import Artefact, ArtefactCheck
 from tests.check_cases import TAKEN, chart, check, nowhere
