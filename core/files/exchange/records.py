@@ -18,6 +18,7 @@ from core.messages import Message
 from core.report.content import ReportContent
 from core.report.facts.fact import Fact
 from core.report.facts.of_studies import study_facts, study_tables, study_title
+from core.report.wording import Words
 
 Row = Mapping[str, Any]
 
@@ -36,19 +37,6 @@ RESULT_COLUMNS = (
     "verdict",
     "rule",
 )
-BUDGET_COLUMNS = (
-    "characteristic",
-    "source",
-    "value",
-    "input_unit",
-    "distribution",
-    "standard_uncertainty",
-    "sensitivity",
-    "contribution",
-    "unit",
-    "dof",
-    "share",
-)
 FRAME_COLUMNS = ("name", "used", "reason", "points", "sigma_mm", "stripes", "fan_crossings", "sweep_crossings")
 
 FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "level")
@@ -56,14 +44,14 @@ FACT_COLUMNS = ("of", "name", "value", "uncertainty", "low", "high", "unit", "le
 `low` and `high` are the ends of a 95 % interval."""
 
 
-def fact_row(of: str, fact: Fact) -> dict[str, Any]:
-    """One fact of the result called `of`: FACT_COLUMNS, numbers in full."""
+def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
+    """One fact of the result called `of`: FACT_COLUMNS, numbers in full, words in the reader's language."""
     low, high = (None, None) if fact.interval is None else map(finite, fact.interval)
     value = finite(fact.value) if isinstance(fact.value, float) else fact.value
     return {
         "of": of,
-        "name": str(fact.label),
-        "value": str(value) if isinstance(value, Message) else value,
+        "name": words.known(fact.label),
+        "value": words(value) if isinstance(value, (str, Message)) else value,
         "uncertainty": fact.sd,
         "low": low,
         "high": high,
@@ -72,18 +60,18 @@ def fact_row(of: str, fact: Fact) -> dict[str, Any]:
     }
 
 
-def study_rows(content: ReportContent) -> list[dict[str, Any]]:
+def study_rows(content: ReportContent, words: Words) -> list[dict[str, Any]]:
     """All that is told of the studies, what stands in tables value by value: FACT_COLUMNS."""
     return [
-        fact_row(study_title(study), fact)
+        fact_row(study_title(study, words), fact, words)
         for study in content.studies
-        for fact in (*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts()))
+        for fact in (*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts(words)))
     ]
 
 
-def told_rows(content: ReportContent) -> list[dict[str, Any]]:
+def told_rows(content: ReportContent, words: Words) -> list[dict[str, Any]]:
     """All that is told of what the result rests on: FACT_COLUMNS."""
-    return [fact_row(of, fact) for of, facts in content.facts.items() for fact in facts]
+    return [fact_row(of, fact, words) for of, facts in content.facts.items() for fact in facts]
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:
@@ -113,7 +101,7 @@ def result_row(one: Characteristic) -> dict[str, Any]:
 
 
 def budget_rows(one: Characteristic) -> list[dict[str, Any]]:
-    """What the uncertainty of one characteristic is made of: BUDGET_COLUMNS; `share` is of the variance, 0 to 1."""
+    """What the uncertainty of one characteristic is made of: `share` is of the variance, 0 to 1."""
     unit, factor = unit_of(one)
     variance = sum(row.u_mm**2 for row in one.budget)
     return [

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,10 +17,9 @@ from openpyxl.worksheet.worksheet import Worksheet
 
 from core.files.atomic import write_bytes
 from core.files.exchange.records import (
-    BUDGET_COLUMNS,
     FACT_COLUMNS,
     FRAME_COLUMNS,
-    RESULT_COLUMNS,
+    Row,
     as_table,
     budget_rows,
     frame_rows,
@@ -29,7 +28,33 @@ from core.files.exchange.records import (
     study_rows,
     told_rows,
 )
+from core.messages import label
 from core.report.content import ReportContent
+from core.report.facts.of_budget import (
+    CONTRIBUTION,
+    DISTRIBUTION,
+    FREEDOM,
+    INPUT,
+    OF_INPUT,
+    SENSITIVITY,
+    SHARE,
+    VALUE,
+)
+from core.report.facts.of_features import DEVIATION, EXPANDED, FACTOR, MEASURED, NOMINAL
+from core.report.wording import Words
+from core.states import VERDICT
+
+RESULT_HEADS = {
+    "name": label("characteristic"), "kind": label("kind"), "unit": label("unit"), "nominal": NOMINAL,
+    "lower_limit": label("lower limit"), "upper_limit": label("upper limit"), "value": MEASURED,
+    "deviation": DEVIATION, "u": "u", "k": FACTOR, "U": EXPANDED, "verdict": VERDICT, "rule": label("rule"),
+}  # fmt: skip
+BUDGET_HEADS = {
+    "characteristic": label("characteristic"), "source": INPUT, "value": VALUE,
+    "input_unit": label("unit of the value"), "distribution": DISTRIBUTION, "standard_uncertainty": OF_INPUT,
+    "sensitivity": SENSITIVITY, "contribution": CONTRIBUTION, "unit": label("unit"), "dof": FREEDOM, "share": SHARE,
+}  # fmt: skip
+"""What the columns are called, as in the tables of the PDF, by the keys of their records."""
 
 _WIDEST = 60
 """The widest column in characters: longer texts run on."""
@@ -40,6 +65,8 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 def write_xlsx(path: Path, content: ReportContent) -> None:
     """Write result, budgets, studies, frames, facts of each step and settings, each on a sheet, numbers in full.
 
+    What the report tells in words is told in its language; the names of sheets, frames and settings are fixed.
+
     Raises
     ------
     InputError
@@ -47,13 +74,19 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     """
     book = Workbook()
     book.remove(book.worksheets[0])
-    budgets = [row for one in content.characteristics for row in budget_rows(one)]
+    words = Words.of(content.language)
+    results = [{**result_row(one), "rule": words(one.rule or "")} for one in content.characteristics]
+    budgets = [
+        row | {"source": words(cause.words), "distribution": words(row["distribution"] or "")}
+        for one in content.characteristics
+        for row, cause in zip(budget_rows(one), one.budget, strict=True)
+    ]
     tables: dict[str, Sequence[Sequence[Any]]] = {
-        "result": as_table(RESULT_COLUMNS, [result_row(one) for one in content.characteristics]),
-        "budget": as_table(BUDGET_COLUMNS, budgets),
-        **({"studies": as_table(FACT_COLUMNS, study_rows(content))} if content.studies else {}),
+        "result": _headed(RESULT_HEADS, results, words),
+        "budget": _headed(BUDGET_HEADS, budgets, words),
+        **({"studies": as_table(FACT_COLUMNS, study_rows(content, words))} if content.studies else {}),
         "frames": as_table(FRAME_COLUMNS, frame_rows(content)),
-        "facts": as_table(FACT_COLUMNS, told_rows(content)),
+        "facts": as_table(FACT_COLUMNS, told_rows(content, words)),
         "settings": [["name", "value"], *setting_rows(content)],
     }
     for name, rows in tables.items():
@@ -64,6 +97,11 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     stream = io.BytesIO()
     book.save(stream)
     write_bytes(path, _timeless(stream.getvalue(), content.timestamp))
+
+
+def _headed(heads: Mapping[str, str], rows: Iterable[Row], words: Words) -> list[list[Any]]:
+    """A head line in the reader's language and the rows, in the order of the heads."""
+    return [[words.known(name) for name in heads.values()], *([row[key] for key in heads] for row in rows)]
 
 
 def _fill(sheet: Worksheet, rows: Sequence[Sequence[Any]]) -> None:

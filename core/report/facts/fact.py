@@ -142,11 +142,10 @@ def heading(name: str) -> str:
 
     Examples
     --------
-    >>> heading("largest error"), heading("s (n − 1)")
-    ('Largest error', 's (n − 1)')
+    >>> heading("largest error"), heading("s (n − 1)"), heading("k₁"), heading("σ, 95 % below")
+    ('Largest error', 's (n − 1)', 'k₁', 'σ, 95 % below')
     """
-    symbol = len(name.partition(" ")[0].rstrip("₀₁₂₃")) == 1
-    return name if symbol else capital(name)
+    return capital(name) if name[1:2].isalpha() else name
 
 
 def for_reader(facts: Iterable[Fact], reader: Reader) -> tuple[Fact, ...]:

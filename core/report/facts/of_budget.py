@@ -17,6 +17,11 @@ from core.report.wording import shown_unit
 DISTRIBUTIONS = (label("normal"), label("rectangular"), label("triangular"), label("arcsine"), label("t"))
 """Of an input, as a budget names them."""
 
+INPUT = label("Input")
+VALUE, DISTRIBUTION, OF_INPUT, SENSITIVITY = label("value"), label("distribution"), "u(x)", label("sensitivity")
+CONTRIBUTION, FREEDOM, SHARE = label("u of it"), "ν", label("share")
+"""What stands in the columns of a budget, its inputs first."""
+
 SMALL = 1e-3
 """Below it a power of ten says more than zeros."""
 
@@ -76,20 +81,20 @@ def _cells(one: Characteristic, row: Contribution, factor: float, share: float) 
     if slope is not None:
         slope = 0.0 if share < NONE else factor * slope
     return (
-        Fact(label("value"), row.value, row.unit),
-        Fact(label("distribution"), row.distribution),
-        _rounded("u(x)", row.point_mm, row.unit),
-        _rounded(label("sensitivity"), slope),
+        Fact(VALUE, row.value, row.unit),
+        Fact(DISTRIBUTION, row.distribution),
+        _rounded(OF_INPUT, row.point_mm, row.unit),
+        _rounded(SENSITIVITY, slope),
         _contribution(one, row),
-        freedom_fact("ν", row.dof),
-        Fact(label("share"), 100 * share if math.isfinite(share) else None, "%", 0),
+        freedom_fact(FREEDOM, row.dof),
+        Fact(SHARE, 100 * share if math.isfinite(share) else None, "%", 0),
     )
 
 
 def _contribution(one: Characteristic, row: Contribution) -> Fact:
     unit, factor = shown_unit(one)
     about = label("Standard uncertainty (k = 1)")
-    return Fact(label("u of it"), factor * row.u_mm, unit, _digits(one), about, above_zero=True)
+    return Fact(CONTRIBUTION, factor * row.u_mm, unit, _digits(one), about, above_zero=True)
 
 
 def _digits(one: Characteristic) -> int:

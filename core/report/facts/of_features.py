@@ -11,9 +11,9 @@ from core.report.facts.of_studies import verdict_fact
 from core.report.wording import Words, permitted, result_name, shown_unit, with_unit
 from core.states import VERDICT
 
-HEADS = (
-    label("nominal"), label("permitted"), label("measured"), label("U"), label("k"), label("deviation"), VERDICT,
-)  # fmt: skip
+NOMINAL, PERMITTED, MEASURED = label("nominal"), label("permitted"), label("measured")
+EXPANDED, FACTOR, DEVIATION = label("U"), label("k"), label("deviation")
+HEADS = (NOMINAL, PERMITTED, MEASURED, EXPANDED, FACTOR, DEVIATION, VERDICT)
 """Of the columns beside the name, as `characteristic_cells` fills them."""
 
 
@@ -28,12 +28,12 @@ def characteristic_facts(one: Characteristic) -> tuple[Fact, ...]:
         nominal = factor * one.limits.nominal
         facts += [
             Fact(
-                label("deviation"), factor * one.deviation, unit, digits, label("Measured less the nominal value"),
+                DEVIATION, factor * one.deviation, unit, digits, label("Measured less the nominal value"),
                 signed=True,
             ),
-            Fact(label("nominal"), nominal, unit, level=Reader.AUDITOR),
+            Fact(NOMINAL, nominal, unit, level=Reader.AUDITOR),
             Fact(
-                label("permitted"), permitted(one) or "–", tip=label("Deviations that are permitted"),
+                PERMITTED, permitted(one) or "–", tip=label("Deviations that are permitted"),
                 level=Reader.AUDITOR,
             ),
         ]  # fmt: skip

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
-from core.messages import Message
+from core.messages import Message, plain
 from core.report.facts.fact import Fact, Reader, Value
 from core.report.wording import Words
 
@@ -71,11 +71,14 @@ class FactTable:
         """Each row in one line: its name, and its values with what they are called, 'σ 0.306 mm, of T 22.7 %'."""
         return [(self._name(row, words), words.joined(self._said(row, words))) for row in self.rows]
 
-    def facts(self) -> tuple[Fact, ...]:
-        """Each value by itself, called by its row and its column in English: 'gauge R&R: σ'."""
-        english = Words()
+    def facts(self, words: Words) -> tuple[Fact, ...]:
+        """Each value by itself, called by its row and its column: 'gauge R&R: σ'."""
         return tuple(
-            replace(column.fact(value), label=f"{self._name(row, english)}: {column.label}", level=self._level(column))
+            replace(
+                column.fact(value),
+                label=plain(f"{self._name(row, words)}: {words.known(column.label)}"),
+                level=self._level(column),
+            )
             for row in self.rows
             for column, value in zip(self.columns[1:], row[1:], strict=True)
             if value is not None

@@ -7,7 +7,7 @@ from reportlab.platypus import Flowable, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.report.facts.fact import Fact, heading
-from core.report.facts.of_budget import budget_facts, input_cells
+from core.report.facts.of_budget import INPUT, budget_facts, input_cells
 from core.report.layout.blocks import ShareBar, plain_table, ruled_table
 from core.report.layout.style import MUTED, TEXT_WIDTH, ReportLook, color
 
@@ -33,7 +33,7 @@ def budget_table(look: ReportLook, one: Characteristic) -> Table:
     sources, last = facts[: len(cells)], facts[len(cells) :]
     names = [fact.column(words) if place in IN_HEAD else fact.title(words) for place, fact in enumerate(cells[0])]
     styles = ["head" if place == DISTRIBUTION else "head_number" for place in range(len(names))]
-    head = [look.say("Input", "head"), *(look.text(name, style) for name, style in zip(names, styles, strict=True))]
+    head = [look.say(INPUT, "head"), *(look.text(name, style) for name, style in zip(names, styles, strict=True))]
     rows: list[list[Flowable]] = [head]
     for source, row in zip(sources, cells, strict=True):
         shown = (_cell(look, place, fact) for place, fact in enumerate(row))

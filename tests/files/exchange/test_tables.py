@@ -52,8 +52,8 @@ def test_the_workbook_has_result_budget_frames_and_settings_with_full_numbers(tm
     assert book.sheetnames == ["result", "budget", "frames", "facts", "settings"]
     result = [dict(zip([c.value for c in book["result"][1]], [c.value for c in row], strict=True))
               for row in book["result"].iter_rows(min_row=2)]  # fmt: skip
-    assert [row["value"] for row in result[:2]] == [50.0123, 0.031]
-    assert result[6]["value"] is None
+    assert [row["measured"] for row in result[:2]] == [50.0123, 0.031]
+    assert result[6]["measured"] is None
     budget = list(book["budget"].iter_rows(min_row=2, values_only=True))
     assert budget[1][:7] == ("thickness", "temperature of the part", 20.4, "°C", "rectangular", 0.5, 0.006)
     assert budget[1][9] == 8

@@ -96,7 +96,7 @@ def test_the_pdf_prints_what_an_auditor_needs(study):
 def test_the_workbook_has_every_fact_with_its_number_in_full(study, tmp_path):
     write_xlsx(tmp_path / "r.xlsx", whole_content(studies=(study,)))
     head, *rows = load_workbook(tmp_path / "r.xlsx")["studies"].iter_rows(values_only=True)
-    told = [*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts())]
+    told = [*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts(ENGLISH))]
     assert head == FACT_COLUMNS and {row[0] for row in rows} == {study_title(study)}
     assert [row[1] for row in rows] == [str(fact.label) for fact in told]
     for row, fact in zip(rows, told, strict=True):

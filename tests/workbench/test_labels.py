@@ -1,0 +1,128 @@
+"""One number is called the same by terminal, window, PDF, XLSX and the window's CSV, in every language."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from datetime import date
+from pathlib import Path
+from typing import Any
+
+import pytest
+from openpyxl import load_workbook
+
+import core.cli.language
+import workbench.language
+from core.cli import output
+from core.files.exchange.xlsx import write_xlsx
+from core.inspect.characteristic import thickness_characteristic
+from core.messages import Message
+from core.report.content import ReportContent
+from core.report.facts.fact import Fact, Reader, for_reader
+from core.report.facts.of_budget import INPUT, input_cells
+from core.report.facts.of_features import HEADS, PERMITTED
+from core.report.facts.of_studies import study_facts, study_tables
+from core.report.pdf import build_report
+from core.report.wording import Words
+from core.study.artefact_check import ArtefactCheck
+from tests.check_cases import check
+from tests.report.inspection_samples import characteristics, studies
+from tests.report.report_samples import block_content
+from tests.report.test_report_pdf import words as pdf_words
+from tests.workbench.test_facts import BLOCK, squeezed
+from workbench.pages.inspect.words import repeats_tsv
+from workbench.pages.words import fact_row
+
+Sheets = Mapping[str, tuple[tuple[Any, ...], ...]]
+
+
+@pytest.fixture(scope="module", params=["en", "de"])
+def content(request: pytest.FixtureRequest) -> Iterator[ReportContent]:
+    """A block with all that may be told of it, in a language that terminal and window have as well."""
+    with pytest.MonkeyPatch.context() as patched:
+        words = Words.of(request.param)
+        patched.setattr(core.cli.language, "_spoken", words.language)
+        patched.setattr(workbench.language, "_chosen", words.language)
+        known = ArtefactCheck(BLOCK, 50.004, 0.009, date(2026, 3, 14))
+        yield block_content(language=request.param, check=check(), artefacts=(known,), studies=studies())
+
+
+@pytest.fixture(scope="module")
+def words(content: ReportContent) -> Words:
+    return Words.of(content.language)
+
+
+@pytest.fixture(scope="module")
+def facts(content: ReportContent) -> tuple[Fact, ...]:
+    of_results = [fact for facts in content.facts.values() for fact in facts]
+    return (*of_results, *(fact for study in content.studies for fact in study_facts(study)))
+
+
+@pytest.fixture(scope="module")
+def sheets(content: ReportContent, tmp_path_factory: pytest.TempPathFactory) -> Sheets:
+    return workbook(content, tmp_path_factory.mktemp("labels") / "r.xlsx")
+
+
+@pytest.fixture(scope="module")
+def printed(content: ReportContent) -> str:
+    return squeezed(pdf_words(build_report(content)))
+
+
+def workbook(content: ReportContent, path: Path) -> Sheets:
+    write_xlsx(path, content)
+    return {sheet.title: tuple(sheet.iter_rows(values_only=True)) for sheet in load_workbook(path)}
+
+
+def test_terminal_window_and_csv_call_a_fact_the_same(facts: tuple[Fact, ...], words: Words) -> None:
+    names = [words.known(fact.label) for fact in facts]
+    assert len(names) > 100
+    in_terminal = [output.fact_rows([fact], reader=Reader.METROLOGIST)[0][0] for fact in facts]
+    in_window = [fact_row(fact)[0] for fact in facts]
+    in_csv = [line.split("\t")[0] for line in repeats_tsv((), facts).splitlines()[2:]]
+    for name, fact, *told in zip(names, facts, in_terminal, in_window, in_csv, strict=True):
+        coverage, unit = " (95 %)" if fact.interval else "", f" [{fact.unit}]" if fact.unit else ""
+        assert [one.casefold() for one in told] == [f"{name}{end}".casefold() for end in (coverage, coverage, unit)]
+
+
+def test_the_workbook_calls_each_fact_as_terminal_and_window(
+    content: ReportContent, sheets: Sheets, words: Words
+) -> None:
+    told = [fact for facts in content.facts.values() for fact in facts]
+    assert [row[1] for row in sheets["facts"][1:]] == [words.known(fact.label) for fact in told]
+    in_studies = {row[1] for row in sheets["studies"][1:]}
+    for study in content.studies:
+        assert {words.known(fact.label) for fact in study_facts(study)} <= in_studies
+        for table in study_tables(study):
+            for column in table.columns[1:]:
+                assert any(name.endswith(f": {words.known(column.label)}") for name in in_studies), column.label
+
+
+def test_the_pdf_calls_what_an_auditor_reads_the_same(facts: tuple[Fact, ...], printed: str, words: Words) -> None:
+    for fact in for_reader(facts, Reader.AUDITOR):
+        name = fact.label.values.get("name", fact.label) if isinstance(fact.label, Message) else fact.label
+        assert squeezed(words.known(name)) in printed, fact.label
+
+
+def test_the_workbooks_budget_has_the_words_of_the_pdf(
+    content: ReportContent, sheets: Sheets, printed: str, words: Words
+) -> None:
+    assert content.gauge is not None
+    one = thickness_characteristic(content.gauge)
+    head, *rows = sheets["budget"]
+    for label in (INPUT, *(fact.label for fact in input_cells(one)[0])):
+        name = words.known(label)
+        assert name in head and squeezed(name) in printed
+    assert [row[head.index(words.known(INPUT))] for row in rows] == [words(row.words) for row in one.budget]
+    assert {row[head.index(words.known("distribution"))] for row in rows} == {
+        words.known(row.distribution) for row in one.budget
+    }
+
+
+def test_the_workbooks_results_have_the_words_of_terminal_and_pdf(
+    content: ReportContent, tmp_path: Path, words: Words
+) -> None:
+    inspected = characteristics()
+    shown = workbook(block_content(language=content.language, gauge=None, inspected=inspected), tmp_path / "r.xlsx")
+    head, *rows = shown["result"]
+    assert {words.known(name) for name in ("characteristic", *HEADS) if name != PERMITTED} <= set(head)
+    assert rows[0][head.index(words.known("measured"))] == pytest.approx(inspected[0].value, rel=1e-15)
+    assert rows[0][head.index(words.known("lower limit"))] == pytest.approx(49.8)
