@@ -95,7 +95,8 @@ class BoardTolerance:
         flatness = note_of("target.flatness_assumed", field=Field(f"{target}.flatness_mm", whole=True), mm=SUSPECTED_MM)
         notes = []
         if self.scale_sd is None:
-            notes.append(size_assumed(target))
+            field = Field(f"{target}.scale_sd", whole=True)
+            notes.append(note_of("target.size_assumed", field=field, per_mille=SUSPECTED_SCALE * 1e3))
         if self.flatness_mm is None and target == "plane_target" and not shape_known:
             notes.append(flatness)
         return tuple(notes)
@@ -121,13 +122,6 @@ class BoardTolerance:
     def free(self) -> NDArray[np.intp]:
         """Indices of the parameters that are unknown."""
         return np.flatnonzero(self.sd)
-
-
-def size_assumed(target: Literal["camera_target", "plane_target"]) -> Message:
-    """Say that the size of a target is not stated, and what is assumed."""
-    return note_of(
-        "target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=SUSPECTED_SCALE * 1e3
-    )
 
 
 TRUE = BoardTolerance(0.0, 0.0)

@@ -46,6 +46,9 @@ class Finding:
     fact
         Of what takes away a proof: the fact that does so, by its name in files, which is that of a field of
         `core.findings.proof.ScanFacts` if it is one of a scan.
+    told_of
+        The field of the record with the note that it tells of, where it has to be known which one: the note goes when
+        that changes, and is not shown where the field itself is.
 
     Raises
     ------
@@ -60,6 +63,7 @@ class Finding:
     text: str
     many: str = ""
     fact: str = ""
+    told_of: str = ""
 
     def __post_init__(self) -> None:
         if self.effect in (Effect.NO_PROOF, Effect.NO_RESULT) and self.weight != Weight.GRAVE:

@@ -21,7 +21,7 @@ ROWS = (
     Finding("fan.outlying_pose", Weight.CAUTION, Effect.NONE,
             "its stripes or target points fit {times:.0f} times worse than in the other poses"),
     Finding("fan.poses_left_out", Weight.CAUTION, Effect.NONE,
-            "{n} of {all} poses left out: {names:;}"),
+            "{n} of {all} poses left out: {names:;}", told_of="poses"),
     Finding("fan.few_poses", Weight.CAUTION, Effect.NONE,
             "a single pose of {all} fixes the planes: nothing checks it. Record {least} or more",
             "only {n} of {all} poses fix the planes, too few to foretell one by the others: nothing checks them. "

@@ -56,6 +56,11 @@ def fact_of(note: Message) -> str:
     return "" if row is None else row.fact
 
 
+def without_notes_on(field: str, notes: Iterable[Message]) -> tuple[Message, ...]:
+    """The notes but for those that tell of this field of the record they stand in."""
+    return tuple(note for note in notes if note.code not in FINDINGS or FINDINGS[note.code].told_of != field)
+
+
 def gravest_first(notes: Iterable[Message]) -> tuple[Message, ...]:
     """Each note once, the gravest first, those of one weight in their order."""
     return tuple(sorted(dict.fromkeys(notes), key=lambda note: -weight_of(note)))

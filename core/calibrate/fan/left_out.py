@@ -1,4 +1,4 @@
-"""What a fan's calibration tells of the poses it left out. Light to import: a window asks it."""
+"""What a fan's calibration tells of the poses it left out."""
 
 from __future__ import annotations
 

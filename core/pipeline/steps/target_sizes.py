@@ -8,13 +8,13 @@ from dataclasses import replace
 import cv2
 import numpy as np
 
-from core.calibrate.board_shape import LARGEST_SCALE_SD, size_assumed
+from core.calibrate.board_shape import LARGEST_SCALE_SD
 from core.calibrate.results import FanCalibration
 from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_ratio
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import pictures_in
-from core.findings.table import note_of
+from core.findings.table import note_of, without_notes_on
 from core.image.targets import BlackSquare, Target, TargetNotFound, detect
 from core.image.targets.picture import Picture
 from core.image.targets.target_view import TargetView
@@ -130,5 +130,5 @@ def with_compared_sizes(
 
 def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
     """The fan whose target has this standard uncertainty of its size, as a share: it is assumed no more."""
-    notes = tuple(note for note in fan.notes if note != size_assumed("plane_target"))
+    notes = without_notes_on("scale_assumed", fan.notes)
     return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False, notes=notes)

@@ -11,10 +11,11 @@ from core.files.pictures import write_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import ReferenceTarget
+from core.findings.table import note_of
 from core.image.targets import BlackSquare, Checkerboard
 from core.model import Fan, LightPlane, Pose
 from core.pipeline.steps import target_sizes
-from core.pipeline.steps.target_sizes import compare_targets, with_compared_sizes
+from core.pipeline.steps.target_sizes import compare_targets, with_compared_sizes, with_known_size
 from core.simulate.blur import blurred
 from core.simulate.calibration import CAMERA_GREY
 from core.simulate.rays import ray_map
@@ -155,6 +156,12 @@ def test_a_square_stated_as_61_mm_in_place_of_60_is_found_out_and_in_u(tmp_path,
 
 
 UNSTATED = replace(FAN, scale_assumed=True)
+
+
+def test_a_size_that_is_known_is_not_told_to_be_assumed_whatever_was_assumed():
+    flat = note_of("target.flatness_assumed", field="[plane_target] flatness_mm", mm=0.05)
+    size = note_of("target.size_assumed", field="[plane_target] scale_sd", per_mille=5.0)
+    assert with_known_size(replace(UNSTATED, notes=(size, flat)), 3e-4).notes == (flat,)
 
 
 @pytest.mark.parametrize(("side_mm", "off"), [(60.0, 0.0), (61.0, -1 / 61)])

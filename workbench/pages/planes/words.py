@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from core.calibrate.fan.left_out import note_on_left_out
 from core.calibrate.results import FanCalibration, PlanePose
+from core.findings.table import without_notes_on
 from core.report.facts.of_planes import planes_sentences
 from workbench.language import sentence, text_of, tr
 from workbench.pages.words import mm, px
@@ -21,8 +21,7 @@ def notes(calibration: FanCalibration | None) -> str:
     """What else is to be said of a calibration, a sentence a line; the poses left out are listed by themselves."""
     if calibration is None:
         return ""
-    of_poses = note_on_left_out(calibration.poses)
-    shown = [note for note in calibration.notes if note != of_poses]
+    shown = without_notes_on("poses", calibration.notes)
     return "\n".join(text_of(note) if note.is_sentence else sentence(text_of(note)) for note in shown)
 
 

@@ -16,6 +16,7 @@ from core.files.project.data import Accepted
 from core.files.project.folder import read_project
 from core.files.project.keys import finished, left_to_do
 from core.files.results.planes_file import read_planes, write_planes
+from core.findings.table import note_of
 from core.messages import Message, plain
 from core.pipeline.live.events import LiveEnded, LiveStarted
 from core.report.facts.of_planes import planes_facts
@@ -24,6 +25,7 @@ from tests.calibrate.fan_scenes import CAMERA
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages.planes_cases import NO_PLATE, Planes, folder_with_poses, project_with
 from workbench.bench import Bench
+from workbench.language import sentence, text_of
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
@@ -206,6 +208,14 @@ def test_the_poses_left_out_are_counted_by_reason(found: PlanesPresenter, qtbot:
         assert "left out" not in words.notes(one), "said once"
     rows = {row[0]: row[1] for row in map(fact_row, planes_facts(calibration))}
     assert rows["Poses"] == "4 of 7"
+
+
+def test_the_note_on_poses_left_out_is_not_repeated_however_it_names_them(found: PlanesPresenter) -> None:
+    calibration = found.work.calibration
+    assert calibration is not None
+    told_by_another = note_of("fan.poses_left_out", n=1, all=7, names=("pose06 (no plate)",))
+    few = note_of("fan.few_poses", n=2, all=7, least=3)
+    assert words.notes(replace(calibration, notes=(told_by_another, few))) == sentence(text_of(few))
 
 
 def test_too_few_poses_are_told_and_undone(found: PlanesPresenter, qtbot: Any) -> None:
