@@ -6,6 +6,7 @@ squares that is left, in units of that covariance, tells whether the pencil desc
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Literal
@@ -78,10 +79,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
             )
         return Verdict(FreePlanes(pis), free_angles, None, 0.0, sentence)
     axis_only = _trial(free, None)
-    gap = max(
-        float(np.abs(LightPlane(pi).distances(_onto(own, points))).max())
-        for pi, own, points in zip(axis_only.pencil.pis, pis, volume, strict=True)
-    )
+    gap, gap_sd = _gap(free, axis_only.pencil, volume)
     tied = axis_only if angle is None else _trial(free, angle)
     suits = tied.p >= SIGNIFICANT
     suited = "always" if suits else "axis" if axis_only.p >= SIGNIFICANT else "never"
@@ -92,7 +90,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
         fan_of(tied.pencil).angles,
         suits,
         gap,
-        _sentence(start, tied, axis_only, free, angle, gap, constrained != "auto"),
+        _sentence(start, tied, axis_only, free, angle, (gap, gap_sd), constrained != "auto"),
         tied.converged and axis_only.converged,
     )
 
@@ -120,15 +118,34 @@ def _trial(free: Bundle, angle: float | None) -> _Trial:
     return _Trial(solution.state, p, solution.converged)
 
 
+def _gap(free: Bundle, pencil: Pencil, volume: Sequence[Array]) -> tuple[float, float]:
+    """Largest distance in mm of a free plane from the pencil's in the volume, and its standard deviation there."""
+    found = []
+    for line, (pi, own, points) in enumerate(zip(pencil.pis, free.planes.pis, volume, strict=True)):
+        moved = _onto(own, points)
+        distances = np.abs(LightPlane(pi).distances(moved))
+        most, block = int(distances.argmax()), slice(3 * line, 3 * line + 3)
+        variance = moved[most] @ free.covariance[block, block] @ moved[most]
+        found.append((float(distances[most]), math.sqrt(max(variance, 0.0)) / float(np.linalg.norm(own))))
+    return max(found)
+
+
 def _onto(pi: Array, points: Array) -> Array:
     """`points` (N, 3) moved at right angles onto the plane π."""
     return points - np.outer(LightPlane(pi).distances(points), pi / np.linalg.norm(pi))
 
 
 def _sentence(
-    start: PlaneSet, tied: _Trial, axis_only: _Trial, free: Bundle, angle: float | None, gap: float, asked: bool
+    start: PlaneSet,
+    tied: _Trial,
+    axis_only: _Trial,
+    free: Bundle,
+    angle: float | None,
+    gap: tuple[float, float],
+    asked: bool,
 ) -> Message:
-    """What the comparison found and which planes are used."""
+    """What the comparison found and which planes are used; `gap` in mm with its standard deviation."""
+    gap_mm, gap_sd_mm = gap
     fan = fan_of(free.planes, free.covariance)
     angles = tuple(
         Message(
@@ -166,11 +183,12 @@ def _sentence(
         use = Message("fan.used_as_asked", "{use}, as asked", use=use)
     return Message(
         "fan.verdict",
-        "{finding} (fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.3f} mm; "
+        "{finding} (fitted freely, the angles are {angles}, and the planes miss one axis by up to {gap:.{places}f} mm; "
         "p = {p:.2g}, below {limit:g} it is refused); {use}",
         finding=finding,
         angles=angles,
-        gap=gap,
+        gap=gap_mm,
+        places=max(decimals_of(gap_sd_mm), 0),
         p=tied.p,
         limit=SIGNIFICANT,
         use=use,
