@@ -6,10 +6,11 @@ import math
 from itertools import chain
 
 from core.calibrate.grades import POSES
-from core.calibrate.results import FanCalibration
-from core.messages import Message, label
+from core.calibrate.results import FanCalibration, PlanePose
+from core.messages import Message, label, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, named
 from core.report.facts.pictures import used_fact
+from core.scan.features.frames import NO_REASON
 
 
 def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
@@ -89,6 +90,26 @@ def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:
     verdict = calibration.verdict
     moved = () if calibration.readjusted is None else (calibration.readjusted.note,)
     return (*(() if verdict is None else (Message("told.sentence", "{what:capital}.", what=verdict),)), *moved)
+
+
+def told_of_pose(pose: PlanePose) -> Message:
+    """How well one pose fits and how many lines it shows, or why it is left out and how far off it is."""
+    if pose.used:
+        return plural_message(
+            "told.pose",
+            "{name}: stripes RMS {rms_mm:.3f} mm from their planes, target RMS {target_px:.3f} px, {n} line seen",
+            "{name}: stripes RMS {rms_mm:.3f} mm from their planes, target RMS {target_px:.3f} px, {n} lines seen",
+            n=sum(len(points) > 0 for points in pose.points),
+            name=pose.name, rms_mm=pose.rms_mm, target_px=pose.target_rms_px,
+        )  # fmt: skip
+    left_out = Message("told.pose_left_out", "{name}: left out ({reason})", name=pose.name,
+                       reason=pose.reason or NO_REASON)  # fmt: skip
+    if not math.isfinite(pose.rms_mm):
+        return left_out
+    return Message(
+        "told.pose_off", "{left_out}; its stripes are {rms_mm:.3f} mm off the planes",
+        left_out=left_out, rms_mm=pose.rms_mm,
+    )  # fmt: skip
 
 
 def _suits(calibration: FanCalibration) -> Grade:

@@ -166,7 +166,7 @@ class FacesPanel(QWidget):
 
     def _offer(self, candidates: tuple[PairCandidate, ...]) -> None:
         """A button for each pair of faces that could be meant."""
-        self.several.setText(tr("Nothing is proven before you say which faces are meant:"))
+        self.several.setText(tr("Say which faces are meant:"))
         self.several.setVisible(bool(candidates))
         if candidates == self._offered:
             return

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
 
 from core.calibrate.results import FanCalibration, PlanePose
 from core.findings.table import without_notes_on
-from core.report.facts.of_planes import planes_sentences
+from core.report.facts.of_planes import planes_sentences, told_of_pose
 from workbench.language import sentence, text_of, tr
-from workbench.pages.words import mm, px
 
 
 def verdict_sentence(calibration: FanCalibration | None) -> str:
@@ -33,24 +31,7 @@ def short_names(names: Sequence[str]) -> list[str]:
 
 
 def pose_sentence(name: str, pose: PlanePose | None, reason: str = "") -> str:
-    """What is to be said of one pose."""
-    if pose is None:
-        return tr("{name}: left out ({reason})", name=name, reason=reason) if reason else name
-    if not pose.used:
-        reason = text_of(pose.reason or "") or tr("no reason recorded")
-        if math.isfinite(pose.rms_mm):
-            return tr(
-                "{name}: left out ({reason}); its stripes are {rms} off the planes",
-                name=name,
-                reason=reason,
-                rms=mm(pose.rms_mm),
-            )
-        return tr("{name}: left out ({reason})", name=name, reason=reason)
-    seen = sum(len(points) > 0 for points in pose.points)
-    return tr(
-        "{name}: stripes RMS {rms} from their planes, target RMS {target}, {lines}",
-        name=name,
-        rms=mm(pose.rms_mm),
-        target=px(pose.target_rms_px),
-        lines=tr("1 line seen") if seen == 1 else tr("{count} lines seen", count=seen),
-    )
+    """What is to be said of one pose; of one that is in no calibration, the `reason` by its pictures."""
+    if pose is not None:
+        return text_of(told_of_pose(pose))
+    return tr("{name}: left out ({reason})", name=name, reason=reason) if reason else name
