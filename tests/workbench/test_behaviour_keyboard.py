@@ -14,6 +14,7 @@ from workbench.step_state import ORDER
 from workbench.steps import STEPS
 
 ALT, CONTROL = Qt.KeyboardModifier.AltModifier, Qt.KeyboardModifier.ControlModifier
+SHIFT = Qt.KeyboardModifier.ShiftModifier
 MOST_TABS = 150
 
 
@@ -46,6 +47,24 @@ def tab_to(t: Technician, name: str) -> None:
         passed.append(named(focused()))
         press(t, Qt.Key.Key_Tab)
     raise AssertionError(f"{name!r} is not reached by Tab from page {t.window.current}; passed {passed}")
+
+
+@pytest.mark.parametrize(("key", "more"), [(Qt.Key.Key_Y, CONTROL), (Qt.Key.Key_Z, CONTROL | SHIFT)])
+def test_what_was_undone_is_redone_by_either_key(
+    technician: Technician, measured_project: Path, key: Qt.Key, more: Qt.KeyboardModifier
+) -> None:
+    t = technician
+    t.window.projects.open_project(measured_project)
+    t.window.go_to("project")
+    t.activate()
+    before = t.model.project.info.part
+    t.type_in(t.field("Part"), "Another block")
+    t.window.rail.setFocus()  # a line of text has an undo of its own
+    assert t.model.project.info.part == "Another block"
+    press(t, Qt.Key.Key_Z, CONTROL)
+    assert t.model.project.info.part == before
+    press(t, key, more)
+    assert t.model.project.info.part == "Another block"
 
 
 @pytest.mark.accuracy

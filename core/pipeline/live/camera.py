@@ -45,8 +45,6 @@ def find_view(frame: Frame, target: Target, camera: Camera | None) -> FoundView:
 class LiveCamera:
     """The camera step of a live recording."""
 
-    paired = False
-
     def __init__(self, context: LiveContext) -> None:
         self._context, self._target = context, context.request.rig.camera_target
         self._auto, self._capture = context.request.auto, False
@@ -56,6 +54,11 @@ class LiveCamera:
         self._missing: tuple[Message, ...] = ()
         self._wanted: Array | None = None
         self._number = 0
+
+    @property
+    def paired(self) -> bool:
+        """While the target is seen: its corners belong to the picture they were found in."""
+        return self._look is not None and self._look.view is not None
 
     def begin(self) -> None:
         """Lasers off."""
@@ -89,14 +92,14 @@ class LiveCamera:
         self._capture = False
         return look.frame
 
-    def detail(self) -> CameraDetail | None:
-        """What was seen last."""
+    def detail(self, shown: Frame) -> CameraDetail | None:
+        """What was seen last; the corners only with their own picture."""
         if self._look is None or self._judge is None:
             return None
         view = self._look.view
         return CameraDetail(
             index=self._look.frame.index,
-            uv=None if view is None else view.uv,
+            uv=view.uv if view is not None and self._look.frame is shown else None,
             sentence=self._sentence,
             cells=self._judge.cells,
             missing=self._missing,

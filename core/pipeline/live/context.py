@@ -27,7 +27,7 @@ class LiveStep(Protocol):
 
     @property
     def paired(self) -> bool:
-        """Whether a picture is only worth showing together with what was found in it."""
+        """Whether a frame that has been looked at is to be shown with what was found in it, even after a later one."""
 
     def begin(self) -> None:
         """The source is open."""
@@ -38,8 +38,8 @@ class LiveStep(Protocol):
     def poll(self) -> Frame | None:
         """See whether a frame has been looked at; the frame that `detail` is about now, if that is news."""
 
-    def detail(self) -> Detail | None:
-        """What is known now; asked for when it is really shown."""
+    def detail(self, shown: Frame) -> Detail | None:
+        """What is known now, to go with the picture of this frame; asked for when it is really shown."""
 
     def rest(self) -> None:
         """What is known has been shown: have some of what could wait done, if there is time."""

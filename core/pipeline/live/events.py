@@ -25,9 +25,10 @@ class CameraDetail:
     Parameters
     ----------
     index
-        The frame this is about; the picture it comes with may be a later one.
+        The frame that was looked at last; the picture this comes with may be a later one.
     uv
-        (N, 2) corners in pixels of the full picture; None if the target is not seen.
+        (N, 2) corners in pixels of the full picture; None if the target is not seen, or with another
+        frame's picture.
     sentence
         Why the view is taken or not.
     cells
@@ -59,8 +60,8 @@ class CameraDetail:
 class PlanesDetail:
     """What the live picture shows of the plane target and the fan on it.
 
-    `stripes` are (N, 2) in pixels each, `line` the fan line (from 0) each of them is likely to be, −1 where that is not
-    clear. Else as CameraDetail; `poses` are taken.
+    `stripes` are (N, 2) in pixels each, none with a picture of another frame; `line` is the fan line (from 0) each of
+    them is likely to be, −1 where that is not clear. Else as CameraDetail; `poses` are taken.
     """
 
     index: int
@@ -143,7 +144,7 @@ class LiveView:
     dropped
         Frames lost since the first picture was recorded, by the source or because the disk is too slow.
     detail
-        What was found in it, or in a frame a little before.
+        What is known when it is shown; what is drawn into a picture was found in this one, but for the scan.
     """
 
     picture: NDArray[np.uint8]

@@ -57,8 +57,6 @@ class _Pending:
 class LivePlanes:
     """The planes step of a live recording, and that of an interim check."""
 
-    paired = False
-
     def __init__(self, context: LiveContext) -> None:
         self._context, request = context, context.request
         self._target, self._camera, self._lines = request.rig.plane_target, request.camera, request.rig.lines
@@ -76,6 +74,11 @@ class LivePlanes:
         self._wanted: Array | None = None
         self._number = 0
         self._adviser = ExposureAdviser()
+
+    @property
+    def paired(self) -> bool:
+        """While the target is seen: its corners and the stripes belong to the picture they were found in."""
+        return self._look is not None and self._look.pose.view is not None
 
     def begin(self) -> None:
         """The fan on; a pose that was not finished when the source was unplugged is given up."""
@@ -113,16 +116,17 @@ class LivePlanes:
             return result.frame
         return None
 
-    def detail(self) -> PlanesDetail | None:
-        """What was seen last."""
+    def detail(self, shown: Frame) -> PlanesDetail | None:
+        """What was seen last; corners and stripes only with their own picture."""
         look = self._look
         if look is None or self._judge is None:
             return None
+        own = look.frame is shown
         return PlanesDetail(
             index=look.frame.index,
-            uv=None if look.pose.view is None else look.pose.view.uv,
-            stripes=look.stripes,
-            line=look.line,
+            uv=look.pose.view.uv if look.pose.view is not None and own else None,
+            stripes=look.stripes if own else (),
+            line=look.line if own else (),
             sentence=self._sentence,
             cells=self._judge.cells,
             missing=self._missing,

@@ -157,7 +157,7 @@ class LiveScan:
         if self._looked and self._previewer.has_more and self._context.worker.start(self._previewer.go_on):
             self._looked = False
 
-    def detail(self) -> ScanDetail | None:
+    def detail(self, shown: Frame) -> ScanDetail | None:
         """The last preview, and all points since the last time this was asked for."""
         if self._coverage is None:
             return None

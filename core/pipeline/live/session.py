@@ -36,7 +36,8 @@ WORKING_LISTEN_S = 0.002
 """The same while a frame is being looked at."""
 
 PATIENCE_S = 0.25
-"""A picture that is to be shown together with what is found in it is shown without when that takes longer."""
+"""A picture shown together with what was found in it stands so long at most while the next is being looked at; then
+the newest come, without."""
 
 LAST_LOOK_S = 5.0
 """How long the last frame of a source that has ended may take to be looked at."""
@@ -64,7 +65,7 @@ class LiveLoop:
         self._fresh: Frame | None = None
         self._ahead: tuple[Frame, Reduced] | None = None
         self._shown_index = -1
-        self._shown_s = 0.0
+        self._held_s = -PATIENCE_S  # when a picture was last shown with what was found in it
         self._times: deque[float] = deque()
         self._dropped_before = self._dropped_now = self._unmissed = self._damaged = 0
 
@@ -186,12 +187,15 @@ class LiveLoop:
         if newest is None or not self._ready():
             return
         now = time.monotonic()
-        if self._step.paired and self._context.worker.busy and now - self._shown_s < PATIENCE_S and fresh is None:
+        paired = self._step.paired
+        if paired and self._context.worker.busy and now - self._held_s < PATIENCE_S and fresh is None:
             return
-        frame = fresh if self._step.paired and fresh is not None and fresh.index > self._shown_index else newest
+        frame = newest
+        if paired and fresh is not None:
+            frame, self._held_s = fresh, now
         if frame.index == self._shown_index and fresh is None:
             return
-        self._fresh, self._shown_index, self._shown_s = None, frame.index, now
+        self._fresh, self._shown_index = None, frame.index
         ahead = self._ahead
         picture, scale = ahead[1] if ahead and ahead[0] is frame else self._display.reduced(frame.picture)
         self._context.emit(
@@ -202,7 +206,7 @@ class LiveLoop:
                 self._context.rate_hz,
                 self._context.recorded,
                 self.dropped,
-                self._step.detail(),
+                self._step.detail(frame),
             )
         )
 

@@ -10,9 +10,12 @@ from core.files.recording.options import Options
 from core.files.recording.rig import Rig
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, Checkerboard, detect
+from core.pipeline.live import camera as live_camera
 from core.pipeline.live import planes as live_planes
+from core.pipeline.live import session as live
 from core.pipeline.live.commands import Auto, Capture, Discard, LookFor, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
+from core.pipeline.live.pose import find_pose
 from core.simulate.calibration import CalibrationPictures
 from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig
@@ -371,3 +374,55 @@ def test_a_check_does_without_pictures_with_the_fan_off_where_a_person_switches_
     assert ended.recorded == 1
     assert [path.name for path in ended.folder.glob("*.png")] == ["pose00.png"]
     assert not window.all(LiveAsk), "nobody is asked to switch the laser for it"
+
+
+def corners_shown(times):
+    """A rule: stop once this many pictures with corners have been shown."""
+    seen = [0]
+
+    def rule(event):
+        seen[0] += isinstance(event, LiveView) and event.detail is not None and event.detail.uv is not None
+        return Stop() if seen[0] >= times else None
+
+    return rule
+
+
+@pytest.mark.parametrize("look_s", [0.02, 0.4])
+def test_corners_come_with_the_picture_they_were_found_in_however_long_that_took(monkeypatch, tmp_path, plates, look_s):
+    """A look of 0.02 s keeps up with the pictures; one of 0.4 s does not, and newer ones are shown meanwhile."""
+    found = detect(RIG.camera_target, plates.views[0], "")
+
+    def find(frame, target, camera):
+        time.sleep(look_s)
+        return live_camera.FoundView(frame, found, blur_px=1.0)
+
+    monkeypatch.setattr(live_camera, "find_view", find)
+    window = Window(corners_shown(4))
+    source = ScriptedSource(lambda lasers, number: np.roll(plates.views[0], number, axis=1), pace_s=0.01)
+    record(monkeypatch, source, window, "camera", RIG, tmp_path / "camera", auto=False)
+    shown = [view for view in window.all(LiveView) if view.detail is not None]
+    with_corners = [view for view in shown if view.detail.uv is not None]
+    assert len(with_corners) == 4
+    assert all(view.detail.index == view.index for view in with_corners)
+    if look_s > live.PATIENCE_S:
+        assert len(shown) > 3 * len(with_corners), "the picture is to stay fluent"
+
+
+def test_the_target_and_the_stripes_come_with_the_picture_they_were_found_in(monkeypatch, tmp_path, plates):
+    on = plates.poses[0][0]
+    looked_at = []
+
+    def find(frame, *known):
+        looked_at[:] = looked_at or [find_pose(frame, *known)]
+        time.sleep(0.4)
+        return replace(looked_at[0], frame=frame)
+
+    monkeypatch.setattr(live_planes, "find_pose", find)
+    window = Window(corners_shown(4))
+    source = ScriptedSource(lambda lasers, number: np.roll(on, number, axis=1), pace_s=0.01)
+    record(monkeypatch, source, window, "planes", RIG, tmp_path / "planes", auto=False)
+    shown = [view for view in window.all(LiveView) if view.detail is not None]
+    with_target = [view for view in shown if view.detail.uv is not None]
+    assert with_target and all(view.detail.stripes and view.detail.index == view.index for view in with_target)
+    assert [view for view in shown if view.detail.index != view.index]
+    assert not any(view.detail.stripes or view.detail.line for view in shown if view.detail.uv is None)
