@@ -18,7 +18,9 @@ from tests.workbench.test_fit import window_in
 from workbench.bench import Bench
 from workbench.main_window import SMALLEST, MainWindow
 from workbench.pages.project.operator import OperatorFacts, Stage, operator_buttons, stage_of
+from workbench.theme import shades
 from workbench.views import ask
+from workbench.views.lists.value_rows import VERDICT_ICONS
 
 LEFT = (frozenset[str](), frozenset({"report"}), frozenset({"scan", "gauge", "report"}))
 STATES = [
@@ -58,6 +60,10 @@ def test_the_worst_result_is_told_large_and_nothing_else_can_be_done(operator: M
     assert page.isVisible() and not operator.menuBar().isVisible() and not operator.rail.isVisible()
     assert page.headline.text().lower() == (str(found.verdict) or "no verdict")
     assert "mm ±" in page.detail.text()
+    assert page.tolerance.isVisible() and page.tolerance.accessibleName().startswith("deviation ")
+    ink = {page.tolerance.grab().toImage().pixelColor(x, page.tolerance.height() // 2).name() for x in range(600)}
+    _, colour = VERDICT_ICONS[found.verdict]
+    assert getattr(shades(), colour).lower() in ink, "the interval is drawn in the verdict's colour"
     assert page.buttons["report"].isEnabled() and page.buttons["next_part"].isEnabled()
     assert page.buttons["measure"].toolTip() == "Everything is done."
     assert page.buttons["stop"].toolTip() == "Nothing is running."

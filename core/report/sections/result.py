@@ -10,7 +10,7 @@ from reportlab.platypus import Flowable, Spacer, Table, TableStyle
 
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import WORST_FIRST, Verdict
-from core.messages import decimals_of, plural_message
+from core.messages import plural_message
 from core.report.content import ReportContent
 from core.report.facts.fact import Reader, for_reader
 from core.report.facts.of_features import HEADS, characteristic_cells, characteristic_facts
@@ -31,6 +31,7 @@ from core.report.layout.style import (
     markup,
     words_width,
 )
+from core.report.tolerance_scale import ToleranceScale
 from core.report.wording import (
     SIGNS,
     decision_sentence,
@@ -38,7 +39,6 @@ from core.report.wording import (
     headed_name,
     points_counted,
     shown_name,
-    shown_unit,
     unbroken,
     uncertainty_sentence,
     value_parts,
@@ -93,8 +93,8 @@ def _one(look: ReportLook, one: Characteristic, width: float) -> list[Flowable]:
     headline = [look.text(headed_name(one, words), "label"), _value(look, one)]
     parts: list[Flowable] = [*_headed(look, headline, one.verdict, width), Spacer(0, 2.5 * mm)]
     parts += _facts(look, told(look, characteristic_facts(one)[1:-1]), width)  # value and verdict stand above
-    if one.limits is not None and np.isfinite((one.deviation or 0.0) + one.U):
-        parts += [Spacer(0, 1 * mm), ToleranceBar(look, one, width)]
+    if scale := ToleranceScale.of(one):
+        parts += [Spacer(0, 1 * mm), ToleranceBar(look, scale, width)]
     reason, meaning = decision_sentence(one, words), uncertainty_sentence(one.k, one.U, words)
     captions = [look.text(said, "caption") for said in (_rule(look, one), meaning)]
     return [*parts, Spacer(0, 1.5 * mm), look.text(reason), *captions]
@@ -230,44 +230,32 @@ class VerdictMark(Flowable):  # type: ignore[misc]
 
 
 class ToleranceBar(Flowable):  # type: ignore[misc]
-    """The deviation with its interval ±U against the zone of the tolerance, to scale; open where there is no limit."""
+    """Where a result lies in its tolerance, to scale."""
 
-    def __init__(self, look: ReportLook, one: Characteristic, width: float) -> None:
+    def __init__(self, look: ReportLook, scale: ToleranceScale, width: float) -> None:
         super().__init__()
-        unit, factor = shown_unit(one)
-        limits = one.limits
-        if limits is None:
-            raise ValueError("there is no tolerance to draw")
-        self.look, self.unit = look, unit
-        self.deviation, self.U = factor * (one.deviation or 0.0), factor * one.U
-        self.lower, self.upper = factor * limits.lower, factor * limits.upper
-        self.decimals = max(decimals_of(self.U), 0)
-        self.width, self.height = width, 15 * mm
-        # what is drawn spans the limits and the whole interval, with room for the words at both ends
-        known = [abs(limit) for limit in (self.lower, self.upper) if np.isfinite(limit)]
-        self.half = 1.3 * max(*known, abs(self.deviation) + self.U, 1e-9) if known else 1.0
+        self.look, self.scale, self.width, self.height = look, scale, width, 15 * mm
 
     def x(self, value: float) -> float:
         """Place of a deviation on paper."""
-        return float(np.clip(self.width / 2 * (1 + value / self.half), 0, self.width))
+        return self.width * self.scale.share(value)
 
     def draw(self) -> None:
         """Paint it (called by reportlab)."""
-        canvas, axis = self.canv, 6.6 * mm
-        low, high = self.x(self.lower), self.x(self.upper)
+        canvas, axis, scale = self.canv, 6.6 * mm, self.scale
+        low, high = self.x(scale.lower), self.x(scale.upper)
         canvas.setFillColor(color("#D5E2E7"))
         canvas.rect(low, axis - 2.4 * mm, high - low, 4.8 * mm, stroke=0, fill=1)
         canvas.setStrokeColor(color(MUTED))
         canvas.setLineWidth(0.5)
         canvas.line(0, axis, self.width, axis)
         canvas.setLineWidth(1.0)
-        for place, limit in ((low, self.lower), (high, self.upper)):
-            if np.isfinite(limit):
-                canvas.line(place, axis - 2.4 * mm, place, axis + 2.4 * mm)
+        for place in map(self.x, scale.limits):
+            canvas.line(place, axis - 2.4 * mm, place, axis + 2.4 * mm)
         self._words(low, high, axis)
         canvas.setStrokeColor(self.look.accent_color)
         canvas.setFillColor(self.look.accent_color)
-        left, right, middle = (self.x(self.deviation + offset) for offset in (-self.U, self.U, 0.0))
+        left, right, middle = (self.x(scale.deviation + offset) for offset in (-scale.U, scale.U, 0.0))
         canvas.setLineWidth(1.8)
         canvas.line(left, axis, right, axis)
         canvas.setLineWidth(1.2)
@@ -276,24 +264,20 @@ class ToleranceBar(Flowable):  # type: ignore[misc]
         canvas.circle(middle, axis, 1.0 * mm, stroke=0, fill=1)
 
     def _words(self, low: float, high: float, axis: float) -> None:
-        canvas, words = self.canv, self.look.words
+        canvas, words, scale = self.canv, self.look.words, self.scale
         canvas.setFillColor(color(MUTED))
         below, above = axis - 2.4 * mm - 7.5, axis + 2.4 * mm + 2.5
         lean = min(8.0, (high - low) / 2 - 2)  # the two never meet, however narrow the zone is drawn
-        for place, limit, share in ((low + lean, self.lower, 1.0), (high - lean, self.upper, 0.0)):
+        for place, limit, share in ((low + lean, scale.lower, 1.0), (high - lean, scale.upper, 0.0)):
             if np.isfinite(limit):
-                draw_words(canvas, (place, below), words.numeral(f"{limit:+g}") + f" {self.unit}", SANS, 6.5, share)
-        if high - low > 45 * mm and np.isfinite(self.lower + self.upper):
+                draw_words(canvas, (place, below), scale.limit_said(limit, words), SANS, 6.5, share)
+        if high - low > 45 * mm and len(scale.limits) == 2:
             canvas.setStrokeColor(color(MUTED))
             canvas.setLineWidth(0.5)
             canvas.line(self.x(0), axis - 2.4 * mm, self.x(0), axis + 2.4 * mm)
             draw_words(canvas, (self.x(0), below), words("nominal"), SANS, 6.5, share=0.5)
         canvas.setFillColor(self.look.accent_color)
-        said = words(
-            "deviation {deviation} ± {U}",
-            deviation=f"{words.fixed(self.deviation, self.decimals, signed=True)} {self.unit}",
-            U=f"{words.fixed(self.U, self.decimals)} {self.unit}",
-        )
+        said = scale.deviation_said(words)
         half = words_width(said, SANS, 6.5) / 2
-        middle = float(np.clip(self.x(self.deviation), half, self.width - half))
+        middle = float(np.clip(self.x(scale.deviation), half, self.width - half))
         draw_words(canvas, (middle, above), said, SANS, 6.5, share=0.5)

@@ -19,6 +19,7 @@ from workbench.step_state import State
 from workbench.work import jobs
 
 if TYPE_CHECKING:
+    from core.inspect.characteristic import Characteristic
     from core.inspect.result_list import ResultList
 
 
@@ -131,6 +132,11 @@ class OperatorMode(QObject):
     def buttons(self) -> OperatorButtons:
         """What can be done."""
         return operator_buttons(self.facts)
+
+    @property
+    def worst(self) -> Characteristic | None:
+        """The result that is told large: the worst there is; None where there is none."""
+        return next(iter(self.found.worst_first), None) if self.found is not None else None
 
     def turn(self, on: bool) -> None:
         """Begin it, or end it."""

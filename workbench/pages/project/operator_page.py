@@ -10,6 +10,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePo
 
 from core.files.project.folder import results_folder
 from core.messages import capital
+from core.report.tolerance_scale import ToleranceScale
 from core.report.wording import headed_name, value_line, verdict_title
 from core.states import STEP_STATES
 from workbench.language import tr
@@ -23,10 +24,11 @@ from workbench.views.common import IconLabel, dress
 from workbench.views.layouts import STRETCH, Elided, enable, in_column, in_row, mark_primary
 from workbench.views.lists.notice_list import Banner
 from workbench.views.lists.value_rows import VERDICT_ICONS
+from workbench.views.plots.tolerance_bar import ToleranceBar
 
 REPORT = "report.pdf"
 """Among the results."""
-HEADLINE_PX, TEXT_PX, BUTTON_PX = 34, 19, 21
+HEADLINE_PX, RESULT_PX, TEXT_PX, BUTTON_PX = 34, 26, 19, 21
 """To be read from where the part is handled."""
 BUTTON_HIGH_PX = 84
 """To be hit with a glove on."""
@@ -54,7 +56,7 @@ class OperatorPage(QWidget):
         self.leaving = QPushButton(icon("mdi6.exit-to-app"), tr("Leave operator mode"))
         self.leaving.setObjectName("low")
         self.sign, self.headline, self.detail = IconLabel(SIGN_PX), QLabel(), QLabel()
-        self.bar, self.left = QProgressBar(), QLabel()
+        self.bar, self.left, self.tolerance = QProgressBar(), QLabel(), ToleranceBar(TEXT_PX)
         self.bar.setTextVisible(False)
         self.bar.setFixedHeight(18)
         for label in (self.headline, self.detail, self.left):
@@ -75,9 +77,9 @@ class OperatorPage(QWidget):
             button.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Fixed)
             dress(button, f"font-size: {BUTTON_PX}px; font-weight: 600;")
         dress(self.part, f"font-size: {TEXT_PX}px; font-weight: 600;")
-        for label in (self.who, self.detail, self.left):
-            dress(label, f"font-size: {TEXT_PX}px;")
-        said = in_column(STRETCH, self.headline, self.detail, self.bar, self.left, STRETCH, spacing=8)
+        for label, px in ((self.who, TEXT_PX), (self.detail, RESULT_PX), (self.left, TEXT_PX)):
+            dress(label, f"font-size: {px}px;")
+        said = in_column(STRETCH, self.headline, self.detail, self.tolerance, self.bar, self.left, STRETCH, spacing=8)
         state = QFrame()
         state.setObjectName("card")
         row = in_row(on=state, margins=(24, 16, 24, 16), spacing=20)
@@ -133,6 +135,10 @@ class OperatorPage(QWidget):
         dress(self.headline, f"font-size: {HEADLINE_PX}px; font-weight: 700; color: {getattr(shades(), colour)};")
         for widget in (self.bar, self.left):
             widget.setVisible(stage is Stage.MEASURING)
+        worst = self._mode.worst if stage is Stage.DONE else None
+        scale = None if worst is None else ToleranceScale.of(worst)
+        self.tolerance.set_scale(scale, colour)
+        self.tolerance.setVisible(scale is not None)
 
     def show_progress(self, stage: str, share: float | None, left: str) -> None:
         """What is being done, the share of it that is done (None: unknown), and the time left in words."""
@@ -156,8 +162,8 @@ class OperatorPage(QWidget):
             return "mdi6.check", "text", tr("Measured"), ""
         symbol, colour = VERDICT_ICONS[found.verdict]
         verdict = verdict_title(found.verdict, wording())
-        line = ""
-        for worst in found.worst_first[:1]:
+        line, worst = "", self._mode.worst
+        if worst is not None:
             line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
         return symbol, "text" if colour == "muted" else colour, verdict, line
 
