@@ -25,6 +25,9 @@ WRITING = frozenset(
 )
 """Jobs that put something into the folder of the open project: none is done where another program has it open."""
 
+COMPILES_S = 180.0
+"""How long in s the first start compiles where no code came with the program: one process, told in whole minutes."""
+
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bench:

@@ -28,10 +28,10 @@ from PySide6.QtWidgets import (
     QWidget,
 )
 
-from core.remaining import COUNTED, USUAL_S, Remaining, page_of
+from core.remaining import COUNTED, USUAL_S, Remaining, in_words, page_of
 from core.translations import languages, own_name
 from workbench import first_measurement
-from workbench.bench import Bench
+from workbench.bench import COMPILES_S, Bench
 from workbench.language import spoken, tr
 from workbench.menus import OF_A_PAGE, MenuFacts, Menus, why_not
 from workbench.notices import Notice
@@ -378,6 +378,8 @@ class MainWindow(QMainWindow):
         lane.task_started.connect(self._task_started)
         lane.task_progressed.connect(self._task_progressed)
         lane.task_ended.connect(self._task_ended)
+        lane.preparing_changed.connect(self._on_preparing)
+        self._on_preparing(lane.preparing)
         self.task_bar.cancel_pressed.connect(self.cancel_task)
         self.operator.stop.connect(self.cancel_task)
         self.operator.next_part.connect(self.projects.begin_next_part)
@@ -531,6 +533,14 @@ class MainWindow(QMainWindow):
         else:
             self.statusBar().showMessage(notice.text, 8000)
         self._messages_button.setText(tr("Messages ({n})", n=self.notice_list.count()))
+
+    def _on_preparing(self, preparing: bool) -> None:
+        """Say that the program makes itself ready, which it does once, and nothing any more when it has."""
+        said = tr("Preparing once, about {time} …", time=in_words(COMPILES_S))
+        if preparing:
+            self.statusBar().showMessage(said)
+        elif self.statusBar().currentMessage() == said:
+            self.statusBar().clearMessage()
 
     def _task_started(self, task: Task) -> None:
         self._task = task

@@ -19,6 +19,7 @@ class HandLane(QObject):
     task_started = Signal(object)
     task_progressed = Signal(object, str, int, int)
     task_ended = Signal(object)
+    preparing_changed = Signal(bool)
 
     def __init__(self, name: str) -> None:
         super().__init__()
@@ -28,7 +29,7 @@ class HandLane(QObject):
         self.waiting: list[tuple[Task, Job, tuple[Any, ...], dict[str, str]]] = []
         self.ran: list[Job] = []
         self.sent: list[Any] = []
-        self.prepared = False
+        self.prepared = self.preparing = False
 
     @property
     def current(self) -> Task | None:

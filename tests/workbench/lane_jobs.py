@@ -84,7 +84,12 @@ def surroundings(progress: Progress) -> tuple[str, bool]:
 
 def pieces() -> Any:
     """Work to be done ahead, a fifth of a second each."""
-    return [lambda: _piece()] * 50
+    return [lambda: _piece()] * 50, False
+
+
+def first_pieces() -> Any:
+    """The same for the first time, and few."""
+    return [lambda: _piece()] * 3, True
 
 
 def _piece() -> None:

@@ -102,7 +102,7 @@ PROJECT_ROWS = Job("core.pipeline.steps.study_step:project_rows")
 READ_STUDY_TABLE = Job("core.pipeline.steps.study_step:read_study_table")
 EXPORT_STUDY = Job("core.pipeline.steps.study_step:export_study")
 TYPE1_STUDY = Job("core.study.type1:type1_study")
-COMPILE_AHEAD = Job("core.pipeline.live.warm_up:stages")
+COMPILE_AHEAD = Job("core.pipeline.live.warm_up:ahead")
 
 REFUSE = Job("core.errors:refuse")
 

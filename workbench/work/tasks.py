@@ -90,6 +90,8 @@ class Lane(QObject):
     task_started = Signal(object)
     task_progressed = Signal(object, str, int, int)
     task_ended = Signal(object)
+    preparing_changed = Signal(bool)
+    """Whether the process makes ready, for the first time, what is kept for every later start."""
 
     def __init__(
         self,
@@ -104,6 +106,7 @@ class Lane(QObject):
         self._current: Task | None = None
         self._process: WorkerProcess | None = None
         self._numbers = 0
+        self.preparing = False
         self._stop_timer = QTimer(self)
         self._stop_timer.setSingleShot(True)
         self._stop_timer.setInterval(STOP_WITHIN_MS)
@@ -241,6 +244,9 @@ class Lane(QObject):
         QTimer.singleShot(0, self, conclude)
 
     def _received(self, kind: int, number: int, body: bytes) -> None:
+        if kind == Kind.AHEAD:
+            self._prepares(wire.value_of(body))
+            return
         task = self._current
         if task is None or number != task.number:
             wire.forget(body)
@@ -262,6 +268,7 @@ class Lane(QObject):
     def _gone(self, why: str) -> None:
         """The process could not be started, or has died; the next job gets another one."""
         self._process = None
+        self._prepares(False)
         task = self._current
         if task is not None:
             problem = Failure(ENDED, "", why)
@@ -290,3 +297,9 @@ class Lane(QObject):
         if self._process is not None:
             self._process.end()
             self._process = None
+            self._prepares(False)
+
+    def _prepares(self, preparing: bool) -> None:
+        if preparing != self.preparing:
+            self.preparing = preparing
+            self.preparing_changed.emit(preparing)

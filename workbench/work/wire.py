@@ -54,6 +54,7 @@ class Kind(IntEnum):
     DONE = 8
     CANCELLED = 9
     FAILED = 10
+    AHEAD = 11
 
 
 def frame(kind: Kind, number: int, value: Any = None, folder: Path | None = None) -> bytes:

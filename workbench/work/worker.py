@@ -127,10 +127,14 @@ class Worker:
         for job in warm:
             with suppress(ImportError, AttributeError):  # told when the job is asked for
                 resolve(job)
-        pieces = _pieces(ahead)
+        pieces, is_first = _pieces(ahead)
+        if is_first:
+            self._send(Kind.AHEAD, 0, True)
         while True:
             if pieces and self._jobs.empty():
                 pieces.popleft()()
+                if is_first and not pieces:
+                    self._send(Kind.AHEAD, 0, False)
             elif (next_job := self._jobs.get()) is None:
                 return
             else:
@@ -222,12 +226,13 @@ def main(arguments: Sequence[str]) -> None:
         shutil.rmtree(folder, ignore_errors=True)  # a window that was killed could not
 
 
-def _pieces(ahead: Job | None) -> deque[Callable[[], None]]:
-    """What is done ahead; nothing if it cannot be had: jobs then do it when they need it."""
+def _pieces(ahead: Job | None) -> tuple[deque[Callable[[], None]], bool]:
+    """What is done ahead, and whether for the first time; nothing if it cannot be had: jobs do it when they need it."""
     if ahead is not None:
         with suppress(ImportError, AttributeError):
-            return deque(resolve(ahead)())
-    return deque()
+            pieces, is_first = resolve(ahead)()
+            return deque(pieces), is_first
+    return deque(), False
 
 
 def _pipes() -> tuple[int, int]:

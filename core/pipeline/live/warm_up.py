@@ -13,7 +13,7 @@ from functools import cache
 import numpy as np
 
 from core.acquire.source import Frame, Picture
-from core.compiled import keep_complete
+from core.compiled import is_complete, keep_complete
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import NoiseModel
@@ -93,6 +93,11 @@ Stages = tuple[Callable[[], None], ...]
 def stages() -> Stages:
     """What there is to be compiled, each part by itself, none much longer than a minute; the last one remembers it."""
     return (*(stage for share in shares() for stage in share), keep_complete)
+
+
+def ahead() -> tuple[Stages, bool]:
+    """The same, and whether it takes long: it was not done before."""
+    return stages(), not is_complete()
 
 
 def shares() -> tuple[Stages, Stages]:

@@ -258,6 +258,35 @@ def test_what_is_done_ahead_is_done_piece_by_piece_while_no_job_waits(qtbot: Any
     assert first < second < 50
 
 
+@pytest.mark.parametrize(("pieces", "told"), [("first_pieces", [True, False]), ("pieces", [])])
+def test_what_is_made_ready_for_the_first_time_is_told_from_its_beginning_to_its_end(
+    qtbot: Any, pieces: str, told: list[bool]
+) -> None:
+    lane, answers = Lane("ahead", ahead=job(pieces)), Answers()
+    heard: list[bool] = []
+    lane.preparing_changed.connect(heard.append)
+    try:
+        lane.prepare()
+        answers.run(lane, "double", 21)
+        finish(qtbot, lane)
+        qtbot.waitUntil(lambda: heard == told, timeout=20_000)
+    finally:
+        lane.close()
+        lane.wait_until_closed()
+    assert heard == told
+
+
+def test_a_process_that_ends_while_it_makes_ready_does_so_no_longer(qtbot: Any) -> None:
+    lane = Lane("ahead", ahead=job("first_pieces"))
+    heard: list[bool] = []
+    lane.preparing_changed.connect(heard.append)
+    lane.prepare()
+    qtbot.waitUntil(lambda: heard == [True], timeout=20_000)
+    lane.close()
+    lane.wait_until_closed()
+    assert heard == [True, False]
+
+
 def test_a_lane_that_nobody_holds_any_more_ends_before_its_tasks(
     qapp: QApplication, monkeypatch: pytest.MonkeyPatch
 ) -> None:
