@@ -25,8 +25,8 @@ WRITING = frozenset(
 )
 """Jobs that put something into the folder of the open project: none is done where another program has it open."""
 
-COMPILES_S = 180.0
-"""How long in s the first start compiles where no code came with the program: one process, told in whole minutes."""
+COMPILES_S = 160.0
+"""Processor seconds that the first start compiles where no code came with the program; told in whole minutes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
