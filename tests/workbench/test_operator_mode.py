@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -94,6 +95,21 @@ def test_where_people_have_roles_an_inspectors_pin_leads_out(
         assert said in window.operator.banner.text()
     window.operator.leaving.click()
     assert not window.operator_mode.on
+
+
+def test_where_the_part_goes_is_shown_with_its_outline_until_it_is_measured_under_another_rig(
+    operator: MainWindow, qtbot: Any
+) -> None:
+    page, mode = operator.operator, operator.operator_mode
+    qtbot.waitUntil(lambda: mode.placing is not None, timeout=60_000)
+    page.refresh()
+    assert page.place.isVisible() and page.place.has_picture and page.place.layer_names() == ("part",)
+    project = operator.model.project
+    rested = replace(project, accepted=replace(project.accepted, planes="another"))
+    operator.model.edit("another rig", rested)
+    mode.look()
+    page.refresh()
+    assert mode.placing is None and not page.place.isVisible()
 
 
 @pytest.mark.accuracy

@@ -21,6 +21,7 @@ from workbench.work import jobs
 if TYPE_CHECKING:
     from core.inspect.characteristic import Characteristic
     from core.inspect.result_list import ResultList
+    from core.pipeline.project.placing import Placing
 
 
 class Stage(StrEnum):
@@ -100,6 +101,9 @@ class OperatorMode(QObject):
         self._bench, self._model, self._whole = bench, bench.model, whole
         self.on = False
         self.found: ResultList | None = None
+        self.placing: Placing | None = None
+        """Where the part lay, or while it is not measured the one before it under the same rig."""
+        self._placed_under = ""
         self._asked: tuple[object, ...] = ()
         whole.changed.connect(self.changed)
         self._model.results_changed.connect(self.look)
@@ -156,6 +160,8 @@ class OperatorMode(QObject):
         """Read what came of the part, if there is something new."""
         folder, results = self._model.folder, self._model.results
         asked = (folder, *((step, done.key, done.at) for step, done in sorted(results.items())))
+        if self._model.is_open and self._model.project.accepted.planes != self._placed_under:
+            self.placing = None
         if folder is None or not self.on or "scan" not in results:
             self.found, self._asked = None, ()
         elif asked != self._asked:
@@ -168,10 +174,24 @@ class OperatorMode(QObject):
                 on_done=lambda found: self._take(asked, found),
                 replace_waiting=True,
             )
+            self._bench.run_quick(
+                self,
+                jobs.PLACING,
+                folder,
+                self._model.project,
+                label=tr("Reading the results"),
+                on_done=lambda placing: self._place(asked, placing),
+                replace_waiting=True,
+            )
         self.changed.emit()
 
     def _task(self, _: object) -> None:
         self.changed.emit()
+
+    def _place(self, asked: tuple[object, ...], placing: Any) -> None:
+        if asked == self._asked:
+            self.placing, self._placed_under = placing, self._model.project.accepted.planes
+            self.changed.emit()
 
     def _take(self, asked: tuple[object, ...], found: Any) -> None:
         if asked == self._asked:

@@ -20,7 +20,9 @@ from workbench.project_model import ProjectModel
 from workbench.refresh import Refresh
 from workbench.theme import icon, shades
 from workbench.views import ask
+from workbench.views.colours import WANTED
 from workbench.views.common import IconLabel, dress
+from workbench.views.image.view import ImageView
 from workbench.views.layouts import STRETCH, Elided, enable, in_column, in_row, mark_primary
 from workbench.views.lists.notice_list import Banner
 from workbench.views.lists.value_rows import VERDICT_ICONS
@@ -52,6 +54,7 @@ class OperatorPage(QWidget):
     def __init__(self, mode: OperatorMode, model: ProjectModel, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._mode, self._model = mode, model
+        self._placed: object = None
         self.part, self.who = Elided(), QLabel()
         self.leaving = QPushButton(icon("mdi6.exit-to-app"), tr("Leave operator mode"))
         self.leaving.setObjectName("low")
@@ -89,6 +92,9 @@ class OperatorPage(QWidget):
         foot = in_row(*((button, 1) for button in self.buttons.values()), spacing=12)
         in_column(head, (state, 1), foot, on=self, margins=(20, 14, 20, 16), spacing=12)
         self.banner = Banner(state)
+        self.place = ImageView()
+        self.place.setAccessibleName(tr("Picture of the scan"))
+        row.addWidget(self.place, 1)
         self.buttons["next_part"].clicked.connect(self.next_part)
         self.buttons["measure"].clicked.connect(self._measure)
         self.buttons["report"].clicked.connect(self._show_report)
@@ -133,6 +139,7 @@ class OperatorPage(QWidget):
         self.headline.setText(headline)
         self.detail.setText(detail)
         dress(self.headline, f"font-size: {HEADLINE_PX}px; font-weight: 700; color: {getattr(shades(), colour)};")
+        self._show_place()
         for widget in (self.bar, self.left):
             widget.setVisible(stage is Stage.MEASURING)
         worst = self._mode.worst if stage is Stage.DONE else None
@@ -146,6 +153,15 @@ class OperatorPage(QWidget):
         self.bar.setRange(0, 0 if share is None else 1000)
         self.bar.setValue(0 if share is None else round(1000 * share))
         self.left.setText(left)
+
+    def _show_place(self) -> None:
+        """Where the part goes: where it lay, or the one before it."""
+        placing = self._mode.placing
+        self.place.setVisible(placing is not None)
+        if placing is not None and placing is not self._placed:
+            self.place.set_picture(placing.picture, keep_view=False, scale=placing.scale)
+            self.place.set_lines("part", [[*placing.outline, placing.outline[0]]], colour=WANTED, width=3.0)
+        self._placed = placing
 
     def _said(self, stage: Stage) -> tuple[str, str, str, str]:
         """Sign, its colour, headline and what stands below."""
