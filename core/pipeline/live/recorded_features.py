@@ -89,6 +89,8 @@ class RecordedFeatures:
             if not self._wait_for(LOOK_AHEAD):
                 return
             found = self._set()
+            if not found.frames:  # the folder was taken away: the recorder tells it
+                return
             job = found, self._settings
             looked = look_at_scan(job, progress=self._go_on, camera=self._camera, coming=self._coming())
             features = crossed_scan(looked, self._camera, self._go_on)

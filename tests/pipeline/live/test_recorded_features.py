@@ -17,6 +17,7 @@ from core.pipeline.live.recorded_features import RecordedFeatures
 from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.features import crossed_scan
 from core.pipeline.steps.scan.pictures import look_at_scan
+from core.scan.features.extraction import LOOK_AHEAD
 from tests.pipeline.live.test_scan import RIG, Stage, scan, swept
 from tests.pipeline.live_bench import Window
 
@@ -77,6 +78,15 @@ def test_they_are_not_taken_for_other_pictures_settings_or_camera(monkeypatch, t
     assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
     (folder / FEATURES).write_bytes(b"torn")
     assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None
+
+
+@pytest.mark.filterwarnings("error::pytest.PytestUnhandledThreadExceptionWarning")
+def test_of_a_folder_that_was_taken_away_nothing_is_kept(tmp_path, stage):
+    looking = RecordedFeatures(tmp_path, ".png", RIG, stage.camera, SETTINGS, lambda: LOOK_AHEAD)
+    for number in range(LOOK_AHEAD):
+        looking.add(f"frame{number:05d}")
+    assert looking.wait(30.0)
+    assert not list(tmp_path.iterdir())
 
 
 def test_without_a_calibrated_camera_or_with_too_few_frames_nothing_is_kept(monkeypatch, tmp_path, stage):
