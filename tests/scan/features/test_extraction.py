@@ -31,29 +31,29 @@ def features(lights, background=20.0, dtype=np.uint8):
 @pytest.mark.parametrize("dtype", [np.uint8, np.uint16])
 def test_frames_in_changed_light_are_counted_and_still_used(dtype):
     found = features([0, 0, 14, 10, 0], dtype=dtype)
-    assert len(found.notes) == 1
-    assert "The room's light changed in 2 of 5 frames, the first frame2.png" in str(found.notes[0])
-    assert " % brighter than in the reference" in str(found.notes[0])
+    assert len(found.faults) == 1
+    assert "The room's light changed in 2 of 5 frames, the first frame2.png" in str(found.faults[0])
+    assert " % brighter than in the reference" in str(found.faults[0])
     assert all(frame.centrelines for frame in found.frames)
     assert [frame.light_change for frame in found.frames] == pytest.approx([0, 0, 0.7, 0.5, 0], abs=0.03)
 
 
 def test_darker_is_told_from_brighter():
     found = features([0, -30, 0], background=60.0)
-    assert "background is up to 50 % darker than in the reference" in str(found.notes[0])
+    assert "background is up to 50 % darker than in the reference" in str(found.faults[0])
     assert found.frames[1].light_change == pytest.approx(-0.5, abs=0.02)
 
 
 def test_light_that_stays_is_no_matter_for_a_note():
-    assert features([0, 1, -1, 0]).notes == ()
+    assert features([0, 1, -1, 0]).faults == ()
 
 
 def test_little_light_more_in_a_dark_room_is_not_felt():
-    assert features([0, 3, 3], background=2.0).notes == ()
+    assert features([0, 3, 3], background=2.0).faults == ()
 
 
 def test_a_small_share_of_a_bright_background_is_not_felt():
-    assert features([0, 9, -9], background=80.0).notes == ()
+    assert features([0, 9, -9], background=80.0).faults == ()
 
 
 @pytest.mark.parametrize("told", [0.6, 1.0, 1.6])
