@@ -117,7 +117,7 @@ def test_a_live_scan_of_the_simulated_rig_becomes_a_measured_one(small_page, qtb
         qtbot.waitUntil(lambda: p.live_stage == "paused", timeout=5_000)
         p.live.pause(False)
         p.do_live()
-        qtbot.waitUntil(lambda: p.run.measuring, timeout=10_000)
+        qtbot.waitUntil(lambda: p.run.measuring, timeout=40_000)  # frames not looked at yet take up to LOOKING_S
         assert p.run.by_itself and p.project.sources.scan.startswith("recordings/scan-")
         qtbot.waitUntil(lambda: not p.run.measuring, timeout=120_000)
         idle(page, qtbot)
