@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from enum import StrEnum
 from pathlib import Path
 from typing import Annotated
 
@@ -12,6 +13,22 @@ from core.cli.options import EPILOG, Json, Out, Panel, Part, Set
 
 commands = typer.Typer()
 
+
+class FrameChoice(StrEnum):
+    """The frame that geometry is handed over in."""
+
+    PART = "part"
+    CAMERA = "camera"
+
+
+Frame = Annotated[
+    FrameChoice,
+    typer.Option(
+        "--frame",
+        help="Frame of clouds, surfaces and geometry: the part's (its part coordinates, else z up from the lower face; "
+        "the camera's where neither is known), or the camera's.",
+    ),
+]
 Template = Annotated[
     Path | None, typer.Option("--template", metavar="FILE", help="A company's template of reports (TOML).")
 ]
@@ -103,6 +120,7 @@ def mesh(
         float, typer.Option(metavar="MM", help="Leave as few triangles as this largest error allows; 0: all.")
     ] = 0.0,
     to: Annotated[Path | None, typer.Option("--to", metavar="FOLDER", help="Write there instead of into DIR.")] = None,
+    frame: Frame = FrameChoice.PART,
     json: Json = False,
 ) -> None:
     """Make the surface in DIR ready for other programs; writes surface.*, mesh.ply stays as it is."""
@@ -110,7 +128,8 @@ def mesh(
     from core.pipeline.steps.mesh_step import MeshOptions
 
     with bar() as progress:
-        shown = work.run_mesh(results, formats, MeshOptions(fill_holes, triangles, error), to, progress)
+        options = MeshOptions(fill_holes, triangles, error)
+        shown = work.run_mesh(results, formats, options, to, progress, in_camera_frame=frame is FrameChoice.CAMERA)
     shown.show(as_json=json)
 
 
@@ -161,6 +180,7 @@ def export(
         ),
     ],
     to: Annotated[Path | None, typer.Option("--to", metavar="FOLDER", help="Write there instead of into DIR.")] = None,
+    frame: Frame = FrameChoice.PART,
     part: Part = "",
     template: Template = None,
     serial: Serial = "",
@@ -173,7 +193,8 @@ def export(
 
     chosen = work.ReportOptions(part, template, serial=serial, customer=customer, operator=operator)
     with bar() as progress:
-        shown = work.run_export(results, formats, to, chosen, progress)
+        in_camera_frame = frame is FrameChoice.CAMERA
+        shown = work.run_export(results, formats, to, chosen, progress, in_camera_frame=in_camera_frame)
     shown.show(as_json=json)
 
 

@@ -108,10 +108,18 @@ def run_compare(
     return Shown(output.fact_rows(comparison_facts(made.summary)), made.summary.values(), files=written)
 
 
-def run_mesh(results: Path, formats: Sequence[str], options: MeshOptions, to: Path | None, progress: Progress) -> Shown:
+def run_mesh(
+    results: Path,
+    formats: Sequence[str],
+    options: MeshOptions,
+    to: Path | None,
+    progress: Progress,
+    *,
+    in_camera_frame: bool,
+) -> Shown:
     """Prepare, write, and return what to say; formats may be joined by commas."""
     names = [name.strip() for one in formats for name in one.split(",") if name.strip()]
-    made, written = mesh_step(results, names, options, to or results, progress)
+    made, written = mesh_step(results, names, options, to or results, progress, in_camera_frame=in_camera_frame)
     filled = int(made.mesh.filled.sum())
     rows = [(tr("triangles"), grouped(len(made.mesh.triangles)))]
     if options.fill_mm:
@@ -181,7 +189,15 @@ def run_report(folder: Path, out: Path, chosen: ReportOptions, progress: Progres
     return Shown([], {}, notes, {"report": work.path("report")})
 
 
-def run_export(out: Path, formats: Sequence[str], to: Path | None, chosen: ReportOptions, progress: Progress) -> Shown:
+def run_export(
+    out: Path,
+    formats: Sequence[str],
+    to: Path | None,
+    chosen: ReportOptions,
+    progress: Progress,
+    *,
+    in_camera_frame: bool,
+) -> Shown:
     """Results in the formats of others; InputError if there is no such format, or nothing to write from."""
     kinds = [name.strip() for names in formats for name in names.split(",") if name.strip()]
     if not kinds:
@@ -190,7 +206,7 @@ def run_export(out: Path, formats: Sequence[str], to: Path | None, chosen: Repor
             where="--format",
             todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(EXPORTS)),
         )
-    files = export_results(out, kinds, to, chosen.said, progress)
+    files = export_results(out, kinds, to, chosen.said, progress, in_camera_frame=in_camera_frame)
     return Shown([(told(EXPORTS[name].title), path.name) for name, path in files.items()], {}, (), files)
 
 

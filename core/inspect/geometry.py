@@ -13,6 +13,7 @@ import numpy as np
 from scipy.spatial import ConvexHull, QhullError
 
 from core.inspect.profile import averaged
+from core.inspect.shown.view_frame import FrameKind
 from core.model import Pose
 from core.model.arrays import Array
 
@@ -59,10 +60,10 @@ Shape: TypeAlias = Outline | SphereShape | CylinderShape | Curve
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Geometry:
-    """All that can be drawn, in part coordinates if `of_part`, else in the camera's."""
+    """All that can be drawn, in coordinates of a `frame` of that kind."""
 
     drawn: tuple[Shape, ...]
-    of_part: bool
+    frame: FrameKind
 
 
 def outlines(name: str, normal: Array, centres: Array, points: Array) -> list[Outline]:

@@ -56,6 +56,7 @@ from core.files.study.input import read_crossed, read_readings, read_repeats
 from core.files.study.study_file import read_study, write_study
 from core.files.study.table import read_table
 from core.inspect.shown.shown_features import ShownClass, ShownDeviations, ShownFeature, ShownInspection, ShownProfile
+from core.inspect.shown.view_frame import CAMERA_FRAME
 from core.messages import Message
 from core.simulate.scenario import Scenario
 from core.simulate.truth import load_truth, truth_folder
@@ -106,7 +107,7 @@ def _of_the_rig(path: Path, read: Callable[[], Any]) -> Any:
 
 
 def _geometry(path: Path) -> Any:
-    return read_geometry(path, read_cloud(path.with_name("cloud.ply")).cloud.points)
+    return read_geometry(path, read_cloud(path.with_name("cloud.ply")).cloud.points, CAMERA_FRAME)
 
 
 PLAN: dict[str, Any] = {"feature": []}

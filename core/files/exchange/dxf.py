@@ -18,6 +18,7 @@ from ezdxf.filemanagement import new
 from ezdxf.math import OCS
 
 from core.files.atomic import write_bytes
+from core.files.results.frame_text import IN_WORDS
 from core.inspect.geometry import Curve, CylinderShape, Geometry, Outline, Shape, SphereShape
 from core.model.arrays import Array
 
@@ -34,7 +35,7 @@ def write_dxf(path: Path, geometry: Geometry) -> None:
     try:
         document = new(VERSION, units=units.MM)
         document.header["$MEASUREMENT"] = 1  # metric
-        document.header["$PROJECTNAME"] = "part coordinates" if geometry.of_part else "camera coordinates"
+        document.header["$PROJECTNAME"] = IN_WORDS[geometry.frame]
         for one in geometry.drawn:
             layer = layer_name(one.name)
             if layer not in document.layers:

@@ -7,6 +7,7 @@ uncertainty of each point's depth in mm, and the scan's name and description say
 from __future__ import annotations
 
 import hashlib
+from dataclasses import replace
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,8 @@ from pye57 import libe57
 
 from core.errors import InputError
 from core.files.atomic import write_beside
+from core.files.results.frame_text import IN_WORDS
+from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Message
 from core.scan.surface.cloud import Cloud
 
@@ -27,8 +30,16 @@ _LEAP_SECONDS = 18
 """GPS time − UTC since 2017."""
 
 
-def write_e57(path: Path, cloud: Cloud, at: datetime, *, name: str = "", calibration_id: str = "") -> None:
-    """Write one scan in the camera frame: x, y, z in m, intensity = σ in mm. The same cloud gives the same bytes.
+def write_e57(
+    path: Path,
+    cloud: Cloud,
+    at: datetime,
+    *,
+    name: str = "",
+    calibration_id: str = "",
+    frame: ViewFrame = CAMERA_FRAME,
+) -> None:
+    """Write one scan: x, y, z in m, intensity = σ in mm. The same cloud gives the same bytes.
 
     Parameters
     ----------
@@ -42,6 +53,8 @@ def write_e57(path: Path, cloud: Cloud, at: datetime, *, name: str = "", calibra
         Of the part.
     calibration_id
         Of the calibration they were measured with.
+    frame
+        That the places are written in; the description names it.
 
     Raises
     ------
@@ -51,20 +64,27 @@ def write_e57(path: Path, cloud: Cloud, at: datetime, *, name: str = "", calibra
     if not len(cloud):
         raise InputError(Message("file.empty_cloud", "the cloud has no point, and E57 takes none without"), where=path)
 
+    placed = replace(cloud, points=frame.coordinates(cloud.points))
+    about = (
+        f"Points in m; frame of reference: {IN_WORDS[frame.kind]}. Intensity is the standard uncertainty of each "
+        "point's depth in mm, without what is common to the scan. "
+        f"Calibration {calibration_id or 'not told'}."
+    )
+
     def put(beside: Path) -> None:
         beside.touch(exist_ok=False)  # says what is wrong with the place, which the library does not
         try:
-            _write(beside, cloud, at, name, calibration_id)
+            _write(beside, placed, at, name, about)
         except libe57.E57Exception as error:
             raise OSError(0, "the E57 library failed; the disk may be full") from error
 
     write_beside(path, put)
 
 
-def _write(path: Path, cloud: Cloud, at: datetime, name: str, calibration_id: str) -> None:
+def _write(path: Path, cloud: Cloud, at: datetime, name: str, about: str) -> None:
     file = libe57.ImageFile(str(path), "w")
     try:
-        scan = _head(file, cloud, at, name, calibration_id)
+        scan = _head(file, cloud, at, name, about)
         points = libe57.CompressedVectorNode(file, _prototype(file, cloud), libe57.VectorNode(file, True))
         scan.set("points", points)
         file.root()["data3D"].append(scan)
@@ -84,9 +104,9 @@ def _write(path: Path, cloud: Cloud, at: datetime, name: str, calibration_id: st
 _AXES = ("cartesianX", "cartesianY", "cartesianZ")
 
 
-def _head(file: Any, cloud: Cloud, at: datetime, name: str, calibration_id: str) -> Any:
+def _head(file: Any, cloud: Cloud, at: datetime, name: str, about: str) -> Any:
     """The file's own nodes, and those of the scan but its points."""
-    digest = hashlib.sha256(cloud.points.tobytes() + cloud.sigma.tobytes() + calibration_id.encode()).digest()
+    digest = hashlib.sha256(cloud.points.tobytes() + cloud.sigma.tobytes() + about.encode()).digest()
     seconds = (at.astimezone(UTC) - _GPS_EPOCH).total_seconds() + _LEAP_SECONDS
     file.extensionsAdd("", libe57.E57_V1_0_URI)
     root = file.root()
@@ -102,13 +122,7 @@ def _head(file: Any, cloud: Cloud, at: datetime, name: str, calibration_id: str)
     scan = libe57.StructureNode(file)
     _set(file, scan, "guid", f"{{{UUID(bytes=digest[16:])}}}")
     _set(file, scan, "name", f"{name or 'scan'} (intensity: sigma in mm)")
-    _set(
-        file,
-        scan,
-        "description",
-        "Points in the camera frame, z forward, y down, in m. Intensity is the standard uncertainty of each point's "
-        f"depth in mm, without what is common to the scan. Calibration {calibration_id or 'not told'}.",
-    )
+    _set(file, scan, "description", about)
     _set(file, scan, "sensorVendor", "Trisect")
     scan.set("acquisitionStart", _time(file, seconds))
     low, high = METRES * cloud.points.min(axis=0), METRES * cloud.points.max(axis=0)

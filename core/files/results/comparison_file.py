@@ -3,22 +3,29 @@
 from __future__ import annotations
 
 import io
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from core import __version__
+from core.errors import InputError, words_of
 from core.files.atomic import write_bytes
 from core.files.complaints import checked_json
 from core.files.json_text import write_json
-from core.files.reading import read_json
-from core.files.results.ply_format import Ply, ply_bytes
+from core.files.reading import read_bytes, read_json
+from core.files.results.cloud_csv import PLACES
+from core.files.results.frame_text import frame_comments
+from core.files.results.ply_format import Ply, parse_ply, ply_bytes
 from core.files.tables import RESULT, Finite, OrNan, Probability
 from core.inspect.comparison import Comparison
 from core.inspect.shown.shown_comparison import Alignment, Changed
+from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Command, Message
+from core.model.arrays import Array
 
 NAME = "comparison.json"
 """Among the results of a scan."""
@@ -32,7 +39,7 @@ _POINT = [
     *[("points", "i4"), ("points_other", "i4")],
 ]
 _COLUMNS = {
-    **dict.fromkeys(("x_mm", "y_mm", "z_mm", "nx", "ny", "nz"), "%.6f"),
+    **dict.fromkeys(("nx", "ny", "nz"), "%.6f"),
     **dict.fromkeys(("deviation_mm", "u_mm", "lod95_mm"), "%.6f"),
     **dict.fromkeys(("significant", "points", "points_other"), "%d"),
 }
@@ -137,7 +144,7 @@ def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None
     comments = (
         f"Trisect {__version__}",
         "unit mm",
-        "frame of reference: the camera, z forward, y down",
+        *frame_comments(CAMERA_FRAME),
         f"deviation: from {other} along the normal, in mm; positive where there is more material",
         "sigma: standard uncertainty of the deviation, registration and all; lod95: 1.96 of it; "
         "significant: 1 where the deviation is beyond it",
@@ -147,13 +154,61 @@ def write_comparison_ply(path: Path, comparison: Comparison, other: str) -> None
 
 def write_comparison_csv(path: Path, comparison: Comparison) -> None:
     """Write the same as a table, a line to each core point; InputError if it cannot be written."""
+    _write_table(path, _columns(comparison), CAMERA_FRAME)
+
+
+def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
+    """Write the comparison.ply in `source` with places and normals in `frame`; InputError if either file cannot be."""
+    rows, comments = _read_points(source)
+    rows = rows.copy()
+    for names, turned in ((("x", "y", "z"), frame.coordinates), (("nx", "ny", "nz"), frame.directions)):
+        moved = turned(np.column_stack([rows[name].astype(np.float64) for name in names]))
+        for name, column in zip(names, moved.T, strict=True):
+            rows[name] = column
+    old = frame_comments(CAMERA_FRAME)
+    kept = [line for line in comments if line not in old]
+    write_bytes(path, ply_bytes(Ply({"vertex": rows}, (*kept[:2], *frame_comments(frame), *kept[2:]))))
+
+
+def write_comparison_csv_in(path: Path, source: Path, frame: ViewFrame) -> None:
+    """Write the comparison.csv in `source` with places and normals in `frame`; InputError if either file cannot be."""
+    try:
+        head, *rows = [line.split(",") for line in read_bytes(source).decode().splitlines()]
+        values = np.array(rows, dtype=np.float64).reshape(-1, len(head))
+        if len(head) != len(_POINT):
+            raise ValueError(f"{len(head)} columns")  # told below
+    except ValueError as error:
+        raise _damaged(source, error) from error
+    moved = [frame.coordinates(values[:, :3]), frame.directions(values[:, 3:6]), values[:, 6:]]
+    _write_table(path, np.hstack(moved), frame)
+
+
+def _read_points(path: Path) -> tuple[NDArray[Any], Sequence[str]]:
+    """Rows and comments of comparison.ply; InputError if it is damaged."""
+    try:
+        data = parse_ply(read_bytes(path))
+        return data.elements["vertex"][[name for name, _ in _POINT]], data.comments
+    except (ValueError, KeyError) as error:
+        raise _damaged(path, error) from error
+
+
+def _damaged(path: Path, error: Exception) -> InputError:
+    return InputError(
+        Message("file.no_comparison", "this is no table of a comparison ({reason})", reason=words_of(error)),
+        where=path,
+        todo=_TODO,
+    )
+
+
+def _write_table(path: Path, values: Array, frame: ViewFrame) -> None:
+    columns = {**dict.fromkeys(PLACES[frame.kind], "%.6f"), **_COLUMNS}
     text = io.StringIO()
-    text.write(",".join(_COLUMNS) + "\n")
-    np.savetxt(text, _columns(comparison), fmt=list(_COLUMNS.values()), delimiter=",")
+    text.write(",".join(columns) + "\n")
+    np.savetxt(text, values, fmt=list(columns.values()), delimiter=",")
     write_bytes(path, text.getvalue().encode())
 
 
-def _columns(comparison: Comparison) -> np.ndarray[Any, np.dtype[np.float64]]:
+def _columns(comparison: Comparison) -> Array:
     detectable, counts = comparison.detectable, comparison.counts.astype(np.float64)
     significant = comparison.significant.astype(np.float64)
     return np.column_stack(

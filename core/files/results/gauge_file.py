@@ -181,6 +181,14 @@ def read_thickness(path: Path) -> Characteristic:
     return thickness_characteristic(_gauge(_read(path), none, np.zeros((0, 3))))
 
 
+def read_lower_face(path: Path) -> LightPlane | None:
+    """The plane of the lower face in gauge.json; None without the file; InputError if it is damaged."""
+    if not path.is_file():
+        return None
+    none = dict.fromkeys(_MEMBERS, np.zeros(0, dtype=np.int64))
+    return _gauge(_read(path), none, np.zeros((0, 3))).lower.plane
+
+
 def _gauge(file: _GaugeFile, members: dict[str, NDArray[np.int64]], points: Array) -> GaugeResult:
     """What a file says, its faces with the `members` among `points` (N, 3)."""
     doubts = doubts_named(file.doubts, complete=file.complete)

@@ -13,6 +13,7 @@ from core.files.reading import read_json
 from core.files.results.inspection_file import AGAIN, read_inspection
 from core.files.tables import Finite, ResultFile, Row3
 from core.inspect.geometry import Geometry, Shape, SphereShape, curves, cylinder, moved, outlines
+from core.inspect.shown.view_frame import ViewFrame
 from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
@@ -54,15 +55,17 @@ class _GeometryFile(ResultFile):
     pose_camera_part: _Pose | None = None
 
 
-def read_geometry(inspection: Path, points: Array) -> Geometry:
-    """What the features of `inspection` are as geometry, in part coordinates where the plan has a frame.
+def read_geometry(inspection: Path, points: Array, frame: ViewFrame) -> Geometry:
+    """What the features of `inspection` are as geometry, in `frame`.
 
     Parameters
     ----------
     inspection
         inspection.json.
     points
-        (N, 3) of the cloud it was made from.
+        (N, 3) of the cloud it was made from, in the camera frame.
+    frame
+        That it is given in.
 
     Raises
     ------
@@ -96,9 +99,7 @@ def read_geometry(inspection: Path, points: Array) -> Geometry:
             Message("file.nothing_to_draw", "holds no plane, sphere, cylinder or section that could be drawn"),
             where=inspection,
         )
-    if tables.pose_camera_part is None:
-        return Geometry(tuple(drawn), of_part=False)
-    return Geometry(tuple(moved(drawn, tables.pose_camera_part.pose().inverse())), of_part=True)
+    return Geometry(tuple(moved(drawn, frame.pose_camera_frame.inverse())), frame.kind)
 
 
 def read_part_frame(inspection: Path) -> Pose | None:

@@ -1,4 +1,4 @@
-"""The mesh as OBJ and as 3MF: triangles over filled holes told apart from those that were measured."""
+"""The mesh as OBJ, STL and 3MF: triangles over filled holes told apart from those measured, where the format can."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ from numpy.typing import NDArray
 
 from core import __version__
 from core.files.atomic import write_bytes, write_text
+from core.files.results.frame_text import IN_WORDS, SHORT
 from core.files.stl import HEAD, TRIANGLE
+from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.model.arrays import Array
 from core.scan.surface.fused_surface import Mesh
 
@@ -32,16 +34,18 @@ _RELATIONS = (
 )
 
 
-def write_obj(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
+def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
     """Write the mesh as Wavefront OBJ, in mm (OBJ itself has no unit), with normals; groups measured and filled.
+
+    Places and directions are those of `frame`, which the head names.
 
     Raises
     ------
     InputError
         If it cannot be written.
     """
-    head = f"# Trisect {__version__}\n# unit mm; frame: the camera, z forward, y down; calibration {calibration_id}\n"
-    parts = [head, _rows("v", mesh.vertices), _rows("vn", mesh.normals)]
+    head = f"# Trisect {__version__}\n# unit mm; frame of reference: {IN_WORDS[frame.kind]}\n"
+    parts = [head, _rows("v", frame.coordinates(mesh.vertices)), _rows("vn", frame.directions(mesh.normals))]
     for name, chosen in _groups(mesh):
         corners = mesh.triangles[chosen] + 1
         lines = [f"f {a}//{a} {b}//{b} {c}//{c}" for a, b, c in corners.tolist()]
@@ -49,8 +53,10 @@ def write_obj(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
     write_text(path, "".join(parts))
 
 
-def write_3mf(path: Path, mesh: Mesh, name: str = "scan") -> None:
+def write_3mf(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME, name: str = "scan") -> None:
     """Write the mesh as 3MF, unit millimetre: an object of what was measured, and one of what was filled.
+
+    Places are those of `frame`, which the description names.
 
     Raises
     ------
@@ -62,14 +68,16 @@ def write_3mf(path: Path, mesh: Mesh, name: str = "scan") -> None:
     3MF Core Specification 1.3, 3MF Consortium.
     """
     objects, items = [], []
+    vertices = frame.coordinates(mesh.vertices)
     for number, (group, chosen) in enumerate(_groups(mesh), start=1):
-        objects.append(_object(number, f"{name}, {group}", mesh.vertices, mesh.triangles[chosen]))
+        objects.append(_object(number, f"{name}, {group}", vertices, mesh.triangles[chosen]))
         items.append(f'<item objectid="{number}"/>')
     model = (
         '<?xml version="1.0" encoding="UTF-8"?>\n'
         '<model unit="millimeter" xml:lang="en-US" '
         'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
         f'<metadata name="Application">Trisect {__version__}</metadata>'
+        f'<metadata name="Description">frame of reference: {IN_WORDS[frame.kind]}</metadata>'
         f"<resources>{''.join(objects)}</resources><build>{''.join(items)}</build></model>"
     )
     data = io.BytesIO()
@@ -100,8 +108,8 @@ def _object(number: int, name: str, vertices: Array, triangles: NDArray[np.int64
     return f'<object id="{number}" type="surface" name={quoteattr(name)}>{shape}</object>'
 
 
-def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
-    """Write the triangles of `mesh` as binary STL, in mm, in the camera frame; normals point towards the camera.
+def write_stl(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
+    """Write the triangles of `mesh` as binary STL, in mm, in `frame`, which the head names; normals face the camera.
 
     Raises
     ------
@@ -109,13 +117,11 @@ def write_stl(path: Path, mesh: Mesh, calibration_id: str = "") -> None:
         If it cannot be written.
     """
     triangles = np.zeros(len(mesh.triangles), dtype=TRIANGLE)
-    corners = mesh.vertices[mesh.triangles]
+    corners = frame.coordinates(mesh.vertices)[mesh.triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     lengths = np.linalg.norm(normals, axis=1, keepdims=True)
     triangles["normal"] = np.divide(normals, lengths, out=np.zeros_like(normals), where=lengths > 0)
     triangles["corners"] = corners
-    head = f"Trisect {__version__}; mm; camera frame, z forward; calibration {calibration_id}".encode(
-        "ascii", "replace"
-    )[:HEAD]
+    head = f"Trisect {__version__}; mm; {SHORT[frame.kind]}".encode("ascii", "replace")[:HEAD]
     count = np.array(len(triangles), dtype="<u4")
     write_bytes(path, head.ljust(HEAD) + count.tobytes() + triangles.tobytes())

@@ -15,7 +15,9 @@ from core.errors import InputError
 from core.files.atomic import write_bytes
 from core.files.limits import LARGEST
 from core.files.reading import MISSING, read_bytes
+from core.files.results.frame_text import frame_comments, told_pose
 from core.files.results.ply_format import Ply, parse_ply, ply_bytes
+from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.surface.cloud import Cloud
@@ -30,7 +32,6 @@ _SINCE_LATER = (_COMMON, *_SECTION, _SEEN, *_RESTS)
 _LEAST_LOST_MM = 1e-4
 """Coordinates that single precision rounds by more are written about an offset: beyond 2048 mm."""
 _OFFSET = "offset "
-_CAMERA_FRAME = "frame of reference: the camera, z forward, y down"
 _NORMALS = [("nx", "f4"), ("ny", "f4"), ("nz", "f4")]
 _CLOUD = [
     # In single precision, off by 0.03 µm at 700 mm: PCL's filters drop all points whose coordinates are double.
@@ -60,10 +61,11 @@ class CloudFile:
     calibration_id: str
 
 
-def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
+def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
     """Write cloud.ply: x y z nx ny nz sigma intensity frame; behind them what the comments in its head say.
 
     Where the surface's normal is not known, nx ny nz are the ray back to the camera: programs stumble over zeros.
+    Places and directions are those of `frame`, which the head states; what is read back is in the camera frame again.
 
     Raises
     ------
@@ -72,13 +74,14 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
     """
     vertices = np.empty(len(cloud), dtype=_CLOUD)
     with np.errstate(over="ignore", invalid="ignore"):  # reading tells of coordinates that are not finite
-        offset = _offset_of(cloud.points)
-        about = cloud.points - offset
+        points = frame.coordinates(cloud.points)
+        offset = _offset_of(points)
+        about = points - offset
         _put(vertices, ("x", "y", "z"), about)
         _put(vertices, _RESTS, about - about.astype(np.float32))
         back = -cloud.points / np.maximum(np.linalg.norm(cloud.points, axis=1, keepdims=True), np.finfo(float).tiny)
     seen = np.asarray(cloud.normals.any(axis=1))
-    _put(vertices, ("nx", "ny", "nz"), np.where(seen[:, None], cloud.normals, back))
+    _put(vertices, ("nx", "ny", "nz"), frame.directions(np.where(seen[:, None], cloud.normals, back)))
     vertices[_SEEN] = seen
     _put(vertices, ("image_u", "image_v"), cloud.uv)
     for name in ("sigma", "intensity", "frame", "sweep", "sigma_common"):
@@ -86,7 +89,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
     _put(vertices, _SECTION, np.column_stack([cloud.skewness, cloud.spread_mm]))
     comments = [
         "unit mm",
-        _CAMERA_FRAME,
+        *frame_comments(frame),
         *([f"{_OFFSET}{offset[0]:.0f} {offset[1]:.0f} {offset[2]:.0f}: add it to x y z"] if offset.any() else []),
         "sigma: standard uncertainty of the depth in mm; frame -1: measured by the fan itself",
         "sigma_common: what camera and fan calibration add to it, in mm, common to all points",
@@ -99,7 +102,7 @@ def write_cloud(path: Path, cloud: Cloud, calibration_id: str) -> None:
 
 
 def read_cloud(path: Path) -> CloudFile:
-    """Read cloud.ply.
+    """Read cloud.ply; whatever frame it is written in, the points are in the camera frame.
 
     Raises
     ------
@@ -122,20 +125,30 @@ def read_cloud(path: Path) -> CloudFile:
     if set(_RESTS) <= set(known):
         points += columns(*_RESTS)
     points += _told_offset(data.comments, path)
+    pose = told_pose(data.comments, path)
     cloud = Cloud(
-        points=points,
+        points=pose.apply(points),
         uv=columns("image_u", "image_v"),
         sigma=columns("sigma")[:, 0],
         intensity=columns("intensity")[:, 0],
         frame=np.asarray(vertices["frame"], dtype=np.int64),
         sweep=np.asarray(vertices["sweep"], dtype=np.int64),
-        normals=normals,
+        normals=normals @ pose.rotation.T,
         sigma_common=columns(_COMMON)[:, 0] if _COMMON in known else np.zeros(0),
         skewness=columns("skewness")[:, 0] if "skewness" in known else np.zeros(0),
         spread_mm=columns("spread")[:, 0] if "spread" in known else np.zeros(0),
     )
+    return CloudFile(cloud, _calibration(data))
+
+
+def calibration_of(path: Path) -> str:
+    """Id of the calibration that a cloud.ply or mesh.ply names, "" if it names none; InputError if it is damaged."""
+    return _calibration(_read(path, _TODO))
+
+
+def _calibration(data: Ply) -> str:
     ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
-    return CloudFile(cloud, ids[0] if ids else "")
+    return ids[0] if ids else ""
 
 
 def _offset_of(points: Array) -> Array:
@@ -158,7 +171,7 @@ def _told_offset(comments: Sequence[str], path: Path) -> Array:
     return offset
 
 
-def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
+def write_mesh(path: Path, mesh: Mesh, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
     """Write mesh.ply: vertices with normals and sigma, triangles; `filled` marks those over holes, if there are any.
 
     Raises
@@ -167,20 +180,20 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str) -> None:
         If it cannot be written.
     """
     vertices = np.empty(len(mesh.vertices), dtype=_MESH)
-    _put(vertices, ("x", "y", "z"), mesh.vertices)
-    _put(vertices, ("nx", "ny", "nz"), mesh.normals)
+    _put(vertices, ("x", "y", "z"), frame.coordinates(mesh.vertices))
+    _put(vertices, ("nx", "ny", "nz"), frame.directions(mesh.normals))
     vertices["sigma"] = mesh.sigma
     marked = [(_FILLED, "u1")] if mesh.filled.any() else []
     faces = np.empty(len(mesh.triangles), dtype=[("vertex_indices", "i4", (3,)), *marked])
     faces["vertex_indices"] = mesh.triangles
     if marked:
         faces[_FILLED] = mesh.filled
-    comments = ["unit mm", _CAMERA_FRAME, "sigma: standard uncertainty in mm"]
+    comments = ["unit mm", *frame_comments(frame), "sigma: standard uncertainty in mm"]
     _write(path, {"vertex": vertices, "face": faces}, comments, calibration_id)
 
 
 def read_mesh(path: Path) -> Mesh:
-    """Read mesh.ply.
+    """Read mesh.ply; whatever frame it is written in, the mesh is in the camera frame.
 
     Raises
     ------
@@ -199,9 +212,10 @@ def read_mesh(path: Path) -> Mesh:
         raise InputError(
             Message("file.triangle_without_vertex", "a triangle names a vertex that is not there"), where=path
         )
+    pose = told_pose(data.comments, path)
     return Mesh(
-        vertices=_columns(vertices, ("x", "y", "z")),
-        normals=_columns(vertices, ("nx", "ny", "nz")),
+        vertices=pose.apply(_columns(vertices, ("x", "y", "z"))),
+        normals=_columns(vertices, ("nx", "ny", "nz")) @ pose.rotation.T,
         sigma=np.asarray(vertices["sigma"], dtype=np.float64),
         triangles=corners,
         filled=np.asarray(faces[_FILLED], dtype=np.bool_)

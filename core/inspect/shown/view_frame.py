@@ -1,7 +1,7 @@
-"""The frame in which measured points are looked at: the part's as far as it is known, else the camera's.
+"""The frame in which points are looked at and handed over: the part's as far as it is known, else the camera's.
 
-Points stay in the camera frame; a view turns about the axes of its frame and reads coordinates out in it. Light to
-import.
+Results stay in the camera frame; a view turns about the axes of its frame and reads coordinates out in it, an export
+is written in it. Light to import.
 """
 
 from __future__ import annotations
@@ -74,7 +74,16 @@ class ViewFrame:
 
     def coordinates(self, points: ArrayLike) -> Array:
         """`points` (N, 3) or (3,) in mm of the camera frame in this one."""
+        if self.kind is FrameKind.CAMERA:
+            return np.asarray(points, dtype=np.float64)  # to the bit
         return self.pose_camera_frame.inverse().apply(points)
+
+    def directions(self, vectors: Array) -> Array:
+        """`vectors` (N, 3) of the camera frame in this one; a length of 0 stays."""
+        if self.kind is FrameKind.CAMERA:
+            return vectors
+        turned: Array = vectors @ self.pose_camera_frame.rotation
+        return turned
 
     def same_as(self, other: ViewFrame) -> bool:
         """Whether it is the same one."""

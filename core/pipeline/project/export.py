@@ -73,10 +73,22 @@ def with_template(content: ReportContent, template: ReportTemplate) -> ReportCon
     )
 
 
-def export(folder: Path, project: Project, kind: str, path: Path, progress: Progress = silent) -> Path:
+def export(
+    folder: Path,
+    project: Project,
+    kind: str,
+    path: Path,
+    in_camera_frame: bool = False,
+    progress: Progress = silent,
+) -> Path:
     """Write a project's result of a kind out of EXPORTS to `path` and return it; it appears whole or not at all.
 
     The report is a copy of the one among the results, or made on the way where the project cannot be written to.
+
+    Parameters
+    ----------
+    in_camera_frame
+        Whether geometry is written as the camera sees it, instead of in the part's own frame where that is known.
 
     Raises
     ------
@@ -87,7 +99,11 @@ def export(folder: Path, project: Project, kind: str, path: Path, progress: Prog
     if kind == "pdf" and not can_be_saved(folder):
         write_bytes(path, report_bytes(folder, project, progress))
     else:
-        results = Results(results_folder(folder), lambda: project_content(folder, project, progress))
+        results = Results(
+            results_folder(folder),
+            lambda: project_content(folder, project, progress),
+            in_camera_frame=in_camera_frame,
+        )
         write_export(kind, results, path, progress)
     progress("writing", 1, 1)
     return path
@@ -99,6 +115,8 @@ def export_results(
     to: Path | None = None,
     said: Callable[[ReportContent], ReportContent] | None = None,
     progress: Progress = silent,
+    *,
+    in_camera_frame: bool = False,
 ) -> dict[str, Path]:
     """Write the results in `out` as `kinds` out of EXPORTS, into the folder `to` (None: beside the results).
 
@@ -108,6 +126,8 @@ def export_results(
     ----------
     said
         Adds what people say to what was measured.
+    in_camera_frame
+        Whether geometry is written as the camera sees it, instead of in the part's own frame where that is known.
 
     Raises
     ------
@@ -116,7 +136,11 @@ def export_results(
     """
     chosen = [export_kind(kind) for kind in kinds]
     folder = make_folder(to or out)
-    results = Results(out, lambda: said(results_content(out)) if said else results_content(out))
+    results = Results(
+        out,
+        lambda: said(results_content(out)) if said else results_content(out),
+        in_camera_frame=in_camera_frame,
+    )
     written: dict[str, Path] = {}
     failed: dict[str, InputError] = {}
     for done, kind in enumerate(chosen):

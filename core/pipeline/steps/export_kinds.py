@@ -21,14 +21,32 @@ from core.files.exchange.xlsx import write_xlsx
 from core.files.reading import read_bytes, resolved
 from core.files.results.camera_file import read_camera
 from core.files.results.cloud_csv import write_points_csv
+from core.files.results.comparison_file import write_comparison_csv_in, write_comparison_ply_in
 from core.files.results.export_list import EXPORTS, ExportKind
+from core.files.results.gauge_file import read_lower_face
+from core.files.results.geometry_file import read_geometry, read_part_frame
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
-from core.files.results.ply import read_cloud, read_mesh
+from core.files.results.ply import calibration_of, read_cloud, read_mesh, write_cloud, write_mesh
 from core.files.results.run_file import read_run
 from core.files.step_graph import FILES
+from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, part_frame
 from core.messages import Message
 from core.progress import Progress, silent
 from core.report.content import ReportContent
+
+
+def frame_of(results: Path, *, in_camera_frame: bool) -> ViewFrame:
+    """The frame that the geometry among `results` is handed over in: the part's own where it is known and wanted.
+
+    Raises
+    ------
+    InputError
+        If what says how the part lies is damaged.
+    """
+    if in_camera_frame:
+        return CAMERA_FRAME
+    pose = read_part_frame(results / FILES["inspection"])
+    return part_frame(pose, read_lower_face(results / FILES["gauge"])) or CAMERA_FRAME
 
 
 class Results:
@@ -40,11 +58,19 @@ class Results:
         Where they lie.
     content
         Gives all that is reported of them.
+    in_camera_frame
+        Whether geometry is handed over as the camera sees it, instead of in the part's own frame where that is known.
     """
 
-    def __init__(self, folder: Path, content: Callable[[], ReportContent]) -> None:
+    def __init__(self, folder: Path, content: Callable[[], ReportContent], *, in_camera_frame: bool = False) -> None:
         self.folder = folder
         self._content = content
+        self._in_camera_frame = in_camera_frame
+
+    @cached_property
+    def frame(self) -> ViewFrame:
+        """The frame that geometry is written in; InputError if what says how the part lies is damaged."""
+        return frame_of(self.folder, in_camera_frame=self._in_camera_frame)
 
     @cached_property
     def content(self) -> ReportContent:
@@ -68,17 +94,51 @@ Write = Callable[[Results, Path, Progress], None]
 
 def _copy(name: str) -> Write:
     def copy(results: Results, path: Path, progress: Progress = silent) -> None:
-        source = results.folder / FILES[name]
-        if not source.exists():
-            raise InputError(
-                Message("export.result_missing", "is not there"),
-                where=source,
-                todo=Message("advice.do_step_first", "do the step that makes it first"),
-            )
+        source = _there(results.folder / FILES[name])
         if resolved(source) != resolved(path):
             write_bytes(path, read_bytes(source))
 
     return copy
+
+
+def _there(source: Path) -> Path:
+    if not source.exists():
+        raise InputError(
+            Message("export.result_missing", "is not there"),
+            where=source,
+            todo=Message("advice.do_step_first", "do the step that makes it first"),
+        )
+    return source
+
+
+def _in_frame(name: str, write: Callable[[Path, Path, ViewFrame], None]) -> Write:
+    """Writes a result that is kept in the camera frame in that of the export: write(path, source, frame)."""
+
+    def written(results: Results, path: Path, progress: Progress = silent) -> None:
+        if results.frame.kind is FrameKind.CAMERA:
+            _copy(name)(results, path, progress)
+            return
+        source = _there(results.folder / FILES[name])
+        if resolved(source) == resolved(path):
+            raise InputError(
+                Message("export.over_result", "would replace the result itself, which stays as the camera sees it"),
+                where=path,
+                todo=Message(
+                    "advice.export_elsewhere", "write it into another folder (--to), or as it is (--frame camera)"
+                ),
+            )
+        write(path, source, results.frame)
+
+    return written
+
+
+def _write_cloud(path: Path, source: Path, frame: ViewFrame) -> None:
+    file = read_cloud(source)
+    write_cloud(path, file.cloud, file.calibration_id, frame)
+
+
+def _write_mesh(path: Path, source: Path, frame: ViewFrame) -> None:
+    write_mesh(path, read_mesh(source), calibration_of(source), frame)
 
 
 def _of_content(write: Callable[[Path, ReportContent], None]) -> Write:
@@ -86,19 +146,19 @@ def _of_content(write: Callable[[Path, ReportContent], None]) -> Write:
 
 
 def _stl(results: Results, path: Path, _: Progress) -> None:
-    write_stl(path, read_mesh(results.folder / FILES["mesh"]))
+    write_stl(path, read_mesh(results.folder / FILES["mesh"]), results.frame)
 
 
 def _obj(results: Results, path: Path, _: Progress) -> None:
-    write_obj(path, read_mesh(results.folder / FILES["mesh"]))
+    write_obj(path, read_mesh(results.folder / FILES["mesh"]), results.frame)
 
 
 def _3mf(results: Results, path: Path, _: Progress) -> None:
-    write_3mf(path, read_mesh(results.folder / FILES["mesh"]))
+    write_3mf(path, read_mesh(results.folder / FILES["mesh"]), results.frame)
 
 
 def _points(results: Results, path: Path, progress: Progress) -> None:
-    write_points_csv(path, read_cloud(results.folder / FILES["cloud"]).cloud, progress)
+    write_points_csv(path, read_cloud(results.folder / FILES["cloud"]).cloud, results.frame, progress)
 
 
 def _e57(results: Results, path: Path, _: Progress) -> None:
@@ -110,7 +170,9 @@ def _e57(results: Results, path: Path, _: Progress) -> None:
         ) from missing
     content = results.content
     calibration = "-".join(mark.id for mark in content.calibrations)
-    write_e57(path, content.cloud, content.timestamp, name=content.part, calibration_id=calibration)
+    write_e57(
+        path, content.cloud, content.timestamp, name=content.part, calibration_id=calibration, frame=results.frame
+    )
 
 
 def _dxf(results: Results, path: Path, _: Progress) -> None:
@@ -120,10 +182,8 @@ def _dxf(results: Results, path: Path, _: Progress) -> None:
         raise InputError(
             Message("export.install_ezdxf", "DXF needs ezdxf: install it with pip install 'trisect[dxf]'"), where=path
         ) from missing
-    from core.files.results.geometry_file import read_geometry
-
     points = read_cloud(results.folder / FILES["cloud"]).cloud.points
-    write_dxf(path, read_geometry(results.folder / FILES["inspection"], points))
+    write_dxf(path, read_geometry(results.folder / FILES["inspection"], points, results.frame))
 
 
 def _opencv(results: Results, path: Path, _: Progress) -> None:
@@ -136,10 +196,10 @@ def _ros(results: Results, path: Path, _: Progress) -> None:
 
 WRITERS: Mapping[str, Write] = {
     "pdf": _copy("report"),
-    "cloud": _copy("cloud"),
+    "cloud": _in_frame("cloud", _write_cloud),
     "e57": _e57,
     "csv": _points,
-    "mesh": _copy("mesh"),
+    "mesh": _in_frame("mesh", _write_mesh),
     "stl": _stl,
     "obj": _obj,
     "3mf": _3mf,
@@ -150,8 +210,8 @@ WRITERS: Mapping[str, Write] = {
     "qif": _of_content(write_qif),
     "dcc": _of_content(write_dcc),
     "dxf": _dxf,
-    "compared": _copy("compared"),
-    "compared-csv": _copy("comparison_table"),
+    "compared": _in_frame("compared", write_comparison_ply_in),
+    "compared-csv": _in_frame("comparison_table", write_comparison_csv_in),
     "json": _copy("gauge"),
     "opencv": _opencv,
     "opencv-json": _opencv,

@@ -13,14 +13,16 @@ from core.files.atomic import make_folder
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
 from core.files.results.ply import read_mesh, write_mesh
 from core.files.step_graph import FILES
+from core.inspect.shown.view_frame import ViewFrame
 from core.messages import Message
+from core.pipeline.steps.export_kinds import frame_of
 from core.progress import Progress, silent
 from core.scan.surface.decimation import Decimated, decimate, decimate_to
 from core.scan.surface.fused_surface import Mesh
 from core.scan.surface.mesh_holes import fill_holes
 
-_WRITE: Mapping[str, Callable[[Path, Mesh], None]] = {
-    "ply": lambda path, mesh: write_mesh(path, mesh, ""),
+_WRITE: Mapping[str, Callable[[Path, Mesh, ViewFrame], None]] = {
+    "ply": lambda path, mesh, frame: write_mesh(path, mesh, "", frame),
     "stl": write_stl,
     "obj": write_obj,
     "3mf": write_3mf,
@@ -67,9 +69,20 @@ def prepared_mesh(mesh: Mesh, options: MeshOptions, progress: Progress = silent)
 
 
 def mesh_step(
-    results: Path, formats: Sequence[str], options: MeshOptions, to: Path, progress: Progress = silent
+    results: Path,
+    formats: Sequence[str],
+    options: MeshOptions,
+    to: Path,
+    progress: Progress = silent,
+    *,
+    in_camera_frame: bool = False,
 ) -> tuple[Decimated, dict[str, Path]]:
     """Write the surface among `results` into the folder `to` in each of the FORMATS named; mesh.ply stays as it is.
+
+    Parameters
+    ----------
+    in_camera_frame
+        Whether it is written as the camera sees it, instead of in the part's own frame where that is known.
 
     Raises
     ------
@@ -84,8 +97,9 @@ def mesh_step(
                 todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(FORMATS)),
             )
     made = prepared_mesh(read_mesh(results / FILES["mesh"]), options, progress)
+    frame = frame_of(results, in_camera_frame=in_camera_frame)
     folder = make_folder(to)
     written = {name: folder / f"surface.{name}" for name in formats}
     for name, path in written.items():
-        _WRITE[name](path, made.mesh)
+        _WRITE[name](path, made.mesh, frame)
     return made, written

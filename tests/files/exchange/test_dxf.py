@@ -14,6 +14,7 @@ from core.inspect.evaluate import evaluate
 from core.inspect.geometry import Curve, CylinderShape, Geometry, Outline, SphereShape, curves, cylinder, outlines
 from core.inspect.plan.feature_spec import FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame
 from core.model import Pose
 from tests.inspect.test_evaluate import BLOCK, ERRORS, PLANES
 
@@ -26,7 +27,7 @@ EVERY = Geometry(
         CylinderShape("bore", np.array([[4.0, 5, 6], [4, 5, 6] + 30 * AXIS]), 8.0),
         Curve("cut A", np.array([[0.0, 0, 0], [1, 0, 0.5], [2, 0, 0.25]])),
     ),
-    of_part=True,
+    FrameKind.PART,
 )
 
 
@@ -41,7 +42,7 @@ def test_every_kind_is_read_back_without_errors_in_millimetres(tmp_path):
     write_dxf(tmp_path / "a.dxf", EVERY)
     document = read(tmp_path / "a.dxf")
     assert (document.units, document.header["$MEASUREMENT"]) == (ezdxf.units.MM, 1)
-    assert document.header["$PROJECTNAME"] == "part coordinates"
+    assert document.header["$PROJECTNAME"] == "the part, coordinates of the inspection plan"
     space = document.modelspace()
     assert {one.dxf.layer for one in space} == {"top_ ü", "ball", "bore", "cut A"}
     (outline,) = space.query('POLYLINE[layer=="top_ ü"]')
@@ -100,10 +101,10 @@ def inspected(folder, inspection, **changes):
     return path
 
 
-def test_an_inspections_geometry_lies_on_its_points_in_part_coordinates(tmp_path, scanned):
+def test_an_inspections_geometry_lies_on_its_points_in_the_frame_asked_for(tmp_path, scanned):
     points, inspection = scanned
-    in_camera = read_geometry(inspected(tmp_path, inspection), points)
-    assert not in_camera.of_part
+    path = inspected(tmp_path, inspection)
+    in_camera = read_geometry(path, points, CAMERA_FRAME)
     by_name = {one.name: one for one in in_camera.drawn}
     top, cut = by_name["top"], by_name["cut"]
     used = points[inspection.result("top").indices]
@@ -111,9 +112,7 @@ def test_an_inspections_geometry_lies_on_its_points_in_part_coordinates(tmp_path
     near = np.linalg.norm(cut.places[:, None] - points[None], axis=2).min(axis=1)
     assert np.median(near) < 1.0, "the curve runs through the cloud"
     pose = Pose.from_vector([0.1, -0.2, 0.3, 5.0, 6.0, 700.0])
-    placed = {"rotation": pose.rotation.tolist(), "translation_mm": pose.translation.tolist()}
-    in_part = read_geometry(inspected(tmp_path, inspection, pose_camera_part=placed), points)
-    assert in_part.of_part
+    in_part = read_geometry(path, points, ViewFrame(FrameKind.PART, pose))
     assert np.allclose(pose.apply(in_part.drawn[0].corners), in_camera.drawn[0].corners)
     write_dxf(tmp_path / "a.dxf", in_part)
     assert len(read(tmp_path / "a.dxf").modelspace()) == len(in_part.drawn)
@@ -122,16 +121,16 @@ def test_an_inspections_geometry_lies_on_its_points_in_part_coordinates(tmp_path
 def test_what_cannot_be_drawn_is_told(tmp_path, scanned):
     points, inspection = scanned
     with pytest.raises(InputError, match="of another scan"):
-        read_geometry(inspected(tmp_path, inspection), points[:10])
+        read_geometry(inspected(tmp_path, inspection), points[:10], CAMERA_FRAME)
     path = inspected(tmp_path, inspection).with_suffix(".npz")
     arrays = dict(np.load(path))
     np.savez(path, **(arrays | {"points_0": np.array([-(2**62)])}))
     with pytest.raises(InputError, match="of another scan"):
-        read_geometry(path.with_suffix(".json"), points)
+        read_geometry(path.with_suffix(".json"), points, CAMERA_FRAME)
     with pytest.raises(InputError, match="no plane, sphere, cylinder or section"):
-        read_geometry(inspected(tmp_path, inspection, features=[]), points)
+        read_geometry(inspected(tmp_path, inspection, features=[]), points, CAMERA_FRAME)
     tables = json.loads(inspected(tmp_path, inspection).read_text())
     for feature in tables["features"]:
         feature.pop("section", None)
     with pytest.raises(InputError, match="does not say where the section cut lies"):
-        read_geometry(inspected(tmp_path, inspection, features=tables["features"]), points)
+        read_geometry(inspected(tmp_path, inspection, features=tables["features"]), points, CAMERA_FRAME)

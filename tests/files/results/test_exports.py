@@ -5,8 +5,9 @@ import pytest
 import trimesh
 
 from core.errors import Cancelled, InputError
-from core.files.results.cloud_csv import POINT_COLUMNS, write_points_csv
+from core.files.results.cloud_csv import point_columns, write_points_csv
 from core.files.results.mesh_export import write_stl
+from core.inspect.shown.view_frame import FrameKind
 from core.scan.surface.fused_surface import Mesh
 
 
@@ -19,18 +20,18 @@ def mesh():
 
 
 def test_another_program_reads_the_mesh_in_mm(tmp_path, mesh):
-    write_stl(tmp_path / "mesh.stl", mesh, "abc-def")
+    write_stl(tmp_path / "mesh.stl", mesh)
     back = trimesh.load_mesh(tmp_path / "mesh.stl", process=False)
     assert np.allclose(back.triangles, mesh.vertices[mesh.triangles])
     assert back.area == pytest.approx(trimesh.Trimesh(mesh.vertices, mesh.triangles).area)
 
 
 def test_the_file_is_binary_stl_with_normals_towards_the_camera(tmp_path, mesh):
-    write_stl(tmp_path / "mesh.stl", mesh, "abc-def")
+    write_stl(tmp_path / "mesh.stl", mesh)
     data = (tmp_path / "mesh.stl").read_bytes()
     assert len(data) == 84 + 50 * 3
     assert not data.startswith(b"solid")  # many programs would take it for text
-    assert b"mm; camera frame, z forward; calibration abc-def" in data[:80]
+    assert b"mm; camera frame, z forward" in data[:80]
     assert int.from_bytes(data[80:84], "little") == 3
     normals = np.array([np.frombuffer(data, "<f4", 3, 84 + 50 * k) for k in range(3)])
     assert np.allclose(normals[0], [0, 0, -1])
@@ -38,9 +39,9 @@ def test_the_file_is_binary_stl_with_normals_towards_the_camera(tmp_path, mesh):
     assert normals[1, 2] < 0
 
 
-def test_an_empty_mesh_and_a_long_id_are_still_a_file(tmp_path):
+def test_an_empty_mesh_is_still_a_file(tmp_path):
     empty = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), dtype=np.int64))
-    write_stl(tmp_path / "empty.stl", empty, "ü" * 99)
+    write_stl(tmp_path / "empty.stl", empty)
     assert len((tmp_path / "empty.stl").read_bytes()) == 84
 
 
@@ -48,7 +49,7 @@ def test_points_are_read_by_numpy_to_a_nanometre(tmp_path, cloud, monkeypatch):
     monkeypatch.setattr("core.files.results.cloud_csv._ROWS_AT_ONCE", 7)
     write_points_csv(tmp_path / "cloud.csv", cloud)
     table = np.genfromtxt(tmp_path / "cloud.csv", delimiter=",", names=True)
-    assert table.dtype.names == tuple(POINT_COLUMNS)
+    assert table.dtype.names == tuple(point_columns(FrameKind.CAMERA))
     assert len(table) == len(cloud)
     for names, values in (
         (("x_camera_mm", "y_camera_mm", "z_camera_mm"), cloud.points),
@@ -67,9 +68,9 @@ def test_every_line_has_the_columns_of_the_head(tmp_path, cloud):
     with (tmp_path / "cloud.csv").open(newline="") as file:
         rows = list(csv.reader(file))
     assert rows[0][:4] == ["x_camera_mm", "y_camera_mm", "z_camera_mm", "sigma_mm"]
-    assert {len(row) for row in rows} == {len(POINT_COLUMNS)}
+    assert {len(row) for row in rows} == {len(point_columns(FrameKind.CAMERA))}
     write_points_csv(tmp_path / "empty.csv", cloud.select(np.zeros(len(cloud), dtype=bool)))
-    assert (tmp_path / "empty.csv").read_text() == ",".join(POINT_COLUMNS) + "\n"
+    assert (tmp_path / "empty.csv").read_text() == ",".join(point_columns(FrameKind.CAMERA)) + "\n"
 
 
 def test_a_cancelled_table_leaves_nothing(tmp_path, cloud):
@@ -77,7 +78,7 @@ def test_a_cancelled_table_leaves_nothing(tmp_path, cloud):
         raise Cancelled
 
     with pytest.raises(Cancelled):
-        write_points_csv(tmp_path / "cloud.csv", cloud, cancel)
+        write_points_csv(tmp_path / "cloud.csv", cloud, progress=cancel)
     assert list(tmp_path.iterdir()) == []
 
 

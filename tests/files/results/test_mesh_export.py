@@ -14,7 +14,7 @@ FILLED = fill_holes(HOLED, 10.0)
 
 def test_3mf_holds_what_was_measured_and_what_was_filled_in_millimetres(tmp_path):
     path = tmp_path / "mesh.3mf"
-    write_3mf(path, FILLED, "a < b")
+    write_3mf(path, FILLED, name="a < b")
     scene = trimesh.load(path)
     assert scene.units == "millimeter"
     parts = {name: part for name, part in scene.geometry.items()}
@@ -23,15 +23,15 @@ def test_3mf_holds_what_was_measured_and_what_was_filled_in_millimetres(tmp_path
     seen = HOLED.vertices[HOLED.measured]
     assert measured.bounds == pytest.approx(np.array([seen.min(axis=0), seen.max(axis=0)]), abs=1e-5)
     first = path.read_bytes()
-    write_3mf(path, FILLED, "a < b")
+    write_3mf(path, FILLED, name="a < b")
     assert path.read_bytes() == first
 
 
 def test_obj_has_normals_groups_and_all_triangles(tmp_path):
     path = tmp_path / "mesh.obj"
-    write_obj(path, FILLED, "abc")
+    write_obj(path, FILLED)
     text = path.read_text()
-    assert "# unit mm; frame: the camera, z forward, y down; calibration abc" in text
+    assert "# unit mm; frame of reference: the camera, z forward, y down\n" in text
     assert text.index("g measured") < text.index("g filled")
     loaded = trimesh.load_mesh(path, process=False)
     assert len(loaded.faces) == len(FILLED.triangles)

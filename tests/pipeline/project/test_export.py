@@ -75,7 +75,7 @@ def test_a_preview_can_be_cancelled(done, folder):
     ("kind", "name"), [("pdf", "report.pdf"), ("cloud", "cloud.ply"), ("mesh", "mesh.ply"), ("json", "gauge.json")]
 )
 def test_a_copy_has_the_bytes_of_the_result(done, folder, tmp_path, kind, name):
-    copy = export(folder, done.project, kind, tmp_path / f"out-{name}")
+    copy = export(folder, done.project, kind, tmp_path / f"out-{name}", in_camera_frame=True)
     assert copy.read_bytes() == (results_folder(folder) / name).read_bytes()
     if kind == "json":
         assert json.loads(copy.read_text())["thickness_mm"] == pytest.approx(50, abs=1)

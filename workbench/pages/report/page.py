@@ -186,6 +186,8 @@ class ReportPage(StepPage):
                 action = menu.addAction(icon(symbol), title)
                 action.triggered.connect(lambda _=False, k=kind: self._export(k))
                 self.exports[kind] = action
+        self._add_frame_choice(menu)
+        menu.aboutToShow.connect(lambda: self._show_frame_choice(menu))
         self.more.setMenu(menu)
         self.folder.setIcon(icon("mdi6.folder-open-outline"))
         self.folder.clicked.connect(self._open_folder)
@@ -202,13 +204,32 @@ class ReportPage(StepPage):
             action = menu.addAction(icon(symbol), title)
             action.setData(kind)
             action.triggered.connect(lambda _=False, k=kind: self._export(k))
+        self._add_frame_choice(menu)
         menu.aboutToShow.connect(lambda: self._grey_exports(menu))
         return menu
 
     def _grey_exports(self, menu: QMenu) -> None:
+        self._show_frame_choice(menu)
         for action in menu.actions():
-            kind = str(action.data())
-            enable(action, self.presenter.export_missing(kind), self._export_help(kind))
+            kind = action.data()
+            if kind is not None:
+                enable(action, self.presenter.export_missing(kind), self._export_help(kind))
+
+    def _add_frame_choice(self, menu: QMenu) -> None:
+        """The choice of the frame, at the end of a menu of exports; it is remembered for all of them."""
+        menu.addSeparator()
+        action = menu.addAction(tr("Places as the camera sees them"))
+        action.setCheckable(True)
+        action.setToolTip(
+            tr(
+                "Clouds, surfaces and geometry are written as the part lies: in its part coordinates, else with z up "
+                "from its lower face. Checked: as the camera sees them, z forward, y down. Each file names its frame."
+            )
+        )
+        action.toggled.connect(lambda wanted: setattr(self.presenter, "in_camera_frame", wanted))
+
+    def _show_frame_choice(self, menu: QMenu) -> None:
+        menu.actions()[-1].setChecked(self.presenter.in_camera_frame)
 
     def _export_help(self, kind: str) -> str:
         if kind == "pdf" and self.presenter.stage is not Stage.MADE:

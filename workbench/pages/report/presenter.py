@@ -22,6 +22,7 @@ PAGE_WIDTH_PX = 1400
 """Pixels across a page as it is drawn for the window, which scales it to the zoom."""
 
 EXPORT_FOLDER = "export folder"
+EXPORT_FRAME = "frame of exports"
 
 
 class ReportPresenter(StepPresenter):
@@ -182,6 +183,15 @@ class ReportPresenter(StepPresenter):
         else:
             self._export(kind, path)
 
+    @property
+    def in_camera_frame(self) -> bool:
+        """Whether geometry is handed over as the camera sees it, instead of as the part lies."""
+        return self.bench.settings.text(EXPORT_FRAME, "part") == "camera"
+
+    @in_camera_frame.setter
+    def in_camera_frame(self, wanted: bool) -> None:
+        self.bench.settings.keep_text(EXPORT_FRAME, "camera" if wanted else "part")
+
     def export_missing(self, kind: str) -> str:
         """Why this cannot be handed over yet, or ""."""
         return {
@@ -252,6 +262,7 @@ class ReportPresenter(StepPresenter):
             self.project.printed_in(printed()),
             kind,
             path,
+            self.in_camera_frame,
             label=tr("Writing {name}", name=path.name),
             on_done=lambda written: self.bench.notices.info(tr("Written: {path}", path=written)),
         )

@@ -200,13 +200,30 @@ def test_other_formats_are_in_a_menu(
     monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "copy")
     menu = page.more.menu()
     page.refreshing.at_once()
-    assert menu is not None and set(menu.actions()) | {page.exports[kind] for kind in USUAL_EXPORTS} == set(
-        page.exports.values()
-    )
+    assert menu is not None
+    kinds = [action for action in menu.actions() if not action.isSeparator() and not action.isCheckable()]
+    assert {*kinds, *(page.exports[kind] for kind in USUAL_EXPORTS)} == set(page.exports.values())
     action = page.exports["e57"]
     assert isinstance(action, QAction)
     action.trigger()
     qtbot.waitUntil(lambda: drawing.exported == [("e57", tmp_path / "copy.e57")])
+
+
+def test_places_are_the_parts_until_the_cameras_are_chosen_in_either_menu(
+    page: ReportPage, drawing: Drawing, qtbot: Any, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    measured(page.presenter)
+    monkeypatch.setattr(ask, "choose_file_to_save", lambda *_: tmp_path / "copy")
+    of_page, of_window = page.more.menu(), page.export_menu()
+    assert of_page is not None
+    for menu, chosen in ((of_page, True), (of_window, False)):
+        menu.aboutToShow.emit()
+        choice = menu.actions()[-1]
+        assert choice.isEnabled() and choice.isChecked() is not chosen, "what was chosen in the other is shown"
+        choice.trigger()
+        page.presenter.export("stl", tmp_path / "copy")
+        qtbot.waitUntil(lambda: not drawing.measuring.busy)
+    assert drawing.in_camera_frame == [True, False]
 
 
 def test_nothing_is_written_where_no_file_is_chosen(

@@ -39,6 +39,7 @@ class Drawing:
         self.measuring = cast(HandLane, bench.measuring)
         self.made: list[Project] = []
         self.exported: list[tuple[str, Path]] = []
+        self.in_camera_frame: list[bool] = []
         self.measuring.answers[jobs.MAKE_REPORT] = self._make
         self.measuring.answers[jobs.EXPORT] = self._export
 
@@ -54,8 +55,9 @@ class Drawing:
         self.made.append(project)
         return folder / "results" / "report.pdf"
 
-    def _export(self, _folder: Path, _project: Project, kind: str, path: Path) -> Path:
+    def _export(self, _folder: Path, _project: Project, kind: str, path: Path, in_camera_frame: bool) -> Path:
         self.exported.append((kind, path))
+        self.in_camera_frame.append(in_camera_frame)
         return path
 
 

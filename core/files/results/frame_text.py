@@ -1,0 +1,67 @@
+"""The frame of reference of files that are handed over: in words, and as the motion back into the camera frame."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from core.errors import InputError
+from core.files.limits import LARGEST
+from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame
+from core.messages import Message
+from core.model import Pose
+
+IN_WORDS: Mapping[FrameKind, str] = {
+    FrameKind.CAMERA: "the camera, z forward, y down",
+    FrameKind.GROUND: "the part, z up from its lower face, x along the camera's",
+    FrameKind.PART: "the part, coordinates of the inspection plan",
+}
+"""As files say it, in English: it is read by programs, too."""
+SHORT: Mapping[FrameKind, str] = {
+    FrameKind.CAMERA: "camera frame, z forward",
+    FrameKind.GROUND: "part, z up from lower face",
+    FrameKind.PART: "part coordinates of the plan",
+}
+"""Where there is room for 80 letters."""
+_BACK = "into the camera frame: "
+_LARGEST_SHEAR = 1e-6
+"""That rows of a rotation may be off right angles and length 1."""
+
+
+def frame_comments(frame: ViewFrame) -> list[str]:
+    """What the head of a PLY file says of its frame: the words, and where it is not the camera's the motion into it."""
+    words = f"frame of reference: {IN_WORDS[frame.kind]}"
+    if frame.kind is FrameKind.CAMERA:
+        return [words]
+    pose = frame.pose_camera_frame
+    numbers = " ".join(repr(float(one)) for one in (*pose.rotation.ravel(), *pose.translation))
+    return [words, f"{_BACK}{numbers}"]
+
+
+def told_pose(comments: Sequence[str], path: Path) -> Pose:
+    """The motion into the camera frame that a file's head states; none of the frame means the camera's own.
+
+    Raises
+    ------
+    InputError
+        If it is no rotation and translation.
+    """
+    told = [line.removeprefix(_BACK) for line in comments if line.startswith(_BACK)]
+    if not told:
+        return CAMERA_FRAME.pose_camera_frame
+    try:
+        numbers = np.array([float(word) for word in told[0].split()])
+    except ValueError:
+        numbers = np.zeros(0)
+    rotation = numbers[:9].reshape(3, 3) if numbers.shape == (12,) else np.zeros((3, 3))
+    with np.errstate(over="ignore", invalid="ignore"):
+        rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() < _LARGEST_SHEAR and np.linalg.det(rotation) > 0
+    if not rigid or not np.all(np.abs(numbers[9:]) <= LARGEST):
+        raise InputError(
+            Message("file.no_frame", "the motion into the camera frame in its head is no rotation and translation"),
+            where=path,
+            todo=Message("advice.make_file_again", "make it again"),
+        )
+    return Pose(rotation, numbers[9:])
