@@ -12,6 +12,7 @@ from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import ACCENT, ALARM, ReportLook, color, prepare_reportlab
 from core.report.pdf import LIMITS
 from core.report.sections.evidence import warnings
+from core.report.sections.standard import faces_table
 from core.report.wording import Words
 
 from .report_samples import block_content, overlay
@@ -79,3 +80,12 @@ def test_overlay_refuses_what_does_not_fit_together():
         replace(good, picture=good.picture.astype(np.float64))
     with pytest.raises(ValueError, match="sweep_sigma"):
         Overlay(good.name, good.picture, good.fan, good.sweep, good.sweep_sigma[:1], good.crossings)
+
+
+def test_the_flatness_of_a_face_is_printed_with_its_uncertainty(content):
+    gauge = replace(content.gauge, upper=replace(content.gauge.upper, flatness_mm=0.016, flatness_u_mm=0.0095))
+    prepare_reportlab()
+    look = ReportLook(Words(), ACCENT)
+    table = next(part for part in faces_table(look, gauge) if hasattr(part, "_cellvalues"))
+    (flatness, *_) = table._cellvalues[1][1:]
+    assert flatness.getPlainText().replace("\xa0", " ") == "0.016 ± 0.019"

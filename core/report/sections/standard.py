@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 
 from reportlab.lib.units import mm
 from reportlab.lib.utils import ImageReader
@@ -224,17 +225,17 @@ def _maps(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         "bin, what lies beyond counted in the last one.",
         "caption",
     )
-    body = [*_faces(look, content.gauge), Spacer(0, 2 * mm), picture, caption]
+    body = [*faces_table(look, content.gauge), Spacer(0, 2 * mm), picture, caption]
     return [section(look, "maps", "Residuals of both faces", body)]
 
 
-def _faces(look: ReportLook, gauge: GaugeResult) -> list[Flowable]:
+def faces_table(look: ReportLook, gauge: GaugeResult) -> list[Flowable]:
     """How flat each face is and what it rests on, and the angle between them."""
     words, faces = look.words, {UPPER: face_facts(gauge.upper), LOWER: face_facts(gauge.lower)}
     columns = [fact.column(words) for fact in faces[UPPER]]
     rows: list[list[Flowable]] = [heads(look, "Face", *columns, numbers=(1, 2, 3))]
     for name, facts in faces.items():
-        numbers = (look.text(fact.parts(words)[0], "number") for fact in facts)
+        numbers = (look.text(replace(fact, unit="").text(words), "number") for fact in facts)
         rows.append([look.text(capital(words(name)), "small"), *numbers])
     angle = angle_fact(gauge)
     return [
