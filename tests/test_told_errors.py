@@ -22,7 +22,6 @@ from core.messages import Command, Message
 from core.model import Camera
 from core.pipeline.steps.camera_step import see_views
 from core.pipeline.steps.planes_step import measure_poses
-from core.pipeline.steps.scan.notes import notes_on_lost_frames
 from core.pipeline.steps.study_step import keep_study, keep_type1
 from core.study.repeats import repeat_statistics
 from core.translations import PSEUDO, language, strange
@@ -86,7 +85,7 @@ def test_a_damaged_picture_of_the_plane_target(recorded):
 
 def test_a_damaged_log_of_a_recording(recorded):
     (recorded / "scan" / LOG).write_text("name,index,time_s,dropped\nf.png,one,0,0\n")
-    (note,) = notes_on_lost_frames(open_set(recorded))
+    (note,) = open_set(recorded).log("scan").notes
     assert "line is damaged" in str(note)
     assert "ļííñéé ííš dáámááĝééd" in pseudo(note)
 

@@ -11,6 +11,9 @@ ROWS = (
             "picture.",
             "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, a film picture by "
             "picture."),
+    Finding("set.log_not_read", Weight.CAUTION, Effect.NONE,
+            "The log of a recording is damaged ({reason}): when and by which camera it was made, and whether frames "
+            "were lost, is not known. Remove the file if it cannot be mended; pictures do not need it."),
     # Camera, light and surface
     Finding("scan.no_reference", Weight.CAUTION, Effect.NONE,
             "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel."),

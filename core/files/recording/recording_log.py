@@ -22,6 +22,7 @@ from core.errors import InputError
 from core.files.atomic import cannot_write
 from core.files.csv_text import csv_text
 from core.files.reading import csv_rows, read_text
+from core.findings.table import note_of
 from core.messages import Message
 
 LOG = "recording.csv"
@@ -114,23 +115,38 @@ def _frame(name: str, index: str, time_s: str, dropped: str, taken_at: str = "",
     return LoggedFrame(name, int(index), float(time_s), int(dropped), at, camera)
 
 
-def when_taken(pictures: Sequence[Path]) -> Taken | None:
-    """By which camera and when the pictures of one folder were taken; None where its log does not say so of each.
+@dataclass(frozen=True, slots=True)
+class FolderLog:
+    """What the log of a folder says of its pictures; nothing needs it, so that a damaged one is told and not used.
 
-    Raises
-    ------
-    InputError
-        If the log cannot be read or is damaged.
+    `frames` are its lines, () where there is no log or it is damaged; `notes` say that it is.
     """
-    if not pictures:
-        return None
-    log = {frame.name: frame for frame in read_log(pictures[0].parent)}
-    frames = [log.get(path.name) for path in pictures]
-    cameras = {"" if frame is None else frame.camera for frame in frames}
-    times = [frame.taken_at for frame in frames if frame is not None and frame.taken_at is not None]
-    if len(times) < len(frames) or len(cameras) > 1 or "" in cameras:
-        return None
-    return Taken(cameras.pop(), min(times), max(times))
+
+    frames: tuple[LoggedFrame, ...] = ()
+    notes: tuple[Message, ...] = ()
+
+    @classmethod
+    def of(cls, folder: Path | None) -> FolderLog:
+        """Read the log in a folder; one that says nothing where there is none."""
+        try:
+            return cls() if folder is None else cls(read_log(folder))
+        except InputError as error:
+            return cls(notes=(note_of("set.log_not_read", reason=error.reason),))
+
+    @property
+    def lost(self) -> int:
+        """How many frames were lost while it was written."""
+        return lost_frames(self.frames)
+
+    def taken(self, pictures: Sequence[Path]) -> Taken | None:
+        """By which camera and when these pictures were taken; None where it does not say so of each."""
+        known = {frame.name: frame for frame in self.frames}
+        frames = [known.get(path.name) for path in pictures]
+        cameras = {"" if frame is None else frame.camera for frame in frames}
+        times = [frame.taken_at for frame in frames if frame is not None and frame.taken_at is not None]
+        if not times or len(times) < len(frames) or len(cameras) > 1 or "" in cameras:
+            return None
+        return Taken(cameras.pop(), min(times), max(times))
 
 
 def lost_frames(frames: Sequence[LoggedFrame]) -> int:

@@ -27,6 +27,7 @@ from pathlib import Path
 from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.reading import file_hash, resolved
+from core.files.recording.recording_log import FolderLog
 from core.files.recording.rig import Rig, read_rig, require_tables, rig_to_toml
 from core.files.recording.set_listing import (
     NAMES_SHOWN,
@@ -112,6 +113,10 @@ class RecordingSet:
     def not_read(self, part: str) -> tuple[Message, ...]:
         """A note on pictures and films in the folder of a part that are of a kind that is not read."""
         return notes_on_not_read(self.folders.get(part))
+
+    def log(self, part: str) -> FolderLog:
+        """Read what the log of a part's recording says: nothing where there is none."""
+        return FolderLog.of(self.folders.get(part))
 
     @property
     def rig_file(self) -> Path:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import replace
 from pathlib import Path
 
 from core.calibrate.camera.views import SeenViews
@@ -22,7 +21,7 @@ from core.pipeline.compile_ahead import compile_ahead
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.kept_features import keep_poses, keep_views, kept_poses, kept_views
-from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_taken, planes_told, solve_planes
+from core.pipeline.steps.planes_step import check_agreement, measure_poses, planes_told, solve_planes, when_taken
 from core.progress import Progress, silent
 from core.second_process import SecondProcess
 
@@ -109,7 +108,7 @@ def solve_poses(
     """
     camera = _accepted(folder, project)
     planes = solve_planes(poses, camera.camera, project.rig, project.options.for_planes, progress, camera)
-    return replace(planes, taken=planes_taken(project_set(folder, project)))
+    return when_taken(planes, project_set(folder, project))
 
 
 def accept_planes(

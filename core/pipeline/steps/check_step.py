@@ -30,6 +30,7 @@ from core.calibrate.fan.interim_check import CheckedPose, check_poses, step_erro
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import FanCalibration
 from core.calibrate.rig_spread import log_likelihoods, stability_by_pictures
+from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
@@ -212,6 +213,7 @@ def since_calibration(
     recording_set: RecordingSet,
     calibration: Calibration,
     check: Sequence[PoseFeatures],
+    scanned: Taken | None,
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
 ) -> Change:
     """What may have changed since the calibration, as far as no picture excludes it.
@@ -222,14 +224,17 @@ def since_calibration(
         The set that is measured.
     check
         The poses of its interim check, as `check_of_the_day` gives them; those of another day say nothing.
+    scanned
+        By which camera and when the frames were taken; None: not known.
     of_measured
         What the pictures that are measured say of deviations; None: nothing.
     """
     recording_set = fresh_check(recording_set, calibration.fan)
     apart = _days_apart(recording_set)
     if apart <= SAME_DAY:
-        return judged(recording_set, calibration, check, of_measured, at_scan=True).change
-    change = judged(replace(recording_set, check=()), calibration, (), of_measured, at_scan=True).change
+        return judged(recording_set, calibration, check, of_measured, at_scan=True, scanned=scanned).change
+    unchecked = replace(recording_set, check=())
+    change = judged(unchecked, calibration, (), of_measured, at_scan=True, scanned=scanned).change
     other_day = note_of("check.another_day", days=apart)
     return replace(change, left_out=(other_day,))
 
@@ -303,10 +308,11 @@ def judged(
     of_measured: Callable[[Sequence[Deviation]], Evidence] | None = None,
     *,
     at_scan: bool = False,
+    scanned: Taken | None = None,
 ) -> Judged:
     """What the pictures of a set, and the poses of its interim `check` if it has one, prove of the rig.
 
-    When its check was taken, or `at_scan`.
+    When its check was taken, or `at_scan`; by which camera and when that was is `scanned`, None where it is not known.
     """
     camera, fan = calibration.camera.camera, calibration.fan
     deviations = (*calibration_deviations(calibration.camera, fan), *changes(camera, fan.fan))
@@ -324,7 +330,7 @@ def judged(
             )
         evidence += of_check
     stated = _stated(recording_set, fan)
-    sitting = sitting_of(recording_set, fan) if at_scan and not recording_set.check else None
+    sitting = sitting_of(recording_set.rig, fan, scanned) if at_scan and not recording_set.check else None
     if sitting is not None:
         change = judge(camera, fan.fan, deviations, evidence, sitting.stability)
     if sitting is not None and change.p >= P_TOLD:

@@ -12,13 +12,11 @@ from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
 from core.calibrate.fan.verdict import Constrained
 from core.calibrate.results import CameraCalibration, FanCalibration
-from core.calibrate.sitting import Taken
 from core.errors import InputError
 from core.files.pictures import Picture, compression_of
 from core.files.recording.features_file import write_poses
 from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.recording_log import when_taken
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
@@ -74,7 +72,7 @@ def planes_step(
         except InputError as error:
             raise (error if ridges is None else also_look_at_ridges(error)) from None
         check_agreement(calibration, settings.accept_few_poses)
-        calibration = replace(calibration, taken=planes_taken(work.recording_set))
+        calibration = when_taken(calibration, work.recording_set)
         calibration, sizes = with_compared_sizes(calibration, log.pictures, camera)
         log.notes.extend(sizes)
         log.notes.extend(note for pose in poses for note in pose.notes)
@@ -230,15 +228,11 @@ def solve_planes(
     return fit_fan(poses, camera, known, progress, excluded, adjusted)
 
 
-def planes_taken(recording_set: RecordingSet) -> Taken | None:
-    """By which camera and when the pictures of the planes were taken; None where their log does not say so.
-
-    Raises
-    ------
-    InputError
-        If the log is damaged.
-    """
-    return when_taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
+def when_taken(calibration: FanCalibration, recording_set: RecordingSet) -> FanCalibration:
+    """The calibration with what the log of its pictures says: by which camera and when they were taken."""
+    log = recording_set.log("planes")
+    taken = log.taken([path for pair in recording_set.planes for path in (pair.on, pair.off) if path is not None])
+    return replace(calibration, taken=taken, notes=(*calibration.notes, *log.notes))
 
 
 def fan_options(rig: Rig, settings: PlanesSettings) -> FanOptions:

@@ -98,7 +98,8 @@ def profile_step(
         log.settings.update({**settings.told, **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
         check = check_of_the_day(log.pictures, calibration, settings.check_stripe, progress)
-        change = since_calibration(found, calibration, check)
+        logged = found.log("scan")
+        change = since_calibration(found, calibration, check, logged.taken(found.frames))
         section = SectionChange(surely=None)
         seen: list[Profiles] = []
         steps, pictures = [], []
@@ -143,6 +144,7 @@ def profile_step(
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
             *assumed_stability(found, change, calibration.fan),
+            *logged.notes,
         )
         gauge = replace(gauge, notes=notes)
         log.frames.extend(_records(pictures, seen))

@@ -69,13 +69,14 @@ def scan_step(
         checked = (
             check_of_the_day(log.pictures, calibration, settings.check_stripe, progress) if check is None else check
         )
-        change_by = partial(since_calibration, recording_set, calibration, checked)
+        logged = recording_set.log("scan")
+        change_by = partial(since_calibration, recording_set, calibration, checked, logged.taken(recording_set.frames))
         section = section_change(work, calibration, features.fan)
         facts = facts_of_the_day(work, calibration)
         judgement = judged_scan(solved, change_by, facts, section, settings.method, progress)
         cloud, mesh = shaped()
         cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
-        notes = notes_on_scan(work, calibration, features.fan, solved.scan, judgement)
+        notes = notes_on_scan(work, calibration, features.fan, solved.scan, judgement, logged)
         scan = replace(solved.scan, cloud=cloud, notes=notes)
         log.frames.extend(scan.frames)
         log.notes.extend(notes)

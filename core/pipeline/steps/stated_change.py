@@ -9,8 +9,7 @@ from typing import NamedTuple
 from core.calibrate.change import DEFAULT_STABILITY, Stability
 from core.calibrate.drift import KELVINS_WITHIN_DAY, NO_DRIFT, USUAL_KELVINS, Apart, apart, stability_after
 from core.calibrate.results import FanCalibration
-from core.calibrate.sitting import hours_of_sitting
-from core.files.recording.recording_log import when_taken
+from core.calibrate.sitting import Taken, hours_of_sitting
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import taken_at
@@ -65,18 +64,13 @@ class Sitting(NamedTuple):
     """How far the rig may have changed meanwhile."""
 
 
-def sitting_of(recording_set: RecordingSet, fan: FanCalibration) -> Sitting | None:
+def sitting_of(rig: Rig, fan: FanCalibration, scanned: Taken | None) -> Sitting | None:
     """The sitting in which planes were calibrated and frames recorded; None where that is not one, or not known.
 
-    What had changed before is in the planes' own pictures, as it is in those of a check of the day.
-
-    Raises
-    ------
-    InputError
-        If the log of the frames is damaged.
+    What had changed before is in the planes' own pictures, as it is in those of a check of the day. `scanned` says by
+    which camera and when the frames were taken.
     """
-    rig = recording_set.rig
-    hours = hours_of_sitting(fan.taken, when_taken(recording_set.frames), rig.validity.fresh_hours)
+    hours = hours_of_sitting(fan.taken, scanned, rig.validity.fresh_hours)
     if hours is None or fan.readjusted is not None:
         return None
     since = apart(rig.air.calibrated, rig.air.scanned, hours, KELVINS_WITHIN_DAY)

@@ -19,7 +19,7 @@ from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording import recording_log
 from core.files.recording.recorder import Recorder
-from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog, lost_frames, read_log, when_taken
+from core.files.recording.recording_log import LOG, FolderLog, LoggedFrame, RecordingLog, lost_frames, read_log
 from core.files.recording.set_listing import check_sizes, scan_frames
 from tests.files.killed_recorder import picture, size_of
 
@@ -186,6 +186,10 @@ def test_the_head_of_a_large_cameras_picture_is_read_without_a_warning(tmp_path)
             check_sizes([tmp_path / "b.png", tmp_path / "a.png"])
 
 
+def when_taken(pictures):
+    return FolderLog.of(pictures[0].parent).taken(pictures)
+
+
 def recorded(folder, names, camera, at):
     """The log of pictures that a camera took a minute apart, from `at` on."""
     log = RecordingLog(folder)
@@ -219,10 +223,14 @@ def test_of_a_replay_of_other_cameras_and_of_pictures_that_are_not_in_it_the_log
     (old / LOG).write_text("name,index,time_s,dropped\na.png,0,0.0,0\n")
     assert when_taken([old / "a.png"]) is None
     assert when_taken([tmp_path / "a.png"]) is None
-    assert when_taken([]) is None
+    assert FolderLog.of(tmp_path).taken([]) is None
+    assert FolderLog.of(None) == FolderLog()
 
 
 def test_a_time_without_its_zone_is_no_time(tmp_path):
     (tmp_path / LOG).write_text("name,index,time_s,dropped,taken_at,camera\na.png,0,0.0,0,2026-03-01T10:00:00,one\n")
     with pytest.raises(InputError, match="time zone"):
-        when_taken([tmp_path / "a.png"])
+        read_log(tmp_path)
+    log = FolderLog.of(tmp_path)
+    assert (log.frames, log.lost, log.taken([tmp_path / "a.png"])) == ((), 0, None)
+    assert [note.code for note in log.notes] == ["set.log_not_read"]

@@ -121,7 +121,7 @@ def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged
 
 def changed_since(recording_set, calibration):
     check = check_of_the_day(PictureReader(recording_set), calibration)
-    return since_calibration(recording_set, calibration, check)
+    return since_calibration(recording_set, calibration, check, None)
 
 
 def scan_of(folder, work: Workspace) -> Measured:

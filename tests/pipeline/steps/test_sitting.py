@@ -4,6 +4,7 @@ import json
 import shutil
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from unittest.mock import patch
 
 import numpy as np
 import pytest
@@ -11,15 +12,18 @@ import pytest
 from core.calibrate.change import Evidence
 from core.calibrate.drift import Drift
 from core.calibrate.sitting import Taken, hours_of_sitting
-from core.files.recording.recording_log import LoggedFrame, RecordingLog
+from core.files.recording import recording_log
+from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity, read_rig, rig_to_toml
+from core.files.results.run_file import read_run
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.workspace import Workspace
 from tests.pipeline.steps.test_check_step import scan_of, unchanged, work_in
 from tests.pipeline.steps.test_stated_change import WARMING, stating
+from tests.simulated import CUT, copy_of, trisect
 
 __all__ = ["unchanged"]  # a fixture of the checks, used here too
 
@@ -48,7 +52,9 @@ def work(unchanged, tmp_path):
 
 
 def change_of(work, of_measured=None):
-    return since_calibration(work.recording_set, work.calibration(), (), of_measured)
+    frames = work.recording_set.frames
+    scanned = work.recording_set.log("scan").taken(frames)
+    return since_calibration(work.recording_set, work.calibration(), (), scanned, of_measured)
 
 
 def sources(change):
@@ -122,6 +128,21 @@ def test_planes_remember_when_their_pictures_were_taken_and_by_which_camera(work
     log(work.recording_set.planes[0].on.parent, NINE)
     planes_step(work)
     assert work.calibration().fan.taken == Taken("one", NINE, NINE)
+
+
+def test_a_damaged_log_is_read_once_told_once_and_keeps_nothing_from_being_measured(tiny_set, tiny_measured, tmp_path):
+    recorded = copy_of(tiny_set, tmp_path / "set")
+    (recorded / "scan" / LOG).write_text("name,index,time_s,dropped\nf.png,one,0,0\n")
+    (recorded / "planes" / LOG).write_text("name,index,time_s,dropped\nf.png,one,0,0\n")
+    out = copy_of(tiny_measured, tmp_path / "out")
+    with patch.object(recording_log, "read_log", wraps=recording_log.read_log) as read:
+        for step, options in (("planes", ()), ("scan", CUT)):
+            said = trisect(step, recorded, "--out", out, *options)
+            assert said.code == 0, said.err
+    assert [call.args[0].name for call in read.call_args_list] == ["planes", "scan"]
+    for step, notes in read_run(out / "run.json").notes.items():
+        told = [note.code for note in notes].count("set.log_not_read")
+        assert told == (step in ("planes", "scan")), step
 
 
 def test_hours_are_from_the_first_picture_to_the_last_in_whatever_order():

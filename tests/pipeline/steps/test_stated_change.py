@@ -29,7 +29,7 @@ def stating(work, **stated):
 def change_of(work, poses=None):
     if poses is None:
         poses = check_of_the_day(PictureReader(work.recording_set), work.calibration())
-    return since_calibration(work.recording_set, work.calibration(), poses)
+    return since_calibration(work.recording_set, work.calibration(), poses, None)
 
 
 def codes(work, poses=None):

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
-from core.files.recording.recording_log import lost_frames, read_log
-from core.files.recording.recording_set import RecordingSet
+from core.files.recording.recording_log import FolderLog
 from core.files.results.planes_file import planes_id
 from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
@@ -21,9 +20,17 @@ from core.scan.results import ScanResult
 
 
 def notes_on_scan(
-    work: Workspace, calibration: Calibration, fan: Sequence[Centreline], scan: ScanResult, judgement: Judgement
+    work: Workspace,
+    calibration: Calibration,
+    fan: Sequence[Centreline],
+    scan: ScanResult,
+    judgement: Judgement,
+    log: FolderLog,
 ) -> tuple[Message, ...]:
-    """All that is told of a scan, the gravest first; `fan` are the centrelines of the fan in its reference."""
+    """All that is told of a scan, the gravest first.
+
+    `fan` are the centrelines of the fan in its reference, `log` is that of its recording.
+    """
     recording_set, readjusted = work.recording_set, calibration.fan.readjusted
     return gravest_first(
         (
@@ -34,7 +41,8 @@ def notes_on_scan(
             *scan.notes,
             *assumed_stability(recording_set, judgement.change, calibration.fan),
             *assumed_shutter(recording_set.rig.row_time_us, scan),
-            *notes_on_lost_frames(recording_set),
+            *log.notes,
+            *notes_on_lost_frames(log.lost),
             *recording_set.not_read("scan"),
         )
     )
@@ -59,12 +67,6 @@ def assumed_shutter(row_time_us: float | None, scan: ScanResult) -> tuple[Messag
     return (note_of("scan.shutter_assumed", field=Field("[camera] row_time_us")),)
 
 
-def notes_on_lost_frames(recording_set: RecordingSet) -> tuple[Message, ...]:
+def notes_on_lost_frames(lost: int) -> tuple[Message, ...]:
     """A note if frames were lost while a live scan was recorded."""
-    try:
-        lost = lost_frames(read_log(recording_set.frames[0].parent))
-    except InputError as error:
-        return (error.message,)
-    if not lost:
-        return ()
-    return (note_of("scan.frames_lost", n=lost),)
+    return (note_of("scan.frames_lost", n=lost),) if lost else ()
