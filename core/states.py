@@ -5,10 +5,46 @@ Files keep the keys. A title is made of a word by `core.messages.capital`.
 
 from __future__ import annotations
 
-from core.messages import label
+from collections.abc import Sequence
+
+from core.messages import Message, label
 
 STEP_STATES = {"todo": label("to do"), "ready": label("ready"), "done": label("done"), "outdated": label("out of date")}
 """Of a step of the work, of a calibration, a check or a report."""
+
+OUT_OF_DATE = {
+    "camera": label("The accepted camera calibration is out of date; calibrate again."),
+    "planes": label("The accepted laser planes are out of date; calibrate again."),
+    "check": label("The check is out of date; check again."),
+    "scan": label("The scan is out of date; measure it again."),
+    "gauge": label("The thickness is out of date; measure it again."),
+    "feature": label("The feature is out of date: it, or one that it rests on, was changed; measure it again."),
+}
+"""Of what the project would give otherwise now, by the result: why nothing that rests on it can be done, and what to do
+first. `changed_since` says what it no longer is of."""
+
+
+def changed_since(names: Sequence[str]) -> Message:
+    """Say why a result is out of date: by the names of what it was made of and is another now.
+
+    Examples
+    --------
+    >>> str(changed_since(["camera", "the pictures"]))
+    'out of date: changed since: camera, the pictures'
+    """
+    return Message("state.changed_since", "out of date: changed since: {names}", names=tuple(names))
+
+
+def outdated_with(steps: Sequence[str]) -> Message:
+    """Say that a result is out of date by what it rests on: by the names of the steps that are.
+
+    Examples
+    --------
+    >>> str(outdated_with(["scan"]))
+    'out of date, because this is: scan'
+    """
+    return Message("state.outdated_with", "out of date, because this is: {steps}", steps=tuple(steps))
+
 
 CHECKS = {"passed": label("in order"), "doubtful": label("in doubt"), "failed": label("changed")}
 """What a check of the rig has shown."""

@@ -68,6 +68,12 @@ def test_a_state_has_the_same_word_in_every_text_of_a_language(name):
     assert wrong == []
 
 
+def test_that_a_result_is_out_of_date_is_worded_in_one_place():
+    """A help text may name the state; what is said of a result that is comes from the table of states."""
+    said = {text.path for text in all_texts() if re.search("out of date", text.english[-1], re.IGNORECASE)}
+    assert said == {"core/states.py", "workbench/pages/whole.py"}
+
+
 def test_no_text_says_a_state_in_another_word():
     said = [
         (text.code, text.english) for text in all_texts() if re.search(rf"(?<!\")\b({OTHER_WORDS})\b", text.english[-1])

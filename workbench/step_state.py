@@ -9,8 +9,9 @@ from enum import StrEnum
 from core.files.project.data import Done, Project
 from core.files.project.keys import changed, inputs_of
 from core.files.step_graph import MAIN, PAGES, needed_by
-from core.messages import label
-from workbench.language import joined, time_of, tr
+from core.messages import capital, label
+from core.states import changed_since, outdated_with
+from workbench.language import joined, sentence, text_of, time_of, tr
 
 ORDER = ("project", *PAGES)
 """The pages of the steps in the order of work."""
@@ -57,10 +58,10 @@ def _state(step: str, project: Project, results: Mapping[str, Done], before: Map
         why = list(changed(done.rests_on, inputs_of(MAIN[step], project, results)))
         stale = [other for other in STALE_WITH[step] if before[other].state is State.OUTDATED]
         if why:
-            return StepState(State.OUTDATED, tr("Out of date: changed since: {what}.", what=joined(why)))
+            return StepState(State.OUTDATED, sentence(capital(text_of(changed_since(why)))))
         if stale:
-            names = joined(tr(_NAMES[need]) for need in stale)
-            return StepState(State.OUTDATED, tr("Out of date, because this is: {steps}.", steps=names))
+            because = outdated_with([_NAMES[need] for need in stale])
+            return StepState(State.OUTDATED, sentence(capital(text_of(because))))
         return StepState(State.DONE, tr("Done on {at}.", at=time_of(done.at)))
     missing = [need for need in NEEDS[step] if MAIN[need] not in results]
     if missing:

@@ -43,6 +43,15 @@ SURE = 1e-4
 holds it."""
 
 
+Target = Literal["camera_target", "plane_target"]
+"""The targets of calibrations, by their tables in rig.toml."""
+
+
+def size_assumed(target: Target, scale_sd: float) -> Message:
+    """Note that the size of a target is assumed to be uncertain by this share of it, as nobody has stated it."""
+    return note_of("target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=scale_sd * 1e3)
+
+
 @dataclass(frozen=True, slots=True)
 class BoardTolerance:
     """Tolerance of a printed board, as far as it is known.
@@ -84,19 +93,17 @@ class BoardTolerance:
                 )
             )
 
-    def notes(
-        self, target: Literal["camera_target", "plane_target"], *, shape_known: bool = False
-    ) -> tuple[Message, ...]:
+    def notes(self, target: Target, *, shape_known: bool = False) -> tuple[Message, ...]:
         """What is assumed of a target of which rig.toml says nothing, as far as the step of that `target` rests on it.
 
         A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
-        that not where its shape is known from them.
+        that not where its shape is known from them. That the plane target's size is assumed is told by the fact
+        `scale_assumed` of the fan, as a comparison with another target may still confirm it.
         """
         flatness = note_of("target.flatness_assumed", field=Field(f"{target}.flatness_mm", whole=True), mm=SUSPECTED_MM)
         notes = []
-        if self.scale_sd is None:
-            field = Field(f"{target}.scale_sd", whole=True)
-            notes.append(note_of("target.size_assumed", field=field, per_mille=SUSPECTED_SCALE * 1e3))
+        if self.scale_sd is None and target == "camera_target":
+            notes.append(size_assumed(target, SUSPECTED_SCALE))
         if self.flatness_mm is None and target == "plane_target" and not shape_known:
             notes.append(flatness)
         return tuple(notes)

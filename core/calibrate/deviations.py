@@ -133,5 +133,5 @@ def _of_readjustment(camera: Camera, fan: FanCalibration, known: Readjustment) -
 def _of_scale(camera: Camera, fan: FanCalibration) -> Iterator[Deviation]:
     """A target larger by s of itself makes all of space larger and every π smaller by s; the camera stays the same."""
     if fan.scale_sd > 0:
-        source: Source = "assumed scale" if fan.scale_assumed else "scale"
+        source: Source = "scale" if fan.scale_assumed is False else "assumed scale"
         yield Deviation(source, camera, moved_fan(fan.fan, -fan.scale_sd * fan.fan.pis.ravel()))

@@ -10,7 +10,7 @@ from datetime import datetime
 import numpy as np
 from numpy.typing import NDArray
 
-from core.calibrate.board_shape import BoardShape
+from core.calibrate.board_shape import BoardShape, size_assumed
 from core.calibrate.sitting import Taken
 from core.findings.table import note_of
 from core.image.exclusion import Excludable, Exclusion, Reason
@@ -182,8 +182,7 @@ class FanCalibration:
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
     same; None where that is not known. `scale_sd` is the standard uncertainty of the target's size, as a share of it:
-    no picture shows it, and all lengths have it in common; `scale_assumed` where nobody has stated it, nor does a
-    comparison with another size confirm it.
+    no picture shows it, and all lengths have it in common.
     `cross_validation_mm` is the RMS of the poses' prediction errors. `camera` and `camera_covariance` are the camera
     that the target's poses have corrected, which belongs to this fan; None where it was left as it is. `board` is the
     shape of the plane target where its flatness is uncertain; else it is flat. `bends` (N, 3, 3) are how the light was
@@ -193,8 +192,9 @@ class FanCalibration:
     Facts, None where they are not known: `converged`, whether planes and poses were solved to the end;
     `points_off_alike`, whether the target's points lie off alike in all poses, which U need not contain (nor is it
     known where they seem to, in poses too few to tell);
-    `flatness_assumed`, whether nobody has stated how flat the target is; `taken`, by which camera and when its pictures
-    were taken, by their recording's log.
+    `scale_assumed`, whether nobody has stated how true the target's size is, nor a comparison with another size has
+    confirmed it; `flatness_assumed`, whether nobody has stated how flat the target is; `taken`, by which camera and
+    when its pictures were taken, by their recording's log.
 
     `stripes` are the fan's in each of its poses, as arrays were calibrated; of a recording set planes.npz keeps them.
     """
@@ -213,7 +213,7 @@ class FanCalibration:
     corner_scale: float = math.nan
     by_camera: Array | None = None
     scale_sd: float = 0.0
-    scale_assumed: bool = False
+    scale_assumed: bool | None = None
     cross_validation_mm: float = math.nan
     camera: Camera | None = None
     camera_covariance: Array | None = None
@@ -225,6 +225,12 @@ class FanCalibration:
     flatness_assumed: bool | None = None
     taken: Taken | None = None
     stripes: tuple[tuple[Centreline, ...], ...] = ()
+
+    @property
+    def told(self) -> tuple[Message, ...]:
+        """All that is to be said of it: its notes, and of its target's size that it is assumed, unless it is not."""
+        size = () if self.scale_assumed is False else (size_assumed("plane_target", self.scale_sd),)
+        return tuple(dict.fromkeys((*self.notes, *size)))
 
     @property
     def minority(self) -> Message | None:

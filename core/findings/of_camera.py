@@ -74,7 +74,7 @@ ROWS = (
             "How flat the target is, is not stated ({field}): {mm:g} mm is assumed as standard deviation."),
     Finding("target.size_assumed", Weight.CAUTION, Effect.WIDENS_U,
             "How true the target's size is, is not stated ({field}): {per_mille:g} ‰ of it is assumed as standard "
-            "uncertainty, as of an office laser printer's print.", told_of="scale_assumed"),
+            "uncertainty, as of an office laser printer's print."),
     Finding("target.sizes_agree", Weight.INFORMATION, Effect.NONE,
             "{n} pictures show the plane target beside {other}: it is {percent:+.2f} % ± {U:.2f} % larger against "
             "that than stated, as what is stated lets one expect."),

@@ -450,5 +450,5 @@ class ReportContent:
             for one in self.inspected
             for note in one.notes
         ]
-        every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.notes)
+        every = (*self.notes, *of_gauge, *of_each, *self.camera.notes, *self.fan.told)
         return gravest_first({str(note): note for note in every}.values())

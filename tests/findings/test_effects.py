@@ -83,6 +83,8 @@ def test_with_all_notes_stripped_from_all_files_the_verdict_is_as_before(wide, o
         {"points_off_alike": True},
         {"points_off_alike": None},
         {"scale_assumed": True},
+        {"scale_assumed": None},
+        {"scale_sd": None},
     ],
 )
 def test_a_fact_of_the_planes_takes_away_the_proof_and_so_does_its_lack(facts, wide, out):

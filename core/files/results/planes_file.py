@@ -11,6 +11,7 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from core import __version__
+from core.calibrate.board_shape import SUSPECTED_SCALE
 from core.calibrate.results import CAMERA_PARAMETERS, FanCalibration, PlanePose, Readjustment
 from core.calibrate.sitting import Taken
 from core.errors import InputError, WrongValue
@@ -108,8 +109,8 @@ class _PlanesFile(ResultFile):
     angles_deg: _Angles = Field(default_factory=_Angles)
     covariance: list[list[Finite]] | None = Field(None, description="3N × 3N finite numbers for N planes")
     by_camera: list[list[Finite]] | None = Field(None, description="3N × 10 finite numbers for N planes")
-    scale_sd: Finite = Field(0.0, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
-    scale_assumed: bool = False
+    scale_sd: Finite | None = Field(None, ge=0, le=0.1, description="a share of the target's size from 0 to 0.1")
+    scale_assumed: bool | None = None
     converged: bool | None = None
     points_off_alike: bool | None = None
     flatness_assumed: bool | None = None
@@ -304,8 +305,8 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         poses=tuple(_plane_pose(pose) for pose in file.poses),
         notes=tuple(file.notes),
         by_camera=None if file.by_camera is None else np.array(file.by_camera),
-        scale_sd=file.scale_sd,
-        scale_assumed=file.scale_assumed,
+        scale_sd=SUSPECTED_SCALE if file.scale_sd is None else file.scale_sd,
+        scale_assumed=None if file.scale_sd is None else file.scale_assumed,
         cross_validation_mm=file.cross_validation_mm,
         stripe_sd_mm=file.stripe_sd_mm,
         corner_scale=file.corner_scale,

@@ -20,6 +20,7 @@ from core.files.step_graph import FILES
 from core.messages import Message, plural_message
 from core.pipeline.project.workspace import project_set
 from core.progress import Progress, silent, steps
+from core.states import changed_since
 
 _MAKING = ("measured", "reported")
 """Entries that tell of results."""
@@ -143,7 +144,7 @@ def _project(folder: Path, head: str, progress: Progress) -> Verified:
         problems += _inputs(inputs.items(), project_set(folder, file.project), progress)
     for step, done in file.results.items():
         if names := changed(done.rests_on, inputs_of(step, file.project, file.results)):
-            notes.append(Message("verify.outdated", "{step} is out of date: {names}", step=step, names=names))
+            notes.append(Message("verify.outdated", "{step}: {why}", step=step, why=changed_since(names)))
     return Verified(trail, len(told.files) if told else 0, len(inputs), tuple(problems), tuple(notes))
 
 

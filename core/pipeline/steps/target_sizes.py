@@ -14,7 +14,7 @@ from core.calibrate.target_ratio import NOT_FIXED, P_TOLD, TargetRatio, target_r
 from core.files.reading import file_hash
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.set_listing import pictures_in
-from core.findings.table import note_of, without_notes_on
+from core.findings.table import note_of
 from core.image.targets import BlackSquare, Target, TargetNotFound, detect
 from core.image.targets.picture import Picture
 from core.image.targets.target_view import TargetView
@@ -121,7 +121,7 @@ def with_compared_sizes(
     if ratio.fit_p < NOT_FIXED:
         return fan, said
     known = board.scale_sd
-    if fan.scale_assumed and known is not None:
+    if fan.scale_assumed is not False and known is not None:
         return with_known_size(fan, math.hypot(known, ratio.u, ratio.ratio - 1)), said
     if ratio.p(stated) < P_TOLD:
         fan = replace(fan, scale_sd=min(LARGEST_SCALE_SD, max(fan.scale_sd, abs(ratio.ratio - 1))))
@@ -130,5 +130,4 @@ def with_compared_sizes(
 
 def with_known_size(fan: FanCalibration, scale_sd: float) -> FanCalibration:
     """The fan whose target has this standard uncertainty of its size, as a share: it is assumed no more."""
-    notes = without_notes_on("scale_assumed", fan.notes)
-    return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False, notes=notes)
+    return replace(fan, scale_sd=min(LARGEST_SCALE_SD, scale_sd), scale_assumed=False)

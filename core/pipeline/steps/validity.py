@@ -86,7 +86,7 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     was re-adjusted with, and is confirmed only by an artefact that says as much.
     """
     fan = calibration.fan
-    if not fan.scale_assumed and fan.points_off_alike is False:
+    if fan.scale_assumed is False and fan.points_off_alike is False:
         return calibration
     when = taken_at(work.recording_set.frames)
     try:
@@ -99,7 +99,9 @@ def with_size_by_artefact(work: Workspace, calibration: Calibration) -> Calibrat
     left = _left_possible(nearest)
     if left > (fan.scale_sd if fan.readjusted is not None else LARGEST_SCALE_SD):
         return calibration
-    return replace(calibration, fan=with_known_size(fan, left if fan.scale_assumed else max(fan.scale_sd, left)))
+    return replace(
+        calibration, fan=with_known_size(fan, max(fan.scale_sd, left) if fan.scale_assumed is False else left)
+    )
 
 
 def _left_possible(check: PastCheck) -> float:

@@ -7,6 +7,8 @@ from typing import Any
 
 from PySide6.QtWidgets import QWidget
 
+from core.messages import capital
+from core.states import STEP_STATES
 from workbench.language import tr
 from workbench.pages.calibration.stage import Stage
 from workbench.views.stage_card import CardButton, StageCard
@@ -41,7 +43,7 @@ class CalibrationCard(StageCard):
             Stage.SOLVED: tr("Calibrated, not accepted yet"),
             Stage.REJECTED: tr("Rejected"),
             Stage.ACCEPTED: tr("Accepted"),
-            Stage.OUTDATED: tr("Accepted, but out of date"),
+            Stage.OUTDATED: capital(tr(STEP_STATES["outdated"])),
         }
         sentences = {
             Stage.EMPTY: tr("The folder holds no pictures; choose another one."),

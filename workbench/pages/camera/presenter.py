@@ -12,6 +12,7 @@ from core.image.exclusion import Exclusion
 from core.image.targets.target_view import TargetView
 from core.model.arrays import Array
 from core.pipeline.live.events import CameraDetail, LiveView
+from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.calibration.current_picture import CurrentPicture
@@ -67,7 +68,7 @@ class CameraPresenter(CalibrationPresenter):
             Stage.FAILED: tr("The camera could not be calibrated; record more views or check the target."),
             Stage.SOLVED: tr("Accept a camera calibration first."),
             Stage.REJECTED: tr("The calibration was rejected; accept a better one first."),
-            Stage.OUTDATED: tr("The accepted camera calibration is out of date; calibrate again."),
+            Stage.OUTDATED: tr(OUT_OF_DATE["camera"]),
         }
 
     def _accepted_already(self) -> str:

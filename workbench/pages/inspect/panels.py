@@ -22,6 +22,7 @@ from core.inspect.shown.view_frame import FRAME_NAMES, ViewFrame
 from core.report.facts.of_budget import budget_facts
 from core.report.facts.of_gauge import gauge_facts
 from core.report.wording import verdict_sentence
+from core.states import OUT_OF_DATE
 from workbench.language import number, sentence, text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
@@ -255,7 +256,7 @@ class ResultPanel(QWidget):
     def _show_verdict(self, gauge: GaugeResult, outdated: bool) -> None:
         """What was proven of other faces or another tolerance is proven no more."""
         if outdated:
-            self.verdict.set_verdict("", tr("The result below is out of date."))
+            self.verdict.set_verdict("", tr(OUT_OF_DATE["gauge"]))
         else:
             self.verdict.set_verdict(words.verdict(gauge), verdict_sentence(gauge, wording()))
 

@@ -15,6 +15,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Fan
+from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages import stripe_settings
@@ -71,7 +72,7 @@ class PlanesPresenter(CalibrationPresenter):
         return any(entry.id == self.candidate and not entry.facts_known for entry in entries)
 
     def _missing(self) -> dict[Stage, str]:
-        outdated = tr("The accepted laser planes are out of date; calibrate again.")
+        outdated = tr(OUT_OF_DATE["planes"])
         if self._tells_too_little:
             outdated = tr("The file of these laser planes, of an earlier version, tells too little; accept them again.")
         elif self.candidate:

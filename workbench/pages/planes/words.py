@@ -19,7 +19,7 @@ def notes(calibration: FanCalibration | None) -> str:
     """What else is to be said of a calibration, a sentence a line; the poses left out are listed by themselves."""
     if calibration is None:
         return ""
-    shown = without_notes_on("poses", calibration.notes)
+    shown = without_notes_on("poses", calibration.told)
     return "\n".join(text_of(note) if note.is_sentence else sentence(text_of(note)) for note in shown)
 
 

@@ -7,7 +7,9 @@ from PySide6.QtGui import QAction, QDesktopServices
 from PySide6.QtWidgets import QCheckBox, QGridLayout, QLabel, QMenu, QPushButton, QVBoxLayout, QWidget
 
 from core.files.results.export_list import EXPORTS
+from core.messages import capital
 from core.report.template import PAPERS
+from core.states import STEP_STATES
 from core.translations import languages, own_name
 from workbench.language import tr
 from workbench.pages.report.presenter import ReportPresenter
@@ -79,7 +81,7 @@ class ReportPage(StepPage):
             ),
             Stage.MAKING: (tr("Making the report …"), tr("It is written into the results of the project.")),
             Stage.MADE: (tr("The report is made"), p.state.sentence),
-            Stage.OUTDATED: (tr("The report is out of date"), p.state.sentence),
+            Stage.OUTDATED: (capital(tr(STEP_STATES["outdated"])), p.state.sentence),
         }[stage]
         tip = tr("Write report.pdf into the results of the project (Ctrl+R)")
         again = stage in (Stage.MADE, Stage.OUTDATED)

@@ -17,10 +17,10 @@ from core.pipeline.live.events import Detail, PlanesDetail
 from core.report.facts.fact import Fact, named
 from core.report.facts.of_checks import GRADES, artefact_facts, check_facts, readjustment_facts
 from core.report.facts.pictures import left_out
-from core.states import CHECKS, STEP_STATES
+from core.states import CHECKS, OUT_OF_DATE, STEP_STATES, changed_since
 from core.study.artefact_check import ArtefactCheck
 from core.study.control_chart import ControlChart
-from workbench.language import joined, number, sentences, text_of, time_of, tr
+from workbench.language import joined, number, sentence, sentences, text_of, time_of, tr
 from workbench.pages.live.presenter import LivePresenter
 from workbench.pages.scan.artefact_dialog import ArtefactDialog
 from workbench.pages.scan.artefacts import KnownArtefacts
@@ -203,8 +203,8 @@ class CheckCard(QFrame):
                 return "bad", tr("Not checked"), check.problem
         assert check.look is not None
         if stage is CheckStage.OUTDATED:
-            said = tr("Changed since the check: {what}; check again.", what=joined(check.changed_since()))
-            return "warn", capital(tr(STEP_STATES["outdated"])), said
+            why = sentence(capital(text_of(changed_since(check.changed_since()))))
+            return "warn", capital(tr(STEP_STATES["outdated"])), sentences(why, tr(OUT_OF_DATE["check"]))
         verdict, found = check.look.verdict, [check.look.sentence]
         outside = check.history.beyond(check.past) if check.history is not None and check.past is not None else None
         if outside is not None:

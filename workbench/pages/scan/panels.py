@@ -13,6 +13,7 @@ from core.pipeline.live.events import ScanDetail
 from core.report.facts.pictures import left_out
 from core.scan.preview.hints import HintLimits
 from core.scan.preview.shown import ShownScan
+from core.states import STEP_STATES
 from workbench.language import sentences, text_of, tr
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
@@ -95,7 +96,7 @@ class ScanCard(StageCard):
                 return tr("Measured"), sentences(self._how_good(), p.state.sentence)
             case Stage.OUTDATED:
                 again = tr("Measure again.") if p.changed_since() else ""
-                return tr("Measured, but out of date"), sentences(p.state.sentence, again)
+                return capital(tr(STEP_STATES["outdated"])), sentences(p.state.sentence, again)
 
     def _how_good(self) -> str:
         look = self._presenter.work.look

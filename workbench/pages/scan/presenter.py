@@ -19,6 +19,7 @@ from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.pipeline.live.rig_check import rig_check
 from core.scan.features.frames import FrameRecord
+from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.live.presenter import LivePresenter
@@ -146,7 +147,7 @@ class ScanPresenter(StepPresenter):
             return self.cannot_measure
         return {
             Stage.FAILED: tr("The scan could not be measured; look at why, or record another one."),
-            Stage.OUTDATED: tr("The measured scan is out of date; measure it again."),
+            Stage.OUTDATED: tr(OUT_OF_DATE["scan"]),
         }.get(stage, tr("Measure the scan first."))
 
     @property

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import NamedTuple
 
+from core.states import OUT_OF_DATE
 from workbench.language import tr
 
 
@@ -202,7 +203,7 @@ def why_not_compare(facts: CompareFacts) -> str:
         (facts.measuring, tr("The scan is being measured.")),
         (bool(facts.cannot_write), facts.cannot_write),
         (not facts.measured, tr("Measure the artefact first, like a part.")),
-        (facts.outdated, tr("What was measured is out of date; measure it again.")),
+        (facts.outdated, tr(OUT_OF_DATE["scan"])),
     )
     return next((why for true, why in reasons if true), "")
 

@@ -475,7 +475,7 @@ def test_a_scan_is_added_once(shown):
 
 def test_an_out_of_date_thickness_is_not_added(shown):
     shown.faces.set_number("nominal_mm", 49.0)
-    assert shown.repeats.can_add == "The thickness is out of date: measure it again first."
+    assert shown.repeats.can_add == "The thickness is out of date; measure it again."
     shown.repeats.add()
     assert shown.project.repeats == ()
 

@@ -135,7 +135,7 @@ def test_the_button_makes_the_report_and_then_makes_it_again(page: ReportPage, d
     assert not page.make.property("primary")
     click(qtbot, page.boxes["maps"])
     page.refreshing.at_once()
-    assert page.card.title.text() == "The report is out of date"
+    assert page.card.title.text() == "Out of date"
     assert page.card.words.text() == "Out of date: changed since: sections of the report."
     assert page.make.property("primary")
     click(qtbot, page.make)

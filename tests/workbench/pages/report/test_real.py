@@ -65,7 +65,7 @@ def test_everything_is_handed_over_the_report_is_what_was_seen_and_what_cannot_b
     t.type_in(t.field("Notes"), "A remark to be printed")
     t.window.go_to("report")
     drawn(t, page)
-    assert page.card.title.text() == "The report is out of date"
+    assert page.card.title.text() == "Out of date"
     written = {}
     for button, name in (
         ("Report (PDF)", "a.pdf"),

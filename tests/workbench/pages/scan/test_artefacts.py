@@ -81,7 +81,7 @@ def test_a_thickness_that_is_out_of_date_is_not_compared(measured):
     model = measured.presenter.model
     model.edit("use another fan", replace(model.project, accepted=replace(model.project.accepted, planes="fan-2")))
     measured.refresh()
-    assert measured.check.compare.toolTip() == "What was measured is out of date; measure it again."
+    assert measured.check.compare.toolTip() == "The scan is out of date; measure it again."
 
 
 def test_both_registers_are_shown_and_what_has_lapsed_is_said(measured, qtbot):

@@ -341,7 +341,7 @@ def test_unchecking_a_frame_in_the_list_leaves_it_out_and_undo_lets_it_in(measur
     qtbot.mouseClick(table.viewport(), LEFT, pos=place.topLeft() + type(place.topLeft())(12, place.height() // 2))
     measured.refreshing.at_once()
     assert measured.presenter.project.options.excluded == {cases.name_of(1)}
-    assert measured.card.title.text() == "Measured, but out of date"
+    assert measured.card.title.text() == "Out of date"
     assert measured.card.words.text() == "Out of date: changed since: left-out frames. Measure again."
     assert measured.card.buttons["run"].text() == "Measure again" and measured.card.buttons["run"].property("primary")
     measured.presenter.model.undo_stack.undo()
@@ -431,7 +431,7 @@ def test_settings_are_changed_in_the_form_and_undone(measured, qtbot):
     form.edited.emit("sigma_cut_mm", 0.2)
     qtbot.waitUntil(lambda: measured.presenter.project.options.sigma_cut_mm == 0.2)
     measured.refreshing.at_once()
-    assert measured.card.title.text() == "Measured, but out of date"
+    assert measured.card.title.text() == "Out of date"
     measured.presenter.model.undo_stack.undo()
     measured.refreshing.at_once()
     assert form.values()["sigma_cut_mm"] == 0.05

@@ -221,7 +221,7 @@ def test_leaving_a_frame_out_is_undone_and_makes_the_result_out_of_date(measured
     assert measured.model.undo_stack.undoText() == "leave out frame0001.png"
     assert measured.stage is Stage.OUTDATED
     assert "left-out frames" in measured.state.sentence
-    assert measured.blocker() == "The measured scan is out of date; measure it again."
+    assert measured.blocker() == "The scan is out of date; measure it again."
     measured.model.undo_stack.undo()
     assert measured.stage is Stage.MEASURED
 

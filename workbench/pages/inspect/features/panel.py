@@ -22,6 +22,7 @@ from core.inspect.characteristic import thickness_characteristic
 from core.inspect.plan import kinds
 from core.inspect.plan.feature_kind import FeatureKind
 from core.inspect.plan.kinds import kind_named, kind_of
+from core.states import OUT_OF_DATE
 from workbench.language import text_of, tr
 from workbench.pages.inspect.features import values as fields
 from workbench.pages.inspect.features import words
@@ -166,7 +167,7 @@ class FeaturesPanel(QWidget):
                 THICKNESS, (Cell(name, icon=icon("mdi6.arrow-expand-vertical")), Cell(tr("not measured"), right=True))
             )
         row, old = thickness_characteristic(gauge), self._scan.is_thickness_old
-        tip = tr("Out of date: measure again.") if old else words.tip(row)
+        tip = tr(OUT_OF_DATE["gauge"]) if old else words.tip(row)
         value = self._value(words.value(row), tip, _verdict_icon(row.verdict), old)
         return TreeRow(THICKNESS, (Cell(name, tip, icon("mdi6.arrow-expand-vertical")), value))
 
@@ -200,7 +201,7 @@ class FeaturesPanel(QWidget):
             tips += [words.used(result), *(words.tip(row) for row in rows)]
             text, mark = text or ("" if rows else tr("has been measured")), _verdict_icon(words.verdict(result))
         if outdated is not None:
-            tips = [tips[0], tr("Out of date: the feature, or one that it rests on, was changed.")]
+            tips = [tips[0], tr(OUT_OF_DATE["feature"])]
         tip = "\n".join(tip for tip in tips if tip)
         feature = Cell(
             tr("{name}, {kind}", name=name, kind=words.short_name(rows[0], name)) if named else name,

@@ -11,6 +11,7 @@ from PySide6.QtCore import QObject, Signal
 from core.files.project.data import Repeat
 from core.files.recording.rig import GaugeSpec
 from core.findings.proof import Doubt
+from core.states import OUT_OF_DATE
 from core.study.doubted import Doubted, doubted_among
 from core.study.repeats import RepeatStatistics, repeat_statistics
 from workbench.bench import Bench
@@ -69,9 +70,9 @@ def _why_not_add(facts: RepeatsFacts) -> str:
     if not facts.thickness:
         return tr("Measure the thickness first.")
     if facts.scan_old:
-        return tr("The scan is out of date: measure it again first, on the page before.")
+        return tr(OUT_OF_DATE["scan"])
     if facts.outdated:
-        return tr("The thickness is out of date: measure it again first.")
+        return tr(OUT_OF_DATE["gauge"])
     if facts.among:
         return tr(
             "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
