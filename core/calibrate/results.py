@@ -177,7 +177,8 @@ class FanCalibration:
     `fan` is the result to use (constrained when the constraint suits the laser), `free` the planes fitted each on
     its own; their covariances take the camera as known. `rms_mm` per line. `angles` (rad) between neighbouring planes
     of the constrained and the free fit. `pencil_gap_mm` is the largest distance of the free planes from those of one
-    pencil, its angles free, within the work volume; `constraint_suits` None where there is no constraint (one line).
+    pencil, its angles free, within the work volume, `pencil_gap_sd_mm` its standard deviation; `constraint_suits` None
+    where there is no constraint (one line).
     `stripe_sd_mm` is the standard deviation of a whole stripe from its plane beyond the stripe's own noise
     (flatness of the plate, lens), `corner_scale` the factor by which the target's points scatter more than they state.
     `by_camera` (3N, 10) is how the stacked π of `fan` follow a change of the camera's parameters, the pictures the
@@ -209,6 +210,7 @@ class FanCalibration:
     verdict: Message | None
     poses: tuple[PlanePose, ...]
     notes: tuple[Message, ...] = ()
+    pencil_gap_sd_mm: float = math.nan
     stripe_sd_mm: float = math.nan
     corner_scale: float = math.nan
     by_camera: Array | None = None

@@ -77,6 +77,16 @@ class Fan:
             sds.append(float(np.sqrt(gradient @ block @ gradient)))
         return tuple(sds)
 
+    @property
+    def distance_sds(self) -> tuple[float, ...]:
+        """Standard deviation in mm of each plane's distance from the camera, by the covariance."""
+        assert self.covariance is not None
+        sds = []
+        for k, pi in enumerate(self.pis):  # d = 1/‖π‖
+            gradient = pi / np.linalg.norm(pi) ** 3
+            sds.append(float(np.sqrt(gradient @ self.covariance[3 * k : 3 * k + 3, 3 * k : 3 * k + 3] @ gradient)))
+        return tuple(sds)
+
 
 def bent_pis(pis: Array, bends: Array, rays: Array) -> Array:
     """π (M, 3) of planes that meet `rays` (M, 3) where light does that is XᵀQX mm off `pis` (M, 3) at X.

@@ -82,6 +82,7 @@ def summarise(
         angles=verdict.constrained_angles,
         free_angles=free_fan.angles,
         pencil_gap_mm=verdict.pencil_gap_mm,
+        pencil_gap_sd_mm=verdict.pencil_gap_sd_mm,
         constraint_suits=verdict.suits,
         verdict=verdict.sentence,
         poses=poses,

@@ -41,6 +41,7 @@ class Verdict:
     constrained_angles: tuple[float, ...]
     suits: bool | None
     pencil_gap_mm: float
+    pencil_gap_sd_mm: float
     sentence: Message
     converged: bool = True
 
@@ -77,7 +78,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
             sentence = Message(
                 "fan.two_planes", "two planes at an unknown angle always are a pencil: nothing constrains them"
             )
-        return Verdict(FreePlanes(pis), free_angles, None, 0.0, sentence)
+        return Verdict(FreePlanes(pis), free_angles, None, 0.0, math.nan, sentence)
     axis_only = _trial(free, None)
     gap, gap_sd = _gap(free, axis_only.pencil, volume)
     tied = axis_only if angle is None else _trial(free, angle)
@@ -90,6 +91,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
         fan_of(tied.pencil).angles,
         suits,
         gap,
+        gap_sd,
         _sentence(start, tied, axis_only, free, angle, (gap, gap_sd), constrained != "auto"),
         tied.converged and axis_only.converged,
     )

@@ -123,6 +123,7 @@ class _PlanesFile(ResultFile):
     readjusted: _Readjusted | None = None
     taken: _Taken | None = None
     pencil_gap_mm: OrNan = math.nan
+    pencil_gap_sd_mm: OrNan = math.nan
     constraint_suits: bool | None = None
     verdict: OptionalMessage = None
     camera_id: str = ""
@@ -225,6 +226,7 @@ def write_planes(path: Path, calibration: FanCalibration, camera: Camera) -> Non
             "stripe_sd_mm": calibration.stripe_sd_mm,
             "corner_scale": calibration.corner_scale,
             "pencil_gap_mm": calibration.pencil_gap_mm,
+            "pencil_gap_sd_mm": calibration.pencil_gap_sd_mm,
             "constraint_suits": calibration.constraint_suits,
             "verdict": kept(calibration.verdict),
             "notes": [kept(note) for note in calibration.notes],
@@ -300,6 +302,7 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         angles=tuple(math.radians(angle) for angle in file.angles_deg.constrained) or fan.angles,
         free_angles=tuple(math.radians(angle) for angle in file.angles_deg.free) or free.angles,
         pencil_gap_mm=file.pencil_gap_mm,
+        pencil_gap_sd_mm=file.pencil_gap_sd_mm,
         constraint_suits=file.constraint_suits,
         verdict=file.verdict,
         poses=tuple(_plane_pose(pose) for pose in file.poses),

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from enum import IntEnum
 from typing import Literal, TypeAlias
 
-from core.messages import NO_BREAK_SPACE, Message, capital
+from core.messages import NO_BREAK_SPACE, Message, capital, decimals_of
 from core.report.wording import Words, grouped
 
 Grade: TypeAlias = Literal["", "good", "warn", "bad"]
@@ -38,13 +38,13 @@ class Fact:
     unit
         "mm", "px", "°", "%"; "" for a pure number and for words.
     digits
-        Decimals of a real number; None: as it was stated, or `significant`.
+        Decimals of a real number without an uncertainty; None: as it was stated, or `significant`.
     tip
         What it means, and how it is made; a whole sentence without its full stop.
     level
         Whom it is for.
     sd
-        Standard or expanded uncertainty in `unit`, as `label` or `tip` say.
+        Standard or expanded uncertainty in `unit`, as `label` or `tip` say; it decides how many decimals are shown.
     interval
         95 % confidence interval in `unit`.
     signed
@@ -69,6 +69,19 @@ class Fact:
     grade: Grade = ""
     significant: int | None = None
     above_zero: bool = False
+
+    @property
+    def decimals(self) -> int | None:
+        """Decimals of a real number: two digits of its uncertainty where that is known, else `digits`.
+
+        Examples
+        --------
+        >>> Fact("flatness", 0.0123, "mm", 3, sd=0.0421).decimals, Fact("flatness", 0.0123, "mm", 3).decimals
+        (3, 3)
+        >>> Fact("angle", 5.00213, "°", 3, sd=0.00021).text(Words())
+        '5.00213° ± 0.00021°'
+        """
+        return decimals_of(self.sd) if self.sd is not None and self.sd > 0 else self.digits
 
     def title(self, words: Words) -> str:
         """What it is called, with the coverage of its interval: 'Cg (95 %)'."""
@@ -129,12 +142,13 @@ class Fact:
             return "∞" if value > 0 else words.numeral("-∞")
         if self.significant is not None:
             value = float(f"{value:.{self.significant}g}")
-        if self.digits is None:
+        decimals = self.decimals
+        if decimals is None:
             return words.general(value)
-        least = 10.0**-self.digits
+        least = 10.0**-decimals
         if self.above_zero and 0 < value < least / 2:
-            return f"<{NO_BREAK_SPACE}{words.fixed(least, self.digits)}"
-        return words.fixed(value, self.digits, signed=signed)
+            return f"<{NO_BREAK_SPACE}{words.fixed(least, decimals)}"
+        return words.fixed(value, decimals, signed=signed)
 
 
 def heading(name: str) -> str:

@@ -7,10 +7,13 @@ from itertools import chain
 
 from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
-from core.messages import Message, label, plural_message
+from core.messages import Message, decimals_of, label, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, named
 from core.report.facts.pictures import used_fact
 from core.scan.features.frames import NO_REASON
+
+_HELD = 1e-9
+"""Standard deviation in rad below which an angle is not fitted but held to what is stated."""
 
 
 def planes_facts(calibration: FanCalibration) -> tuple[Fact, ...]:
@@ -26,15 +29,10 @@ def rest_of_planes(calibration: FanCalibration) -> tuple[Fact, ...]:
         tip = label("Largest distance of the free planes from those of one pencil, within the work volume")
         facts.append(
             Fact(
-                label("off one axis"),
-                calibration.pencil_gap_mm,
-                "mm",
-                3,
-                tip,
-                Reader.AUDITOR,
-                grade=_suits(calibration),
+                label("off one axis"), calibration.pencil_gap_mm, "mm", decimals_of(calibration.pencil_gap_sd_mm), tip,
+                Reader.AUDITOR, grade=_suits(calibration),
             )
-        )
+        )  # fmt: skip
     if math.isfinite(calibration.cross_validation_mm):
         tip = label("RMS distance of the stripes of each pose from the planes that the other poses give")
         facts.append(Fact(label("poses predicted to"), calibration.cross_validation_mm, "mm", 3, tip, Reader.AUDITOR))
@@ -60,6 +58,8 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
     held = label("Angle between neighbouring planes that are held to one pencil")
     free = label("The same where each plane is calibrated on its own (± standard deviation)")
     sds = () if calibration.free.covariance is None else calibration.free.angle_sds
+    fan = calibration.fan
+    of_d, of_kept = ((), ()) if fan.covariance is None else (fan.distance_sds, fan.angle_sds)
     rows: list[tuple[Fact, ...]] = []
     for place, plane in enumerate(calibration.fan.planes):
         rms = calibration.rms_mm[place] if place < len(calibration.rms_mm) else math.nan
@@ -68,13 +68,19 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
         row = [
             Fact(label("RMS"), rms, "mm", 3, about),
             Fact(label("normal (x, y, z)"), normal, tip=label("As the camera sees it"), level=Reader.AUDITOR),
-            Fact(label("d"), plane.d_mm, "mm", 2, label("Distance of the plane from the camera"), Reader.AUDITOR),
-        ]
+            Fact(
+                label("d"), plane.d_mm, "mm", decimals_of(of_d[place]) if of_d else 2,
+                label("Distance of the plane from the camera"), Reader.AUDITOR,
+            ),
+        ]  # fmt: skip
         if place < len(calibration.free_angles):
             angle, sd = calibration.free_angles[place], sds[place] if sds else None
             if place < len(calibration.angles):
                 kept = math.degrees(calibration.angles[place])
-                row.append(Fact(label("to the next"), kept, "°", 3, held, Reader.AUDITOR, grade=_suits(calibration)))
+                digits = _angle_digits(of_kept[place]) if of_kept else 3
+                row.append(
+                    Fact(label("to the next"), kept, "°", digits, held, Reader.AUDITOR, grade=_suits(calibration))
+                )
             row.append(
                 Fact(
                     label("to the next, free"), math.degrees(angle), "°", 3, free, Reader.AUDITOR,
@@ -83,6 +89,11 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
             )  # fmt: skip
         rows.append(tuple(row))
     return tuple(rows)
+
+
+def _angle_digits(sd: float) -> int | None:
+    """Decimals of an angle in degrees with this standard deviation in rad; of one that is held, as it was stated."""
+    return None if sd < _HELD else decimals_of(math.degrees(sd))
 
 
 def planes_sentences(calibration: FanCalibration) -> tuple[Message, ...]:

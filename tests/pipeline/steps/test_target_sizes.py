@@ -26,7 +26,9 @@ from core.simulate.scene.patterns import draw_pattern
 from core.simulate.scene.targets import room_shade
 
 PLANE = LightPlane(np.array([0.0, 0.001, 0.002]))
-FAN = FanCalibration(Fan((PLANE,)), Fan((PLANE,)), (0.0,), (), (), 0.0, None, None, (), scale_sd=5e-4)
+FAN = FanCalibration(
+    Fan((PLANE,)), Fan((PLANE,)), (0.0,), (), (), 0.0, None, None, (), scale_sd=5e-4, scale_assumed=False
+)
 BOARD = Checkerboard(9, 7, 8.0)
 
 

@@ -87,7 +87,7 @@ def _with_unit(fact: Fact) -> str:
 def _in_full(fact: Fact) -> str:
     if not isinstance(fact.value, float):
         return fact.text(wording())
-    return f"{fact.value:.10g}" if fact.digits is None else f"{fact.value:.6f}"
+    return f"{fact.value:.10g}" if fact.decimals is None else f"{fact.value:.6f}"
 
 
 def short_id(calibration_id: str) -> str:

@@ -303,7 +303,7 @@ def test_another_laser_is_solved_at_once_from_the_same_poses(
     assert "as asked" in words.verdict_sentence(found.work.calibration)
     assert planes.measuring.ran == ran
     rows = {row[0]: row[1:] for row in map(fact_row, planes_facts(found.work.calibration))}
-    assert rows["Line 1, to the next"][0] == "5.000°" and rows["Line 1, to the next, free"][0].startswith("5.00")
+    assert rows["Line 1, to the next"][0] == "5°" and rows["Line 1, to the next, free"][0].startswith("5.00")
     assert (rows["Line 1, to the next"][2], rows["Off one axis"][2]) == ("good", "good")
 
 
