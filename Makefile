@@ -34,7 +34,7 @@ ON_SCREEN   := -n 1 $(AS_MODULES)
 PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
 PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
 # $(call prove,SURROUNDINGS,FILES): pytest would take no file for all of them.
-prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -rs $(SIDE_BY_SIDE) -m accuracy $(2)),true)
+prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -p tests.passed_proofs -rs $(SIDE_BY_SIDE) -m accuracy $(2)),true)
 
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
@@ -42,7 +42,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
+.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -86,8 +86,11 @@ proofs: $(READY)          ## what many measurements must keep, and whole jobs in
 	else echo "Xvfb is not installed: windows are proven without a screen only"; \
 	$(call prove,QT_QPA_PLATFORM=offscreen,$(PROOFS)); fi
 
-touched_proofs: $(READY)  ## those that rest on something that has changed since .ci/proven; the others are listed
+touched_proofs: $(READY)  ## those that rest on something that has changed since they passed (.ci/proven); the others are listed
 	@touched=$$($(BIN)/python -m tests.changed proofs) && $(MAKE) --no-print-directory proofs PROOFS="$$touched"
+
+proven: $(READY)          ## into .ci/proven: the files of proofs that have passed whole here, by `make proofs` on a tree without changes
+	$(BIN)/python -m tests.changed passed
 
 accuracy: proofs          ## measure the manual's accuracy tables anew, ideal and hostile: hours; goes on where it was cut off
 	$(BIN)/python -m tests.accuracy --manual

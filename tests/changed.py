@@ -1,12 +1,13 @@
-"""What has changed since it was proven: `python -m tests.changed proofs` and `python -m tests.changed packing`.
+"""What has changed since it was proven: `python -m tests.changed` with `proofs`, `packing` or `passed`.
 
-`.ci/proven` names the commit at which all of `make proofs` passed, and the one at which wheel and bundle were tried. A
-proof is left out where nothing that it rests on has changed since: its own module, those it imports, however deep, the
-fixtures it asks for and what these import. Comments and docstrings do not count. Files that are no modules count by
-`READ_BY`.
+`.ci/proven` names the commit at which all of `make proofs` passed, and the one at which wheel and bundle were tried; a
+file of proofs that has passed since has a line of its own. A proof is left out where nothing that it rests on has
+changed since: its own module, those it imports, however deep, the fixtures it asks for and what these import. Comments
+and docstrings do not count. Files that are no modules count by `READ_BY`.
 
 `proofs` prints the files to run on standard output, and lists on standard error those that are left out.
 `packing` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
+`passed` writes into `.ci/proven` what has passed here since (`tests/passed_proofs.py`), and prints how much that is.
 """
 
 from __future__ import annotations
@@ -20,6 +21,8 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
 PROVEN = Path(".ci/proven")
+PASSED = Path("build/passed_proofs")
+"""Files of proofs that have passed in this checkout, each with its commit, in the form of `PROVEN`."""
 PROGRAM = "trisect"
 """In a text it is the program's name, or a folder's; scripts import the package."""
 PACKAGES = ("core", "workbench", "trisect", "resources", "tests")
@@ -171,19 +174,27 @@ def _git(root: Path, *words: str) -> str:
     return subprocess.run(("git", "-C", str(root), *words), capture_output=True, text=True, check=True).stdout
 
 
-def changed_files(what: str, root: Path = ROOT) -> set[str] | None:
-    """Paths that differ in more than comments from the commit at which `what` was proven; None where it is not known.
-
-    `what` is "proofs" or "packing".
-    """
+def _commits(path: Path) -> dict[str, str]:
+    """What stands in a file of lines "NAME COMMIT"; nothing where it cannot be read."""
     try:
-        lines = (root / PROVEN).read_text(encoding="utf-8").splitlines()
-        commit = dict(line.split() for line in lines)[what]
-        paths = _git(root, "diff", "--name-only", "--no-renames", commit).split("\n")
-    except (OSError, ValueError, KeyError, subprocess.CalledProcessError):
+        return dict(line.split() for line in path.read_text(encoding="utf-8").splitlines())
+    except (OSError, ValueError):
+        return {}
+
+
+def _write_commits(path: Path, commits: dict[str, str]) -> None:
+    path.parent.mkdir(exist_ok=True)
+    path.write_text("".join(f"{name} {commit}\n" for name, commit in commits.items()), encoding="utf-8")
+
+
+def changed_since(root: Path, commit: str | None) -> set[str] | None:
+    """Paths that differ from a commit in more than comments; None where the commit is not known."""
+    try:
+        paths = _git(root, "diff", "--name-only", "--no-renames", commit or "").split("\n")
+    except (OSError, subprocess.CalledProcessError):
         return None
     paths += _git(root, "ls-files", "--others", "--exclude-standard").split("\n")
-    return {path for path in paths if path and _differs(root, commit, path)}
+    return {path for path in paths if path and _differs(root, commit or "", path)}
 
 
 def _differs(root: Path, commit: str, path: str) -> bool:
@@ -208,13 +219,44 @@ def _reader(path: str) -> str:
     return next((reader for start, reader in READ_BY.items() if path.startswith(start)), "tests.conftest")
 
 
-def touched_proofs(root: Path, proofs: Iterable[Path], changed: set[str] | None) -> list[Path]:
-    """Those of the files of proofs that rest on something that has changed; all where that is not known."""
-    if changed is None:
-        return list(proofs)
-    touched = touched_modules(changed)
-    tree = Tree(root, touched)
-    return [path for path in proofs if tree.proof(path) & touched]
+def touched_proofs(root: Path, proofs: Iterable[Path]) -> list[Path]:
+    """Those of the files of proofs that rest on something that has changed since they passed, or may have."""
+    proven = _commits(root / PROVEN)
+    since = {path: proven.get(path.as_posix(), proven.get("proofs")) for path in proofs}
+    changed = {commit: changed_since(root, commit) for commit in set(since.values())}
+    touched = {commit: touched_modules(files) for commit, files in changed.items() if files is not None}
+    tree = Tree(root, set().union(*touched.values()))
+    return [path for path, commit in since.items() if commit not in touched or tree.proof(path) & touched[commit]]
+
+
+def tree_to_prove(root: Path) -> str | None:
+    """The commit that is checked out; None where a file differs from it, but for `PROVEN`."""
+    try:
+        differing = _git(root, "status", "--porcelain", "--", ".", f":!{PROVEN.as_posix()}")
+        return None if differing else _git(root, "rev-parse", "HEAD").strip()
+    except (OSError, subprocess.CalledProcessError):
+        return None
+
+
+def note_passed(root: Path, commit: str, files: dict[str, bool]) -> None:
+    """Keep which files of proofs have passed at a commit, for `take_over`; one that has not is forgotten."""
+    noted = {name: before for name, before in _commits(root / PASSED).items() if name not in files}
+    _write_commits(root / PASSED, noted | {name: commit for name, passed in files.items() if passed})
+
+
+def take_over(root: Path) -> list[str]:
+    """Write into `PROVEN` the files of proofs that have passed, which are returned: one line where all have."""
+    proven, passed = _commits(root / PROVEN), _commits(root / PASSED)
+    names = {path.as_posix() for path in proofs_of(root)}
+    passed = {name: commit for name, commit in sorted(passed.items()) if name in names}
+    commits = {passed.get(name, "") for name in names}
+    if len(commits) == 1 and "" not in commits:
+        proven = {"proofs": commits.pop(), **{name: one for name, one in proven.items() if name == "packing"}}
+    else:
+        proven = {name: one for name, one in proven.items() if name in names or "/" not in name} | passed
+    _write_commits(root / PROVEN, proven)
+    (root / PASSED).unlink(missing_ok=True)
+    return list(passed)
 
 
 def _is_compiled(path: Path) -> bool:
@@ -242,14 +284,18 @@ def proofs_of(root: Path = ROOT) -> list[Path]:
 
 def main() -> None:
     if sys.argv[1:] == ["packing"]:
-        print("changed" * packing_changed(ROOT, changed_files("packing")))
+        print("changed" * packing_changed(ROOT, changed_since(ROOT, _commits(ROOT / PROVEN).get("packing"))))
+        return
+    if sys.argv[1:] == ["passed"]:
+        passed = take_over(ROOT)
+        print(f"{len(passed)} files of proofs are taken over into {PROVEN}:", *passed, sep="\n  ")
         return
     proofs = proofs_of()
-    run = touched_proofs(ROOT, proofs, changed_files("proofs"))
+    run = touched_proofs(ROOT, proofs)
     left_out = [path.as_posix() for path in proofs if path not in run]
     if left_out:
         sys.stderr.write(f"{len(left_out)} of {len(proofs)} files of proofs left out, for nothing that they rest on ")
-        sys.stderr.write("has changed since the commit in .ci/proven:\n" + "".join(f"  {one}\n" for one in left_out))
+        sys.stderr.write("has changed since they passed (.ci/proven):\n" + "".join(f"  {one}\n" for one in left_out))
     print(*(path.as_posix() for path in run))
 
 

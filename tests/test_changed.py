@@ -5,7 +5,18 @@ from pathlib import Path
 
 import pytest
 
-from tests.changed import PROVEN, Tree, changed_files, packing_changed, proofs_of, touched_modules, touched_proofs
+from tests.changed import (
+    PASSED,
+    PROVEN,
+    Tree,
+    changed_since,
+    packing_changed,
+    proofs_of,
+    take_over,
+    touched_modules,
+    touched_proofs,
+    tree_to_prove,
+)
 
 MARK = "@pytest.mark." + "accuracy"  # in two pieces, or this module were taken for one of proofs
 FILES = {
@@ -53,14 +64,33 @@ def checkout(tmp_path) -> Path:
 
 
 def run_again(checkout):
-    touched = touched_proofs(checkout, proofs_of(checkout), changed_files("proofs", checkout))
-    return {path.stem.removeprefix("test_") for path in touched}
+    return {path.stem.removeprefix("test_") for path in touched_proofs(checkout, proofs_of(checkout))}
+
+
+def to_be_packed(checkout):
+    return packing_changed(checkout, changed_since(checkout, proven(checkout).get("packing")))
+
+
+def proven(checkout):
+    lines = (checkout / PROVEN).read_text(encoding="utf-8").splitlines()
+    return dict(line.split() for line in lines if " " in line)
+
+
+def commit_all(checkout) -> str:
+    git(checkout, "add", ".")
+    git(checkout, "commit", "-qm", "More")
+    return subprocess.check_output(("git", "-C", str(checkout), "rev-parse", "HEAD"), text=True).strip()
+
+
+def add_to(checkout, path):
+    with (checkout / path).open("a", encoding="utf-8") as file:
+        file.write("ADDED = 1\n")
 
 
 def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
     assert {path.stem.removeprefix("test_") for path in proofs_of(checkout)} == PROOFS
     assert run_again(checkout) == set()
-    assert not packing_changed(checkout, changed_files("packing", checkout))
+    assert not to_be_packed(checkout)
 
 
 @pytest.mark.parametrize(
@@ -84,8 +114,7 @@ def test_where_nothing_has_changed_no_proof_is_run_again(checkout):
 )
 def test_a_proof_is_run_again_when_something_that_it_imports_or_asks_for_has_changed(checkout, path, proofs):
     (checkout / path).parent.mkdir(exist_ok=True)
-    with (checkout / path).open("a", encoding="utf-8") as file:
-        file.write("ADDED = 1\n")
+    add_to(checkout, path)
     assert run_again(checkout) == proofs
 
 
@@ -104,7 +133,7 @@ def test_comments_and_docstrings_are_no_change(checkout):
 def test_where_the_proven_commit_is_not_known_all_is_run(checkout, text):
     (checkout / PROVEN).write_text(text, encoding="utf-8")
     assert run_again(checkout) == PROOFS
-    assert packing_changed(checkout, changed_files("packing", checkout))
+    assert to_be_packed(checkout)
 
 
 @pytest.mark.parametrize(
@@ -112,13 +141,71 @@ def test_where_the_proven_commit_is_not_known_all_is_run(checkout, text):
     [("core/loops.py", True), ("constraints.txt", True), ("core/deep.py", False), ("tests/test_far.py", False)],
 )
 def test_what_is_packed_is_tried_again_when_loops_or_versions_have_changed(checkout, path, packed):
-    with (checkout / path).open("a", encoding="utf-8") as file:
-        file.write("ADDED = 1\n")
-    assert packing_changed(checkout, changed_files("packing", checkout)) == packed
+    add_to(checkout, path)
+    assert to_be_packed(checkout) == packed
 
 
-def test_no_proof_of_this_project_is_overlooked():
-    tree = Tree(Path(__file__).parents[1])
+def test_a_file_of_proofs_that_has_passed_later_counts_from_then_on(checkout):
+    add_to(checkout, "core/deep.py")
+    add_to(checkout, "core/cli/app.py")
+    later = commit_all(checkout)
+    assert run_again(checkout) == {"far", "run"}
+    with (checkout / PROVEN).open("a", encoding="utf-8") as file:
+        file.write(f"tests/test_far.py {later}\n")
+    assert run_again(checkout) == {"run"}
+    add_to(checkout, "core/far.py")
+    assert run_again(checkout) == {"far", "run"}, "what has changed since then is proven again"
+
+
+def test_a_file_of_proofs_with_a_commit_that_is_not_known_is_run_again(checkout):
+    with (checkout / PROVEN).open("a", encoding="utf-8") as file:
+        file.write(f"tests/test_far.py {'0123456789' * 4}\n")
+    assert run_again(checkout) == {"far"}
+
+
+def test_only_a_tree_without_changes_proves_anything(checkout):
+    assert tree_to_prove(checkout) == proven(checkout)["proofs"], "the file of what is proven may differ"
+    add_to(checkout, "core/far.py")
+    assert tree_to_prove(checkout) is None
+    later = commit_all(checkout)
+    assert tree_to_prove(checkout) == later
+    (checkout / "core/new.py").touch()
+    assert tree_to_prove(checkout) is None
+    assert tree_to_prove(checkout.parent) is None, "nor does one that git does not know"
+
+
+def note(checkout, **commits):
+    (checkout / PASSED).parent.mkdir(exist_ok=True)
+    (checkout / PASSED).write_text("".join(f"tests/test_{name}.py {one}\n" for name, one in commits.items()))
+
+
+def test_what_has_passed_is_taken_over_once_each_with_its_line(checkout):
+    before = proven(checkout)
+    note(checkout, far="a" * 40, seen="b" * 40, gone="c" * 40)
+    assert take_over(checkout) == ["tests/test_far.py", "tests/test_seen.py"]
+    assert proven(checkout) == before | {"tests/test_far.py": "a" * 40, "tests/test_seen.py": "b" * 40}
+    assert take_over(checkout) == []
+    note(checkout, far="d" * 40)
+    take_over(checkout)
+    assert proven(checkout)["tests/test_far.py"] == "d" * 40
+    assert proven(checkout)["tests/test_seen.py"] == "b" * 40
+
+
+def test_where_all_have_passed_at_one_commit_one_line_says_so(checkout):
+    note(checkout, far="a" * 40)
+    take_over(checkout)
+    note(checkout, **dict.fromkeys(PROOFS, "b" * 40))
+    take_over(checkout)
+    assert proven(checkout) == {"proofs": "b" * 40, "packing": proven(checkout)["packing"]}
+
+
+@pytest.fixture(scope="module")
+def tree() -> Tree:
+    """Of this project."""
+    return Tree(Path(__file__).parents[1])
+
+
+def test_no_proof_of_this_project_is_overlooked(tree):
     proofs = proofs_of()
     assert len(proofs) > 100
     assert all("tests.conftest" in tree.proof(path) and "core" in tree.proof(path) for path in proofs[:10])
@@ -129,9 +216,8 @@ def test_files_that_no_proof_reads_touch_no_module():
     assert touched_modules({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
 
 
-def test_no_proof_of_numbers_rests_on_the_window():
+def test_no_proof_of_numbers_rests_on_the_window(tree):
     """The program's name stands in many texts, and is that of the package for scripts, whose start knows the window."""
-    tree = Tree(Path(__file__).parents[1])
     found = {path.as_posix() for path in proofs_of() if "workbench.app" in tree.proof(path)}
     assert found and not {
         path for path in found if path.startswith(("tests/accuracy", "tests/calibrate", "tests/scan"))
