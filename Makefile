@@ -42,7 +42,7 @@ unexport PYTHONDONTWRITEBYTECODE
 
 SCREEN := $(shell command -v xvfb-run >/dev/null && echo 'xvfb-run -a -s "-screen 0 1920x1080x24"')
 
-.PHONY: demo app test offscreen below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
+.PHONY: demo app test offscreen below_workbench touched_below_workbench imports on_screen examples quick proofs touched_proofs proven accuracy bench soak fuzz check docs translations messages structure notice screenshots pictures wheel compile lock bundle try-bundle clean
 
 demo: $(CORE)             ## measure the embedded sample: cloud, mesh and report of a 50 mm gauge block in ./out
 	$(BIN)/trisect demo --out $(OUT)
@@ -63,8 +63,13 @@ test: $(READY)            ## format, lint, types, rooms, examples, every test; w
 offscreen: $(READY)
 	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) $(SCREEN_ONLY:%=--ignore=%)
 
+# Files of tests; pytest would take no file for all.
+BELOW_WORKBENCH = --ignore=tests/workbench
 below_workbench: $(READY) ## every test but those of windows: what another Python than that of `make test` has to pass
-	QT_QPA_PLATFORM=offscreen $(BIN)/pytest $(SIDE_BY_SIDE) --ignore=tests/workbench
+	$(if $(strip $(BELOW_WORKBENCH)),QT_QPA_PLATFORM=offscreen $(BIN)/pytest -p tests.time_left $(SIDE_BY_SIDE) $(BELOW_WORKBENCH))
+
+touched_below_workbench: $(READY) ## those of them that rest on something that has changed since all passed there (.ci/proven)
+	@touched=$$($(BIN)/python -m tests.changed second) && $(MAKE) --no-print-directory below_workbench BELOW_WORKBENCH="$$touched"
 
 imports: $(READY)         ## import every module of the program
 	QT_QPA_PLATFORM=offscreen $(BIN)/python -m tests.imports

@@ -1,11 +1,13 @@
-"""What has changed since it was proven: `python -m tests.changed` with `proofs`, `packing` or `passed`.
+"""What has changed since it was proven: `python -m tests.changed` with `proofs`, `second`, `packing` or `passed`.
 
-`.ci/proven` names the commit at which all of `make proofs` passed, and the one at which wheel and bundle were tried; a
-file of proofs that has passed since has a line of its own. A proof is left out where nothing that it rests on has
+`.ci/proven` names the commits at which all of `make proofs` passed, at which every test below the workbench passed on a
+second Python, and at which wheel and bundle were tried; a file of proofs that has passed since has a line of its own. A
+proof is left out where nothing that it rests on has
 changed since: its own module, those it imports, however deep, the fixtures it asks for and what these import. Comments
 and docstrings do not count. Files that are no modules count by `READ_BY`.
 
-`proofs` prints the files to run on standard output, and lists on standard error those that are left out.
+`proofs` prints the files to run on standard output, and lists on standard error those that are left out; so does
+`second` for the tests that a second Python has to pass, all of which `make test` runs on the first.
 `packing` prints "changed" where a wheel or a bundle could come out otherwise, else nothing.
 `passed` writes into `.ci/proven` what has passed here since (`tests/passed_proofs.py`), and prints how much that is.
 """
@@ -15,7 +17,7 @@ from __future__ import annotations
 import ast
 import subprocess
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cache
 from pathlib import Path
 
@@ -222,7 +224,15 @@ def _reader(path: str) -> str:
 def touched_proofs(root: Path, proofs: Iterable[Path]) -> list[Path]:
     """Those of the files of proofs that rest on something that has changed since they passed, or may have."""
     proven = _commits(root / PROVEN)
-    since = {path: proven.get(path.as_posix(), proven.get("proofs")) for path in proofs}
+    return _touched(root, {path: proven.get(path.as_posix(), proven.get("proofs")) for path in proofs})
+
+
+def touched_on_second(root: Path, tests: Iterable[Path]) -> list[Path]:
+    """The same of files of tests since all of them passed on a second Python."""
+    return _touched(root, dict.fromkeys(tests, _commits(root / PROVEN).get("second")))
+
+
+def _touched(root: Path, since: Mapping[Path, str | None]) -> list[Path]:
     changed = {commit: changed_since(root, commit) for commit in set(since.values())}
     touched = {commit: touched_modules(files) for commit, files in changed.items() if files is not None}
     tree = Tree(root, set().union(*touched.values()))
@@ -250,10 +260,11 @@ def take_over(root: Path) -> list[str]:
     names = {path.as_posix() for path in proofs_of(root)}
     passed = {name: commit for name, commit in sorted(passed.items()) if name in names}
     commits = {passed.get(name, "") for name in names}
+    others = {name: one for name, one in proven.items() if "/" not in name}
     if len(commits) == 1 and "" not in commits:
-        proven = {"proofs": commits.pop(), **{name: one for name, one in proven.items() if name == "packing"}}
+        proven = {"proofs": commits.pop(), **{name: one for name, one in others.items() if name != "proofs"}}
     else:
-        proven = {name: one for name, one in proven.items() if name in names or "/" not in name} | passed
+        proven = others | {name: one for name, one in proven.items() if name in names} | passed
     _write_commits(root / PROVEN, proven)
     (root / PASSED).unlink(missing_ok=True)
     return list(passed)
@@ -275,11 +286,16 @@ def packing_changed(root: Path, changed: set[str] | None) -> bool:
 
 def proofs_of(root: Path = ROOT) -> list[Path]:
     """Every file with proofs."""
-    return [
-        path.relative_to(root)
-        for path in sorted((root / "tests").rglob("test_*.py"))
-        if "mark.accuracy" in path.read_text(encoding="utf-8")
-    ]
+    return [path for path in _files_of_tests(root) if "mark.accuracy" in (root / path).read_text(encoding="utf-8")]
+
+
+def below_workbench(root: Path = ROOT) -> list[Path]:
+    """Every file of tests but those of windows."""
+    return [path for path in _files_of_tests(root) if path.parts[1] != "workbench"]
+
+
+def _files_of_tests(root: Path) -> list[Path]:
+    return [path.relative_to(root) for path in sorted((root / "tests").rglob("test_*.py"))]
 
 
 def main() -> None:
@@ -290,11 +306,13 @@ def main() -> None:
         passed = take_over(ROOT)
         print(f"{len(passed)} files of proofs are taken over into {PROVEN}:", *passed, sep="\n  ")
         return
-    proofs = proofs_of()
-    run = touched_proofs(ROOT, proofs)
-    left_out = [path.as_posix() for path in proofs if path not in run]
+    second = sys.argv[1:] == ["second"]
+    files = below_workbench() if second else proofs_of()
+    run = touched_on_second(ROOT, files) if second else touched_proofs(ROOT, files)
+    left_out = [path.as_posix() for path in files if path not in run]
     if left_out:
-        sys.stderr.write(f"{len(left_out)} of {len(proofs)} files of proofs left out, for nothing that they rest on ")
+        kind = "tests on a second Python" if second else "proofs"
+        sys.stderr.write(f"{len(left_out)} of {len(files)} files of {kind} left out, for nothing that they rest on ")
         sys.stderr.write("has changed since they passed (.ci/proven):\n" + "".join(f"  {one}\n" for one in left_out))
     print(*(path.as_posix() for path in run))
 

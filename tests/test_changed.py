@@ -9,11 +9,13 @@ from tests.changed import (
     PASSED,
     PROVEN,
     Tree,
+    below_workbench,
     changed_since,
     packing_changed,
     proofs_of,
     take_over,
     touched_modules,
+    touched_on_second,
     touched_proofs,
     tree_to_prove,
 )
@@ -194,9 +196,33 @@ def test_what_has_passed_is_taken_over_once_each_with_its_line(checkout):
 def test_where_all_have_passed_at_one_commit_one_line_says_so(checkout):
     note(checkout, far="a" * 40)
     take_over(checkout)
+    before = proven(checkout)
     note(checkout, **dict.fromkeys(PROOFS, "b" * 40))
     take_over(checkout)
-    assert proven(checkout) == {"proofs": "b" * 40, "packing": proven(checkout)["packing"]}
+    assert proven(checkout) == {"proofs": "b" * 40, "packing": before["packing"]}
+
+
+def on_second(checkout):
+    touched = touched_on_second(checkout, below_workbench(checkout))
+    return {path.stem.removeprefix("test_") for path in touched}
+
+
+def test_a_second_python_runs_what_rests_on_a_change_since_all_passed_there(checkout):
+    assert on_second(checkout) == PROOFS | {"quick"}, "never all yet"
+    with (checkout / PROVEN).open("a", encoding="utf-8") as file:
+        file.write(f"second {commit_all(checkout)}\n")
+    assert on_second(checkout) == set()
+    add_to(checkout, "core/deep.py")
+    assert on_second(checkout) == {"far", "quick"}, "whether proofs or not"
+    note(checkout, **dict.fromkeys(PROOFS, "b" * 40))
+    take_over(checkout)
+    assert on_second(checkout) == {"far", "quick"}, "proofs on the first say nothing of it"
+
+
+def test_windows_are_not_tried_on_a_second_python():
+    files = {path.as_posix() for path in below_workbench()}
+    assert "tests/test_changed.py" in files and not any(name.startswith("tests/workbench/") for name in files)
+    assert len(files) > 200
 
 
 @pytest.fixture(scope="module")
