@@ -28,9 +28,26 @@ BEYOND = 0.05
 """The plane is drawn larger than the points reach by this share of their reach, on every side."""
 
 
+ACROSS, HEIGHT = (1, 0, 0), (2, 2, 1)
+"""By the axis a plane is square to: the axis along which a profile in it runs, and that of the profile's heights."""
+
+
+def turned_for(frame: ViewFrame, axis: int, turned_deg: float, tilted_deg: float) -> ViewFrame:
+    """`frame` as a plane square to `axis` stands in it: turned about its heights, then tilted about where it runs.
+
+    A turned plane square to x or y stays upright; a tilted one does not.
+    """
+    if turned_deg:
+        frame = frame.turned(HEIGHT[axis], turned_deg)
+    return frame.turned(ACROSS[axis], tilted_deg) if tilted_deg else frame
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class CutPlane:
-    """The plane on which coordinate number `axis` (an index of AXES) of `frame` is `at_mm`."""
+    """The plane on which coordinate number `axis` (an index of AXES) of `frame` is `at_mm`.
+
+    A plane at any angle stands in a frame that is turned (`turned_for`).
+    """
 
     frame: ViewFrame
     axis: int
@@ -50,12 +67,12 @@ class CutPlane:
     @property
     def across(self) -> int:
         """The axis along which a profile in it runs."""
-        return 1 if self.axis == 0 else 0
+        return ACROSS[self.axis]
 
     @property
     def height(self) -> int:
         """The axis along which heights of that profile count: z, or y in a plane square to z."""
-        return 2 if self.axis < UPRIGHT else 1
+        return HEIGHT[self.axis]
 
     def corners(self, coordinates: Array) -> Array:
         """A patch of it as large as points reach, given in its frame (N, 3): corners (4, 3) in the camera frame.

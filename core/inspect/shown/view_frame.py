@@ -94,6 +94,15 @@ class ViewFrame:
             and np.array_equal(ours.translation, theirs.translation)
         )
 
+    def turned(self, about: int, degrees: float) -> ViewFrame:
+        """The same place with its axes turned about its own axis number `about`, by the right-hand rule."""
+        angle, turn = np.radians(degrees), np.eye(3)
+        first, second = (about + 1) % 3, (about + 2) % 3
+        turn[first, first] = turn[second, second] = np.cos(angle)
+        turn[second, first], turn[first, second] = np.sin(angle), -np.sin(angle)
+        ours = self.pose_camera_frame
+        return ViewFrame(self.kind, Pose(ours.rotation @ turn, ours.translation))
+
 
 CAMERA_FRAME = ViewFrame(FrameKind.CAMERA, Pose.identity())
 

@@ -7,7 +7,7 @@ from numpy.testing import assert_allclose
 from core.inspect.evaluate import evaluate
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
-from core.inspect.shown.cut_plane import CutPlane
+from core.inspect.shown.cut_plane import CutPlane, turned_for
 from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, part_frame
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import LightPlane, Pose
@@ -99,3 +99,27 @@ def test_square_to_z_the_outline_is_that_of_the_block_without_a_mean_line(cloud)
     corners = frame.coordinates(plane.corners(coordinates))
     assert_allclose(corners[:, 2], 40.0, atol=1e-9)
     assert corners[:, :2].min(axis=0) @ [1, 1] < coordinates[:, :2].min(axis=0) @ [1, 1]
+
+
+@pytest.mark.parametrize("axis", [0, 1, 2])
+@pytest.mark.parametrize("turned", [-90.0, -35.0, 0.0, 60.0])
+@pytest.mark.parametrize("tilted", [-20.0, 0.0, 90.0])
+def test_a_turned_frame_is_one_and_turning_alone_leaves_the_heights(axis, turned, tilted):
+    frame = frame_on_table()
+    plane = CutPlane(turned_for(frame, axis, turned, tilted), axis, 0.0)
+    assert_allclose(plane.frame.axes @ plane.frame.axes.T, np.eye(3), atol=1e-12)
+    assert np.linalg.det(plane.frame.axes) == pytest.approx(1.0)
+    assert plane.normal @ frame.axes[axis] == pytest.approx(np.cos(np.radians(turned)) * np.cos(np.radians(tilted)))
+    if not tilted:
+        assert_allclose(plane.frame.axes[plane.height], frame.axes[plane.height], atol=1e-12)
+
+
+def test_across_a_square_plate_a_turned_cut_is_longer_by_its_angle():
+    frame, side = ViewFrame(FrameKind.PART, Pose.identity()), np.arange(-20.0, 20.01, 0.25)
+    plate = np.array([(x, y, 5.0) for x in side for y in side])
+    lengths = []
+    for turned in (0.0, 30.0):
+        plane = CutPlane(turned_for(frame, 1, turned, 0.0), 1, 0.0)
+        lengths.append(np.ptp(plane.profile(plane.frame.coordinates(plate)).position))
+    assert lengths[0] == pytest.approx(40.0)
+    assert lengths[1] == pytest.approx(40.0 / np.cos(np.radians(30.0)), abs=1.2)  # as wide as the cut at its ends

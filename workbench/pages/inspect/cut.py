@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PySide6.QtCore import QObject, Signal
 
 from core.inspect.plan.feature_spec import FeatureSpec
-from core.inspect.shown.cut_plane import UPRIGHT, CutPlane
+from core.inspect.shown.cut_plane import UPRIGHT, CutPlane, turned_for
 from core.inspect.shown.shown_features import ShownProfile
 from core.inspect.shown.view_frame import ViewFrame
 from core.model.arrays import Array
@@ -34,6 +34,8 @@ class InspectCut(QObject):
         super().__init__()
         self._features, self._scan, self._frame = features, scan, frame
         self._on, self._axis, self.hides = False, 0, 0
+        self.turned_deg = self.tilted_deg = 0.0
+        """How far it is turned and tilted out of being square to its axis."""
         self._plane: CutPlane | None = None
         self._points: Array | None = None
         self._coordinates: Array = np.empty((0, 3))
@@ -41,9 +43,10 @@ class InspectCut(QObject):
     @property
     def plane(self) -> CutPlane | None:
         """The plane, if one is shown; it keeps its coordinate as long as the frame is of one kind."""
-        view, frame = self._scan.view, self._frame()
+        view = self._scan.view
         if not self._on or view is None or not len(view):
             return None
+        frame = turned_for(self._frame(), self._axis, self.turned_deg, self.tilted_deg)
         if self._plane is not None and self._points is view.points and frame.same_as(self._plane.frame):
             return self._plane
         before, self._points, self._coordinates = self._plane, view.points, frame.coordinates(view.points)
@@ -89,6 +92,7 @@ class InspectCut(QObject):
         """Lay it through the part, or take it away."""
         if shown != self._on:
             self._on, self._plane = shown, None
+            self.turned_deg = self.tilted_deg = 0.0
             self.changed.emit()
 
     @property
@@ -109,7 +113,18 @@ class InspectCut(QObject):
         """Lay it square to another axis, through the middle of the part."""
         if axis != self._axis:
             self._axis, self._plane = axis, None
+            self.turned_deg = self.tilted_deg = 0.0
             self.changed.emit()
+
+    def turn_to(self, turned_deg: float, tilted_deg: float) -> None:
+        """Stand it at an angle, about its own middle; see `turned_for`."""
+        if self.plane is None or (turned_deg, tilted_deg) == (self.turned_deg, self.tilted_deg):
+            return
+        middle = self.corners().mean(axis=0)
+        self.turned_deg, self.tilted_deg = turned_deg, tilted_deg
+        plane = self.plane
+        self._plane = replace(plane, at_mm=self._within_reach(float(plane.frame.coordinates(middle)[self._axis])))
+        self.changed.emit()
 
     def move_to(self, at_mm: float) -> None:
         """Move it, as far as the points reach."""
@@ -132,6 +147,8 @@ class InspectCut(QObject):
         """Why it cannot become a feature now, or ""."""
         if self._axis >= UPRIGHT:
             return tr("A cut square to z is to look at: cross-sections that are measured stand upright.")
+        if self.tilted_deg:
+            return tr("A tilted cut is to look at: cross-sections that are measured stand upright.")
         if self._features.plan.frame is not None and self._features.pose_camera_part is None:
             return tr("Measure the features first: the plan's part coordinates are not known.")
         return ""

@@ -21,6 +21,8 @@ SIDES = (0, 1, -1)
 """What is hidden, in the order in which it is offered."""
 CHART_PX = 150
 """Height of the profile below the surface, which keeps most of the room."""
+MOST_DEG = 90.0
+"""A plane is turned and tilted by so much to either side: every direction is one of these."""
 SHARES = 3, 2
 """Of the width: the surface's and the profile's, side by side."""
 
@@ -38,7 +40,7 @@ class CutPanel(QWidget):
         self.views.setSpacing(4)
         self.views.addWidget(surface, SHARES[0])
         self._names = ("", "")
-        self.axis, self.at = Choice(), SpinBox()
+        self.axis, self.at, self.turned, self.tilted = Choice(), SpinBox(), SpinBox(), SpinBox()
         self.keep = QPushButton(icon("mdi6.plus"), tr("Add as a section"))
         for name in AXES:
             self.axis.addItem(tr("square to {axis}", axis=name))
@@ -53,8 +55,23 @@ class CutPanel(QWidget):
         self.at.setSuffix(" mm")
         self.at.setDecimals(2)
         self.at.setKeyboardTracking(False)
+        for angle, name, tip in (
+            (self.turned, tr("How far the cut is turned"), tr("Turn the plane to a side; its middle stays")),
+            (self.tilted, tr("How far the cut is tilted"), tr("Lean the plane over: then it is to look at only")),
+        ):
+            angle.setAccessibleName(name)
+            angle.setToolTip(tip)
+            angle.setRange(-MOST_DEG, MOST_DEG)
+            angle.setDecimals(1)
+            angle.setSingleStep(5.0)
+            angle.setSuffix(" °")
+            angle.setKeyboardTracking(False)
+            angle.valueChanged.connect(lambda _: cut.turn_to(self.turned.value(), self.tilted.value()))
         where = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, STRETCH, spacing=6)
-        row = Folding(where, in_row(STRETCH, self.keep), spacing=6, share=0)
+        how = in_row(
+            QLabel(tr("turned")), self.turned, QLabel(tr("tilted")), self.tilted, STRETCH, self.keep, spacing=6
+        )
+        row = Folding(where, how, spacing=6, share=0)
         in_column(row, on=self)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)
@@ -94,19 +111,24 @@ class CutPanel(QWidget):
         cut, plane = self._cut, self._cut.plane
         if plane is None:
             return
-        for place, word in enumerate(_hiding(AXES[plane.axis])):
+        names = [f"{axis}′" for axis in AXES] if cut.turned_deg or cut.tilted_deg else AXES
+        for place, word in enumerate(_hiding(names[plane.axis])):
             self.side.setItemText(place, word)
+        with QSignalBlocker(self.axis), QSignalBlocker(self.turned), QSignalBlocker(self.tilted):
+            self.axis.setCurrentIndex(plane.axis)
+            self.turned.setValue(cut.turned_deg)
+            self.tilted.setValue(cut.tilted_deg)
         self.side.setCurrentIndex(SIDES.index(cut.hides))
         low, high = cut.reach
         with QSignalBlocker(self.at):
             self.at.setRange(low, high)
             self.at.setValue(plane.at_mm)
         profile = cut.profile(count)
-        height = AXES[plane.height]
-        names = AXES[plane.across], height if plane.upwards > 0 else f"−{height}"
-        if names != self._names:  # each call draws the chart anew
-            self._names = names
-            self.chart.set_axes(names[0], "mm", names[1], "mm")
+        height = names[plane.height]
+        shown = names[plane.across], height if plane.upwards > 0 else f"−{height}"
+        if shown != self._names:  # each call draws the chart anew
+            self._names = shown
+            self.chart.set_axes(shown[0], "mm", shown[1], "mm")
         self.chart.set_curve("points", profile.position, profile.height, colour=PROPOSED, points=True)
         self.chart.set_curve("mean", *profile.mean_line)
         self.show_keep()

@@ -206,3 +206,51 @@ def test_square_to_z_it_shows_an_outline_that_no_section_measures_and_says_so(cu
     assert (cut.surface.cut.chart._names[0], cut.surface.cut.chart._names[2]) == ("x", "y")
     keep = cut.surface.cut.keep
     assert not keep.isEnabled() and "stand upright" in keep.toolTip()
+
+
+def test_turned_it_stands_at_that_angle_through_the_same_middle_and_can_be_kept(cut, qtbot):
+    middle = patch(cut).mean(axis=0)
+    cut.surface.cut.turned.setValue(30.0)
+    settle(cut, qtbot)
+    normal = cut.surface.scene.frame.axes @ cut.presenter.cut.plane.normal
+    assert_allclose(normal, [np.cos(np.pi / 6), 0.5, 0.0], atol=1e-9)
+    assert_allclose((patch(cut) - middle) @ normal, 0, atol=1e-9)
+    names = cut.surface.cut.chart._names
+    assert (names[0], names[2]) == ("y′", "z′")
+    assert cut.surface.cut.side.itemText(1) == "hide larger x′"
+    drawn = cut.surface.scene._scene.items[Patches, CUT].corners[0]
+    press(cut, qtbot, cut.surface.cut.keep)
+    (spec,) = cut.presenter.features.plan.features
+    place, kept = np.array(spec.section.point_mm), np.array(spec.section.normal)
+    assert_allclose((drawn - place) @ kept, 0, atol=2e-3)
+
+
+def test_tilted_it_hides_what_lies_beyond_and_is_to_look_at_only(cut, qtbot):
+    cut.surface.cut.turned.setValue(20.0)
+    cut.surface.cut.tilted.setValue(45.0)
+    hide(cut, qtbot, 1)
+    plane, points = cut.presenter.cut.plane, cut.presenter.scan.view.points
+    normal = cut.surface.scene.frame.axes @ plane.normal
+    assert abs(normal[2]) == pytest.approx(np.sqrt(0.5)), "half way down"
+    beyond = (points - plane.corners(cut.presenter.cut._coordinates)[0]) @ plane.normal > 0
+    assert beyond.any() and not beyond.all()
+    assert np.array_equal(cut.surface.scene._scene.hidden.hides(points), beyond)
+    keep = cut.surface.cut.keep
+    assert not keep.isEnabled() and "stand upright" in keep.toolTip()
+
+
+def test_square_to_another_axis_it_stands_straight_again(cut, qtbot):
+    cut.surface.cut.turned.setValue(20.0)
+    cut.surface.cut.tilted.setValue(-10.0)
+    cut.surface.cut.axis.setCurrentIndex(1)
+    settle(cut, qtbot)
+    assert np.ptp(patch(cut)[:, 1]) < 1e-9
+    assert (cut.surface.cut.turned.value(), cut.surface.cut.tilted.value()) == (0.0, 0.0)
+
+
+def test_a_typed_angle_moves_the_plane_no_further_than_points_are(cut, qtbot):
+    cut.presenter.cut.move_to(1e4)
+    cut.surface.cut.turned.setValue(90.0)
+    settle(cut, qtbot)
+    low, high = cut.presenter.cut.reach
+    assert low <= cut.presenter.cut.plane.at_mm <= high
