@@ -46,6 +46,8 @@ class Canvas(QWidget):
         self.tool, self._paint, self._taken = tool, paint, taken
         self._message: str | None = None
         self._picture: QImage | None = None
+        self.edges: QImage | None = None
+        """Lines to be drawn over the picture, transparent elsewhere; None: none."""
         self.embedded = False
         """Whether an OpenGL widget below shows the scene; else the picture given is shown."""
         self.setMinimumSize(120, 90)
@@ -90,6 +92,8 @@ class Canvas(QWidget):
         else:
             if self._picture is not None and not self.embedded:
                 painter.drawImage(self.rect(), self._picture)
+            if self.edges is not None:
+                painter.drawImage(self.rect(), self.edges)
             self._paint(painter)
             self.tool.paint(painter, colours)
             if self.tool.hint:
@@ -143,6 +147,14 @@ def as_image(pixels: NDArray[np.uint8]) -> QImage:
     """A picture from (h, w, 3)."""
     height, width = pixels.shape[:2]
     return QImage(np.ascontiguousarray(pixels).data, width, height, 3 * width, QImage.Format.Format_RGB888).copy()
+
+
+def as_lines(opacity: NDArray[np.uint8]) -> QImage:
+    """A picture of dark lines of this opacity (h, w), transparent elsewhere."""
+    height, width = opacity.shape
+    dark = np.zeros((height, width, 4), dtype=np.uint8)
+    dark[:, :, 3] = opacity
+    return QImage(dark.data, width, height, 4 * width, QImage.Format.Format_RGBA8888).copy()
 
 
 def as_pixels(image: QImage) -> NDArray[np.uint8]:

@@ -189,6 +189,11 @@ class Scene:
         """Whether there are lines or a mesh, whose edges are smoothed."""
         return self.visible_mesh is not None or any(isinstance(item, Lines) for item in self.items.values())
 
+    @property
+    def is_mesh_alone(self) -> bool:
+        """Whether a mesh is shown without points over it: its silhouettes and creases are drawn."""
+        return self.visible_mesh is not None and self.visible_cloud is None
+
     def to_fit(self) -> Array:
         """Points (N, 3) that a fitted view shows: cloud and mesh with their marks, or else everything."""
         parts = []

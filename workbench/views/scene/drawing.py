@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import importlib
 import logging
+import math
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -20,9 +21,10 @@ from PySide6.QtCore import QCoreApplication, QObject, QTimer
 from PySide6.QtGui import QPalette
 
 from workbench.views.scene.camera import SceneCamera
-from workbench.views.scene.canvas import Canvas
+from workbench.views.scene.canvas import Canvas, as_lines
 from workbench.views.scene.colours import Rgb
-from workbench.views.scene.contents import Scene
+from workbench.views.scene.contents import Lines, Scene
+from workbench.views.scene.edges import edge_opacity
 from workbench.views.scene.passes import Part, Pass, all_parts, quick_pass, size, whole_passes
 from workbench.views.scene.ready import SURFACES, Kind, readiness
 
@@ -81,6 +83,7 @@ class Drawing(QObject):
         """The camera moved, or the theme changed: show something very soon."""
         self.complete = False
         self._passes = []
+        self._canvas.edges = None
         for timer in (self._still, self._next, self._growth):
             timer.stop()
         if self._surface is not None:
@@ -184,12 +187,21 @@ class Drawing(QObject):
         renderer.point_size = self.point_size
         start = time.perf_counter()
         renderer.draw(self._scene, self._camera(), one, self._canvas.device_size, self._canvas.devicePixelRatioF())
+        if one.first:
+            self._canvas.edges = None
         took = (time.perf_counter() - start) * 1e3
         self.pass_ms = [*self.pass_ms[-199:], took]
+        if one.smooth and self._scene.is_mesh_alone:  # the solid is whole now, and nothing else is drawn yet but lines
+            self._canvas.edges = as_lines(edge_opacity(renderer.depths(), self._camera(), self._line_px()))
         count = sum(size(self._scene, part) for part in one.parts)
         if not fresh and (took > BUDGET_MS or count >= 0.5 * self._allowance):
             factor = min(max(BUDGET_MS / max(took, 0.1), 0.5), 1.5)
             self._allowance = min(max(self._allowance * factor, FEWEST), MOST)
+
+    def _line_px(self) -> int:
+        """Device pixels of the widest lines in the scene; 0 without any."""
+        widths = [item.width for item in self._scene.items.values() if isinstance(item, Lines)]
+        return math.ceil(max(widths) * self._canvas.devicePixelRatioF()) if widths else 0
 
     def _is_made(self, part: Part) -> bool:
         return self._surface is not None and self._surface.renderer.is_made(self._scene, part)

@@ -11,6 +11,7 @@ from vtkmodules.util.numpy_support import numpy_to_vtk, numpy_to_vtkIdTypeArray,
 from vtkmodules.vtkCommonCore import (
     vtkCommand,
     vtkDataArray,
+    vtkFloatArray,
     vtkIdTypeArray,
     vtkLogger,
     vtkObject,
@@ -27,6 +28,7 @@ from core.model.arrays import Array
 from workbench.views.scene.camera import SceneCamera
 from workbench.views.scene.colours import Rgb
 from workbench.views.scene.contents import MARKS_NEARER, Item, Lines, Marks, Patches, Scene
+from workbench.views.scene.edges import Depths
 from workbench.views.scene.passes import Part, Pass, Version, gather, version
 
 _log = logging.getLogger("vtk")
@@ -37,6 +39,13 @@ SHADE = 0.7
 
 VALUES_SHADE = 0.15
 """What is coloured by values is darker by this part edge-on: its colours are to be read off the colour bar."""
+
+SOFTWARE = ("llvmpipe", "softpipe", "swrast", "software", "swiftshader", "gdi generic")
+"""How drivers call themselves that have the processor draw."""
+
+SHADOW_REACH, SHADOW_BIAS, SHADOW_SAMPLES = 0.06, 0.001, 64
+"""Ambient occlusion looks so far round each point, as a share of the scene's diagonal; it takes no notice of less than
+the second; it looks at so many places."""
 
 
 class Renderer:
@@ -60,6 +69,8 @@ class Renderer:
         self._items: dict[tuple[type, str], tuple[Item, vtkActor | None]] = {}
         self._parts: dict[Part, tuple[Version, vtkActor]] = {}
         self._cut = vtkPlane()
+        self.has_card: bool | None = None
+        """Whether a graphics card draws, which has time for ambient occlusion; None before it was found out."""
 
     def set_background(self, colour: Rgb) -> None:
         """Colour behind the scene."""
@@ -98,6 +109,7 @@ class Renderer:
         self._renderer.SetPreserveColorBuffer(not what.first)
         self._renderer.SetPreserveDepthBuffer(not what.first)
         self._renderer.SetUseFXAA(what.smooth)
+        self._occlude(scene, what)
         self._aim(camera, scene)
         self._window.SetSwapBuffers(what.last)
         self._window.Render()
@@ -112,11 +124,35 @@ class Renderer:
         rows: NDArray[np.uint8] = vtk_to_numpy(data).reshape(height, width, 3)  # type: ignore[no-untyped-call]
         return rows[::-1].copy()
 
+    def depths(self) -> Depths:
+        """The depth buffer of what is drawn now."""
+        width, height = self._window.GetSize()
+        self._window.MakeCurrent()
+        data = vtkFloatArray()
+        self._window.GetZbufferData(0, 0, width - 1, height - 1, data)
+        rows: NDArray[np.float32] = vtk_to_numpy(data).reshape(height, width)  # type: ignore[no-untyped-call]
+        near, far = self._renderer.GetActiveCamera().GetClippingRange()
+        return Depths(rows[::-1].copy(), near, far)
+
     def close(self) -> None:
         """Let go of everything while the window still lives."""
         self._renderer.RemoveAllViewProps()
         self._items, self._parts = {}, {}
         self._window.RemoveRenderer(self._renderer)
+
+    def _occlude(self, scene: Scene, what: Pass) -> None:
+        """Darken what other parts of a mesh stand before, where a graphics card draws all of it in one pass."""
+        wanted = scene.is_mesh_alone and what.first and what.last and what.smooth
+        if wanted and self.has_card is None:
+            said = self._window.ReportCapabilities().lower()
+            self.has_card = "renderer string" in said and not any(name in said for name in SOFTWARE)
+        self._renderer.SetUseSSAO(bool(wanted and self.has_card))
+        if self._renderer.GetUseSSAO():
+            diagonal = float(np.linalg.norm(np.ptp(scene.box(), axis=0)))
+            self._renderer.SetSSAORadius(SHADOW_REACH * diagonal)
+            self._renderer.SetSSAOBias(SHADOW_BIAS * diagonal)
+            self._renderer.SetSSAOKernelSize(SHADOW_SAMPLES)
+            self._renderer.SetSSAOBlur(True)
 
     def _sync(self, scene: Scene) -> None:
         """Make the actors of items those of the scene, and drop the parts it has no longer."""

@@ -452,6 +452,8 @@ class SceneView(QWidget):
             image = as_image(pixels).convertToFormat(QImage.Format.Format_RGB32)
         width, height = self._canvas.logical_size
         painter = QPainter(image)
+        if self._canvas.edges is not None:
+            painter.drawImage(image.rect(), self._canvas.edges)
         painter.scale(image.width() / width, image.height() / height)
         self._paint_overlay(painter)
         painter.end()

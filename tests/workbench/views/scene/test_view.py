@@ -356,6 +356,69 @@ def test_a_tilted_mesh_has_the_colour_its_bar_says_and_a_plain_one_is_shaded(vie
     assert middle().max() < 0.75 * 255
 
 
+RIDGE = np.array([[-40, -40, 540.0], [40, -40, 540], [40, 0, 500], [-40, 0, 500], [40, 40, 540], [-40, 40, 540]])
+ROOF = [[0, 1, 2], [0, 2, 3], [3, 2, 4], [3, 4, 5]]
+"""A roof with a ridge along x."""
+
+
+@pytest.mark.parametrize("parallel", [False, True])
+def test_silhouette_and_creases_of_a_mesh_are_drawn_once_it_is_still(view, qtbot, parallel):
+    view.set_mesh(RIDGE, ROOF, colour="#ffffff")
+    view._navigator.set_parallel(parallel)
+    view.view("top")
+    complete(view, qtbot)
+    picture = view.picture().max(axis=2).astype(int)
+    at = (view.screen_positions([[0, 0, 500], [0, -20, 520], [0, -40, 540]]) * view.devicePixelRatioF()).astype(int)
+    (x, ridge), (_, slope), (_, end) = at
+    near = lambda y: picture[y - 3 : y + 4, x - 20 : x + 20].min(axis=0)  # noqa: E731
+    assert near(ridge).max() < 0.6 * near(slope).min(), "the crease is a dark line"
+    assert near(end).max() < 0.6 * near(slope).min(), "and so is where the surface ends"
+    assert np.ptp(picture[slope - 3 : slope + 4, x - 20 : x + 20]) < 12, "nothing is drawn on a plane"
+    view.orbit(8, 0)
+    assert view._canvas.edges is None, "while it moves there are none"
+    complete(view, qtbot)
+    assert view._canvas.edges is not None
+
+
+def test_points_over_a_mesh_a_grid_and_an_empty_scene_have_no_edges(view, qtbot):
+    view.set_mesh(RIDGE, ROOF, colour="#ffffff")
+    view.view("top")
+    complete(view, qtbot)
+    lines = view._drawing._line_px()
+    assert lines == 0
+    view.set_polylines("outline", [[[-30, -20, 519.9], [30, -20, 519.9]]], "#00ff00", 3.0)
+    complete(view, qtbot)
+    green = view.picture()[:, :, 1].astype(int) - view.picture()[:, :, 0] > 60
+    assert green.sum() > 200
+    rows = np.flatnonzero(green.any(axis=1))
+    beside = view.picture()[rows.min() - 4, green.any(axis=0)].max(axis=1)
+    assert beside.min() > 100, "a line laid on the surface is no edge of it"
+    view.set_cloud(FLAT, colours=RED)
+    complete(view, qtbot)
+    assert view._canvas.edges is None
+    view.clear()
+    assert view._canvas.edges is None
+
+
+def test_a_graphics_card_darkens_what_other_parts_stand_before(view, qtbot):
+    corner = np.array([[-40, -40, 500], [40, -40, 500], [40, 40, 500], [-40, 40, 500.0]])
+    wall = np.array([[-40, 0, 500], [40, 0, 500], [40, 0, 440], [-40, 0, 440.0]])
+    triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6], [4, 6, 7]]
+
+    def beside_the_wall() -> float:
+        view.set_mesh(np.vstack([corner, wall]), triangles, colour="#ffffff")
+        view.view("iso")
+        complete(view, qtbot)
+        x, y = (view.screen_positions([[0, 2, 500]])[0] * view.devicePixelRatioF()).astype(int)
+        return float(view.picture()[y, x - 2 : x + 3].mean())
+
+    without = beside_the_wall()
+    renderer = view._drawing._surface.renderer
+    assert renderer.has_card is False, "here the processor draws"
+    renderer.has_card = True
+    assert beside_the_wall() < 0.9 * without
+
+
 def test_points_are_shaded_by_their_normals_and_keep_the_colour_their_bar_says(view, qtbot):
     colouring = Colouring("height", "mm", limits=(0.0, 1.0))
     edge_on = np.tile(np.array([np.sin(1.3), 0, -np.cos(1.3)], np.float32), (len(FLAT), 1))
