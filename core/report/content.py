@@ -19,6 +19,7 @@ from core.inspect.characteristic import Characteristic
 from core.inspect.plan.control_frame import ControlFrame
 from core.inspect.result_list import ResultList
 from core.inspect.results import GaugeResult
+from core.inspect.shown.seen_from import SeenFrom
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.certificate import Certificate
@@ -233,6 +234,8 @@ class ReportContent:
         Version of the software.
     timestamp
         When the measurement was evaluated.
+    view
+        How the surface was left in 3D; None where nobody turned it.
     reported
         The day on which the report is made; None: it is not said, and the same content gives the same report.
     certificates
@@ -302,6 +305,7 @@ class ReportContent:
     template: ReportTemplate = field(default_factory=ReportTemplate)
     audit: AuditMark | None = None
     attachments: Mapping[str, bytes] = field(default_factory=dict)
+    view: SeenFrom | None = None
     reported: date | None = None
     certificates: Mapping[str, Certificate] = field(default_factory=dict)
 
@@ -357,6 +361,12 @@ class ReportContent:
         return tuple(found.values())[:MOST_CALLOUTS]
 
     @property
+    def view_shown(self) -> SeenFrom | None:
+        """How the surface was left in 3D, if anything of this one is in sight so."""
+        points = self.mesh.vertices if len(self.mesh.triangles) else self.cloud.points
+        return self.view if self.view is not None and self.view.in_sight(np.asarray(points)).any() else None
+
+    @property
     def at_reference(self) -> bool:
         """Whether any result is stated at 20 °C, or may be; its own note then says what that changed."""
         return any(one.at_20 is not False for one in self.characteristics)
@@ -378,6 +388,7 @@ class ReportContent:
             "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
             "artefacts": self.artefacts,
             "compared": self.compared,
+            "view": "" if self.view_shown is None else self.view_shown.words,
             "certificates": sorted(self.certificates.items()),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],
         }
@@ -400,6 +411,7 @@ class ReportContent:
     def printable(self) -> Mapping[str, str]:
         """Name and heading of those SECTIONS that this content has something for, hidden or not."""
         missing = {
+            "view": self.view_shown is None,
             "frame": self.overlay is None,
             "profiles": self.profiles is None,
             "sections": not self.sections,

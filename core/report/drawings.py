@@ -26,8 +26,21 @@ from core.report.sections.studies import control_charts, run_lines
 from core.study.repeats import RepeatStudy
 from core.study.study import InOrder
 
-SURFACE_MM, OVERLAY_MM, POINTS_MM, FACES_MM, CLOUD_MM, CHART_MM, DEVIATION_MM, PROFILES_MM, CONTROL_MM, SECTION_MM = (
+(
+    SURFACE_MM,
+    VIEW_MM,
+    OVERLAY_MM,
+    POINTS_MM,
+    FACES_MM,
+    CLOUD_MM,
+    CHART_MM,
+    DEVIATION_MM,
+    PROFILES_MM,
+    CONTROL_MM,
+    SECTION_MM,
+) = (
     104.0,
+    84.0,
     116.0,
     78.0,
     50.0,
@@ -51,6 +64,8 @@ def drawings(look: ReportLook, content: ReportContent, progress: Progress) -> di
         drawings["surface"] = lambda: plots.surface_figure(
             look, content.mesh, content.cloud, plane, width, SURFACE_MM, plots.callouts(look, content), progress
         )
+        if (view := content.view_shown) is not None:
+            drawings["view"] = lambda: plots.view_figure(look, content, view, (width, VIEW_MM), progress)
     if overlay is not None:
         drawings["frame"] = lambda: overlay_figure(look, overlay, width, OVERLAY_MM)
     if (profiles := content.profiles) is not None:

@@ -22,6 +22,7 @@ PAPERS: tuple[Paper, ...] = ("A4", "Letter")
 SECTIONS: Mapping[str, str] = MappingProxyType(
     {
         "surface": label("Measured surface"),
+        "view": label("The surface as it was left in 3D"),
         "frame": label("One frame of the scan"),
         "profiles": label("Light profiles"),
         "sections": label("Cross-sections"),

@@ -10,6 +10,7 @@ import pypdfium2
 import pytest
 from pypdf import PdfReader
 
+from core.inspect.shown.seen_from import SeenFrom
 from core.report.content import CalibrationMark
 from core.report.layout.style import TEXT_WIDTH, ReportLook
 from core.report.pdf import build_report
@@ -21,6 +22,9 @@ from core.scan.surface.fused_surface import Mesh
 from .report_samples import block_content, gauge, repeats
 
 NO_MESH = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
+
+LEFT = SeenFrom(np.diag([1.0, -1.0, -1.0]), np.array([0.0, 0.0, 600.0]), 80.0, 1.6)
+"""The surface as it was left in 3D, seen from the camera."""
 
 
 @cache
@@ -34,7 +38,7 @@ def words(data):
 
 @pytest.fixture(scope="module")
 def content():
-    return block_content(repeats=repeats(), remarks="Cleaned with alcohol.\n\nLamp <off> & table warm.")
+    return block_content(repeats=repeats(), remarks="Cleaned with alcohol.\n\nLamp <off> & table warm.", view=LEFT)
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +58,7 @@ def quick(content):
 def test_every_section_can_be_left_out_while_others_stay_and_the_last_page_names_it(content, whole):
     whole = words(whole)
     assert "Left out of this report by choice" not in whole
-    pictures = ["surface", "frame", "points", "maps"]  # drawn once is enough
+    pictures = ["surface", "view", "frame", "points", "maps"]  # drawn once is enough
     printable = [name for name in SECTIONS if name in content.printable]
     for half in (printable[::2], printable[1::2]):
         hidden = [name for name in printable if name in (*half, *pictures)]
@@ -158,7 +162,7 @@ def test_many_repeats_with_long_names_are_cut_in_number_and_not_in_width(quick):
 @pytest.mark.parametrize(("paper", "size"), [("A4", (595.28, 841.89)), ("Letter", (612, 792))])
 def test_every_page_has_the_size_of_its_paper_and_white_margins(content, whole, paper, size):
     document = pypdfium2.PdfDocument(whole if paper == content.paper else build_report(replace(content, paper=paper)))
-    assert 2 <= len(document) <= 5
+    assert 2 <= len(document) <= 6
     for page in document:
         assert page.get_size() == pytest.approx(size, abs=0.01)
         picture = page.render(scale=1).to_numpy()
@@ -177,3 +181,18 @@ def test_other_words_and_other_sections_give_the_report_another_name(quick):
     ]
     assert len({replace(quick, **change).report_id for change in changes}) == len(changes)
     assert replace(quick, paper="Letter").report_id == quick.report_id
+
+
+def test_the_view_left_in_3d_is_a_figure_and_names_what_a_cut_hid(content, quick):
+    cut = replace(LEFT, hidden=np.array([[5.0, 0, 600], [1.0, 0, 0]]))
+    hidden = frozenset(SECTIONS) - {"view"}
+    whole, half = (build_report(replace(content, hidden=hidden, view=view)) for view in (LEFT, cut))
+    for data, said in ((whole, False), (half, True)):
+        assert "The surface as it was left in 3D" in words(data)
+        assert ("What the cut hid is left out." in words(data)) is said
+    assert whole != half
+    away = replace(LEFT, focal=np.array([5000.0, 0, 600]))
+    for one in (replace(content, hidden=hidden, view=None), replace(content, hidden=hidden, view=away)):
+        assert "left in 3D" not in words(build_report(one)), "nothing of the surface would be seen"
+    assert replace(quick, view=LEFT).report_id == replace(quick, view=None).report_id, "there is no point to be seen"
+    assert replace(content, view=cut).report_id != content.report_id

@@ -7,6 +7,7 @@ Layout::
     PROJECT/.lock.json              who has the project open
     PROJECT/.autosave.json          changes that are not saved yet; there only while a project is open, or after a crash
     PROJECT/people.json             who may do what, by names with PINs; there only if it was set up
+    PROJECT/view.json               how the surface was left in 3D, for a figure of the report
     PROJECT/audit.jsonl             who changed what and when, what was measured; only grows
     PROJECT/backups/                the last versions of project.json
     PROJECT/recordings/             raw frames, one folder for each recording

@@ -9,6 +9,7 @@ from core.files.project.audit import read_trail
 from core.files.project.data import Project
 from core.files.project.folder import results_folder
 from core.files.project.report_template import read_report_template
+from core.files.project.view_file import read_view
 from core.files.recording.picture_reader import PictureReader
 from core.files.study.study_file import study_path
 from core.pipeline.project.verify import noting_results
@@ -87,6 +88,7 @@ def with_words(content: ReportContent, folder: Path, project: Project) -> Report
         language=choices.language or content.language,
         template=template,
         audit=_audit_mark(folder),
+        view=read_view(folder),
     )
 
 

@@ -7,6 +7,7 @@ blindness and grey printing; lines differ in form.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import cv2
@@ -20,6 +21,7 @@ from numpy.typing import NDArray
 
 from core.inspect.results import Face, GaugeResult, PairCandidate
 from core.inspect.shown.deviation_map import classes_of, mark
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
 from core.model.arrays import Array
@@ -41,7 +43,14 @@ from core.report.plots.figures import (
     plot_style,
     round_up,
 )
-from core.report.plots.surface_view import SurfacePicture, surface_picture, viewer_axes
+from core.report.plots.surface_view import (
+    SurfacePicture,
+    Viewpoint,
+    left_viewpoint,
+    surface_picture,
+    usual_viewpoint,
+    viewer_axes,
+)
 from core.report.wording import SIGNS, points_counted, shown_name
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -72,28 +81,66 @@ def surface_figure(
 
     Each callout points at its place.
     """
+    points = np.asarray(mesh.vertices if len(mesh.triangles) else cloud.points)
+    ground, size = Ground.of(plane, points), (width_mm, height_mm)
+    seen = surface_picture(mesh, cloud, ground, *_pixels_of(size), progress)
     with plot_style():
-        figure = new_figure(width_mm, height_mm)
-        bar_mm = 22.0
-        points = np.asarray(mesh.vertices if len(mesh.triangles) else cloud.points)
-        ground = Ground.of(plane, points)
-        aspect = (width_mm - bar_mm) / height_mm
-        width_px = round((width_mm - bar_mm) / MM_PER_INCH * DPI)
-        seen = surface_picture(mesh, cloud, ground, 2 * width_px, aspect, progress)
-        heights = ground.local(points)[:, 2]
-        low, high = (float(value) for value in np.quantile(heights, [0.002, 0.998]))
-        colors = color_scale(height_map(look.accent), low, high if high > low else low + 1e-6)
-        paint = _painted(seen, colors)
-        small = cv2.resize(paint, (width_px, round(width_px / aspect)), interpolation=cv2.INTER_AREA)
-        axes = figure.add_axes((0, 0, 1 - bar_mm / width_mm, 1))
-        axes.imshow(small, extent=seen.extent, interpolation="antialiased", aspect="auto")
-        axes.set_axis_off()
+        figure, axes = _shown(look, seen, ground.local(points)[:, 2], size)
         _draw_footprint(axes, ground.local(points))
         axes.set_xlim(seen.extent[:2])
         axes.set_ylim(seen.extent[2:])
-        _draw_callouts(axes, callouts, ground)
-        add_color_bar(figure, (1 - (bar_mm - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, look.words("height, mm"))
+        _draw_callouts(axes, callouts, ground, usual_viewpoint())
     return figure
+
+
+def view_figure(
+    look: ReportLook, content: ReportContent, view: SeenFrom, size: tuple[float, float], progress: Progress = silent
+) -> Figure:
+    """The surface as it was left in 3D, coloured as in `surface_figure`, in a figure of `size` in mm.
+
+    What was hidden then is left out. A result's words are there if its place is in sight.
+    """
+    mesh, cloud, gauge = content.mesh, content.cloud, content.gauge
+    points = np.asarray(mesh.vertices if len(mesh.triangles) else cloud.points)
+    ground = Ground.of(gauge.lower.plane if gauge else None, points)
+    width_px, aspect = _pixels_of(size)
+    viewpoint = left_viewpoint(view, ground, aspect)
+    kept = mesh.triangles[~view.hides(mesh.vertices)[mesh.triangles].any(axis=1)]
+    bare = replace(mesh, triangles=kept), cloud.select(~view.hides(cloud.points))
+    seen = surface_picture(*bare, ground, width_px, aspect, progress, viewpoint)
+    shown = [one for one in callouts(look, content) if view.in_sight(one.place[None])[0]]
+    with plot_style():
+        figure, axes = _shown(look, seen, ground.local(points)[:, 2], size)
+        axes.set_xlim(seen.extent[:2])
+        axes.set_ylim(seen.extent[2:])
+        _draw_callouts(axes, shown, ground, viewpoint)
+    return figure
+
+
+BAR_MM = 22.0
+"""Room of the colour bar at the right of a surface."""
+
+
+def _pixels_of(size: tuple[float, float]) -> tuple[int, float]:
+    """Width in pixels of a surface in a figure of `size` in mm, twice as fine as printed; and width by height."""
+    width_mm = size[0] - BAR_MM
+    return 2 * round(width_mm / MM_PER_INCH * DPI), width_mm / size[1]
+
+
+def _shown(look: ReportLook, seen: SurfacePicture, heights: Array, size: tuple[float, float]) -> tuple[Figure, Axes]:
+    """A figure with the picture of a surface, coloured by height, and its colour bar."""
+    width_mm, _ = size
+    figure = new_figure(*size)
+    low, high = (float(value) for value in np.quantile(heights, [0.002, 0.998]))
+    colors = color_scale(height_map(look.accent), low, high if high > low else low + 1e-6)
+    width_px, aspect = _pixels_of(size)
+    half = (width_px // 2, round(width_px / 2 / aspect))
+    small = cv2.resize(_painted(seen, colors), half, interpolation=cv2.INTER_AREA)
+    axes = figure.add_axes((0, 0, 1 - BAR_MM / width_mm, 1))
+    axes.imshow(small, extent=seen.extent, interpolation="antialiased", aspect="auto")
+    axes.set_axis_off()
+    add_color_bar(figure, (1 - (BAR_MM - 4) / width_mm, 0.12, 3 / width_mm, 0.7), colors, look.words("height, mm"))
+    return figure, axes
 
 
 def _painted(seen: SurfacePicture, colors: ScalarMappable) -> NDArray[np.uint8]:
@@ -162,11 +209,11 @@ def callouts(look: ReportLook, content: ReportContent) -> list[Callout]:
     return made
 
 
-def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground) -> None:
+def _draw_callouts(axes: Axes, shown: Sequence[Callout], ground: Ground, viewpoint: Viewpoint) -> None:
     """Words in a column at either side, in the order of their places from above, so that no two lines cross."""
     left, right = axes.get_xlim()
     bottom, top = axes.get_ylim()
-    seen = [(one.said, *(viewer_axes()[:2] @ ground.local(one.place[None])[0])) for one in shown]
+    seen = [(one.said, *(viewpoint.axes[:2] @ ground.local(one.place[None])[0])) for one in shown]
     seen.sort(key=lambda one: one[1])
     half = (len(seen) + 1) // 2
     inset = CALLOUT_INSET * (right - left)

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.compiled import compiled
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import Ground
 from core.model.arrays import Array
 from core.progress import Progress, silent
@@ -36,6 +37,31 @@ def viewer_axes() -> Array:
 
 
 @dataclass(frozen=True, eq=False, slots=True)
+class Viewpoint:
+    """Direction and part of the viewer's plane that a picture shows.
+
+    `axes` are the viewer's right, up and towards-the-viewer as rows (3, 3) of the ground's frame; `extent` is left,
+    right, bottom, top in mm of the viewer's plane, None for all there is.
+    """
+
+    axes: Array
+    extent: tuple[float, float, float, float] | None = None
+
+
+def usual_viewpoint() -> Viewpoint:
+    """All of it, from the front, the left and above."""
+    return Viewpoint(viewer_axes())
+
+
+def left_viewpoint(view: SeenFrom, ground: Ground, aspect: float) -> Viewpoint:
+    """Viewpoint of a view left in 3D, in a picture of another `aspect`: all that was in sight is."""
+    axes = view.axes @ ground.axes.T
+    x, y = (axes @ ground.local(view.focal[None])[0])[:2]
+    half = view.half_height_mm * max(1.0, view.aspect / aspect)
+    return Viewpoint(axes, (x - half * aspect, x + half * aspect, y - half, y + half))
+
+
+@dataclass(frozen=True, eq=False, slots=True)
 class SurfacePicture:
     """What the viewer sees.
 
@@ -49,7 +75,13 @@ class SurfacePicture:
 
 
 def surface_picture(
-    mesh: Mesh, cloud: Cloud, ground: Ground, width_px: int, aspect: float, progress: Progress = silent
+    mesh: Mesh,
+    cloud: Cloud,
+    ground: Ground,
+    width_px: int,
+    aspect: float,
+    progress: Progress = silent,
+    viewpoint: Viewpoint | None = None,
 ) -> SurfacePicture:
     """Draw the mesh, or the cloud's points where the mesh has no triangles.
 
@@ -57,6 +89,8 @@ def surface_picture(
     ----------
     width_px
         Width of the picture; its height is `width_px` / `aspect`.
+    viewpoint
+        From where it is seen; None: the usual one.
 
     Raises
     ------
@@ -68,12 +102,14 @@ def surface_picture(
     if not len(vertices):
         raise ValueError("neither a triangle nor a point to draw")
     local = ground.local(np.asarray(vertices))
-    seen = local @ viewer_axes().T
-    extent = _extent(seen[np.unique(mesh.triangles)] if solid else seen, aspect)
+    viewpoint = viewpoint or usual_viewpoint()
+    seen = local @ viewpoint.axes.T
+    extent = viewpoint.extent or _extent(seen[np.unique(mesh.triangles)] if solid else seen, aspect)
     scale = width_px / (extent[1] - extent[0])
     rows = round(width_px / aspect)
     column, row = (seen[:, 0] - extent[0]) * scale - 0.5, (extent[3] - seen[:, 1]) * scale - 0.5
-    corners = np.column_stack([column, row, seen[:, 2], local[:, 2], _lambert(np.asarray(normals), ground)])
+    bright = _lambert(np.asarray(normals) @ ground.axes.T, viewpoint)
+    corners = np.column_stack([column, row, seen[:, 2], local[:, 2], bright])
     layers = np.full((3, rows, width_px), np.nan)
     layers[0] = -np.inf
     progress("surface", 0, 2)
@@ -104,9 +140,9 @@ def _extent(seen: Array, aspect: float) -> tuple[float, float, float, float]:
     )
 
 
-def _lambert(normals: Array, ground: Ground) -> Array:
-    """Brightness 0…1 of vertices with these normals (camera frame); even where the normal is unknown."""
-    facing = normals @ ground.axes.T @ viewer_axes().T
+def _lambert(normals: Array, viewpoint: Viewpoint) -> Array:
+    """Brightness 0…1 of vertices with these normals (ground's frame); even where the normal is unknown."""
+    facing = normals @ viewpoint.axes.T
     bright: Array = 0.42 + 0.58 * np.clip(facing @ LAMP, 0.0, 1.0)
     return np.where(np.any(normals != 0, axis=1), bright, 0.85)
 

@@ -46,6 +46,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
     """Everything from the title to the end mark, without what is hidden."""
     figures: list[Part] = [
         ("surface", lambda: _surface(look, content, pictures, limits)),
+        ("view", lambda: _view(look, content, pictures, limits)),
         ("frame", lambda: _frame(look, content, pictures, limits)),
         ("profiles", lambda: _profiles(look, content, pictures, limits)),
         ("sections", lambda: _sections(look, content, pictures, limits)),
@@ -154,6 +155,16 @@ def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limit
     )
     body = [Picture(pictures["surface"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "surface", "Measured surface", body)]
+
+
+def _view(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
+    if "view" not in pictures:
+        return []
+    words = look.words
+    cut = "" if content.view is None or content.view.hidden is None else words("What the cut hid is left out.")
+    caption = words("From where the surface was looked at last, in parallel projection; colour: height as above.")
+    body = [Picture(pictures["view"], limits.picture_scale), look.text(f"{caption} {cut}".strip(), "caption")]
+    return [section(look, "view", "The surface as it was left in 3D", body)]
 
 
 def _frame(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:

@@ -1,9 +1,10 @@
 import numpy as np
 import pytest
 
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import Ground
 from core.model import LightPlane
-from core.report.plots.surface_view import surface_picture, viewer_axes
+from core.report.plots.surface_view import left_viewpoint, surface_picture, viewer_axes
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
 
@@ -97,3 +98,19 @@ def test_nothing_to_draw_is_an_error():
     bare = Mesh(np.zeros((0, 3)), np.zeros((0, 3)), np.zeros(0), np.zeros((0, 3), np.int64))
     with pytest.raises(ValueError, match="neither"):
         surface_picture(bare, cloud_of(bare), Ground.of(None, np.zeros((0, 3))), 100, 1.6)
+
+
+@pytest.mark.parametrize("aspect", [0.8, 1.5, 2.5])
+def test_a_view_left_in_3d_shows_all_that_was_in_sight_from_the_same_side(aspect):
+    mesh, ground = mesh_over_table(lambda a, b: 0 * a + 3.0)
+    straight = SeenFrom(ground.axes, ground.origin, 60.0, 1.5)
+    picture = surface_picture(
+        mesh, cloud_of(mesh), ground, 300, aspect, viewpoint=left_viewpoint(straight, ground, aspect)
+    )
+    left, right, bottom, top = picture.extent
+    assert right - left >= 2 * 60.0 * 1.5 - 1e-9 and top - bottom >= 2 * 60.0 - 1e-9
+    rows, columns = np.nonzero(np.isfinite(picture.height))
+    scale = picture.height.shape[1] / (right - left)
+    assert np.ptp(columns) / scale == pytest.approx(80.0, abs=1.5), "from above the square is one of 80 mm"
+    assert np.ptp(rows) / scale == pytest.approx(80.0, abs=1.5)
+    np.testing.assert_allclose(picture.height[np.isfinite(picture.height)], 3.0, atol=1e-6)

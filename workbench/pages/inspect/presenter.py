@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -9,10 +10,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Signal
 
+from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.folder import source_folder
 from core.files.project.keys import finished
+from core.files.project.view_file import write_view
 from core.inspect.result_list import ResultList
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import ViewFrame, part_frame, shown_frame
 from workbench.bench import Bench
 from workbench.language import text_of, tr
@@ -60,6 +64,8 @@ class InspectPresenter(StepPresenter):
         self.scan = InspectScan(bench)
         self.clip_mm: float | None = None
         self.picture = RELIEF
+        self.seen_from: Callable[[], SeenFrom | None] = lambda: None
+        """Asked for the view in 3D when the page is left; None: the surface is seen as at first."""
         self.outlining = ""
         self._measuring: Task | None = None
         self._unmeasurable = ""
@@ -340,6 +346,17 @@ class InspectPresenter(StepPresenter):
     def left(self) -> None:
         self._seen = False
         self.end_picking()
+        self._keep_view()
+
+    def _keep_view(self) -> None:
+        """Keep how the surface was left, which the report shows; it is no edit, and nothing that was measured."""
+        view, folder = self.seen_from(), self.model.folder
+        if view is None or folder is None or self.model.is_read_only:
+            return
+        try:
+            write_view(folder, view)
+        except InputError as error:
+            self.bench.notices.failed(error)
 
     def project_changed(self, before: Project, after: Project) -> None:
         if before.rig.gauge != after.rig.gauge:

@@ -8,6 +8,7 @@ from typing import Any
 
 from core.files.project.data import Project
 from core.files.project.keys import finished, up_to_date
+from core.files.project.view_file import read_view
 from core.files.results.export_list import EXPORTS
 from core.report.template import SECTIONS
 from workbench.bench import Bench
@@ -53,6 +54,7 @@ class ReportPresenter(StepPresenter):
         """Why a section has nothing to print yet, or ""."""
         kinds = {feature.kind for feature in self.project.inspection.features}
         nothing = {
+            "view": "" if self.view else tr("Turn the surface on the Inspect page: it is printed as you left it."),
             "sections": "" if "section" in kinds else tr("There is no cross-section among the features yet."),
             "deviation": ""
             if "deviation" in kinds
@@ -65,6 +67,12 @@ class ReportPresenter(StepPresenter):
             "budget": "" if "gauge" in self.model.results else tr("The thickness has not been measured yet."),
         }
         return nothing.get(name, "")
+
+    @property
+    def view(self) -> str:
+        """How the surface was left in 3D, in numbers; "" where nobody turned it."""
+        view = None if self.model.folder is None else read_view(self.model.folder)
+        return "" if view is None else view.words
 
     def choose_section(self, name: str, shown: bool) -> None:
         """Put a section in or leave it out; undoable."""
@@ -301,6 +309,7 @@ class ReportPresenter(StepPresenter):
             project.studies,
             project.report,
             project.options.part,
+            self.view,
             results.get("scan"),
             results.get("gauge"),
             results.get("inspection"),

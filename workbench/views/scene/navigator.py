@@ -51,6 +51,11 @@ class Navigator(QObject):
         self._extent, self._box = 0.0, np.empty((0, 3))
         self.camera = SceneCamera.looking(*FROM_CAMERA.direction("iso"), np.zeros(3), 500.0)
 
+    @property
+    def is_turned_by_hand(self) -> bool:
+        """Whether the user chose the view: it is not the one that a scene is first seen from."""
+        return self._touched or self._name != "iso"
+
     def view(self, name: str) -> None:
         """Look from a standard direction and fit."""
         self._name, self._touched = name, False

@@ -19,6 +19,7 @@ from PySide6.QtWidgets import QFileDialog, QWidget
 
 from core.errors import InputError
 from core.files import atomic
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.model.arrays import Array
 from workbench.language import text_of, tr
@@ -458,6 +459,14 @@ class SceneView(QWidget):
         self._paint_overlay(painter)
         painter.end()
         return as_pixels(image)
+
+    def seen_from(self) -> SeenFrom | None:
+        """The view that the user chose; None as long as the scene is seen as at first."""
+        if self._scene.empty or not self._navigator.is_turned_by_hand:
+            return None
+        camera, (width, height), hidden = self._camera, self._canvas.logical_size, self._scene.hidden
+        beyond = None if hidden is None else np.array([hidden.place, hidden.towards])
+        return SeenFrom(camera.axes, camera.focal, camera.half_height, width / height, beyond)
 
     def save_picture(self, path: Path) -> None:
         """Write the picture as PNG; InputError if the file cannot be written."""

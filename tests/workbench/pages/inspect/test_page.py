@@ -18,6 +18,7 @@ from PySide6.QtWidgets import (
 
 from core.errors import InputError
 from core.files.project.keys import finished
+from core.files.project.view_file import read_view
 from core.inspect.results import PairCandidate
 from core.inspect.shown.shown_scan import NextPair
 from core.messages import plain
@@ -729,3 +730,21 @@ def test_the_next_best_pair_is_drawn_until_one_is_confirmed(several, qtbot):
     several.picture.refresh()
     assert np.array_equal(several.presenter.faces.region("upper"), cases.UPPER_OUTLINE - [12.0, 0.0])
     assert drawn_pairs(several) == set() and several.faces.pairs.count() == 0
+
+
+def test_the_view_left_in_3d_is_kept_for_the_report_and_is_no_edit(page, qtbot):
+    presenter, scene = page.presenter, page.surface.scene
+    folder = presenter.model.folder
+    scan(page, qtbot)
+    qtbot.waitUntil(lambda: scene.state().points > 0)
+    presenter.left()
+    assert read_view(folder) is None, "nobody turned it"
+    scene.orbit(40, 15)
+    camera = scene._navigator.camera
+    presenter.left()
+    kept = read_view(folder)
+    assert kept is not None and kept.hidden is None
+    np.testing.assert_allclose(kept.axes, camera.axes, atol=1e-6)
+    np.testing.assert_allclose(kept.focal, camera.focal, atol=1e-6)
+    assert kept.half_height_mm == pytest.approx(camera.half_height, abs=1e-5)
+    assert presenter.model.undo_stack.count() == 0

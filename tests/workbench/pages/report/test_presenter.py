@@ -14,9 +14,11 @@ from PySide6.QtWidgets import QApplication
 from core.errors import InputError
 from core.files.project.data import KeptStudy, Project, Repeat, new_project
 from core.files.project.keys import finished
+from core.files.project.view_file import write_view
 from core.files.results.export_list import EXPORTS
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
+from core.inspect.shown.seen_from import SeenFrom
 from core.messages import plain
 from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
@@ -183,7 +185,7 @@ def test_each_choice_is_one_edit_that_can_be_undone(report: ReportPresenter) -> 
 
 def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None:
     empty = {name for name, _, _ in report.sections() if report.empty_section(name)}
-    assert empty == {"repeats", "studies", "remarks", "budget", "sections", "deviation"}
+    assert empty == {"repeats", "studies", "remarks", "budget", "sections", "deviation", "view"}
     at = finished("scan", report.project, {}).at
     repeats, study = (
         (Repeat("a", 50.0, 0.02, 2.0, "c", at),),
@@ -198,6 +200,8 @@ def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None
     profile = FeatureSpec("profile", "section", section=Section(((0.0, 0.0), (9.0, 0.0))))
     plan = InspectionPlan((nominal, profile))
     report.model.edit("features", replace(report.project, inspection=plan))
+    assert report.model.folder is not None
+    write_view(report.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5))
     assert not any(report.empty_section(name) for name, _, _ in report.sections())
 
 
@@ -217,7 +221,7 @@ def test_pages_are_drawn_when_somebody_looks_and_not_again_for_nothing(
     assert (drawing.asked, report.drawing) == (0, False)
 
 
-@pytest.mark.parametrize("what", ["field", "section", "paper", "lines", "scan", "gauge"])
+@pytest.mark.parametrize("what", ["field", "section", "paper", "lines", "scan", "gauge", "view"])
 def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhile(
     shown: ReportPresenter, drawing: Drawing, what: str
 ) -> None:
@@ -227,6 +231,11 @@ def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhi
         shown.choose_section("frame", False)
     elif what == "paper":
         shown.choose_paper("Letter")
+    elif what == "view":
+        assert shown.model.folder is not None
+        shown.left()
+        write_view(shown.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5))
+        shown.entered()
     elif what == "lines":
         shown.model.edit("lines", replace(shown.project, rig=replace(shown.project.rig, lines=2)))
     else:
