@@ -6,6 +6,7 @@ is known, from the sample or from the last run of the same job, and stretched by
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable, Mapping
 from types import MappingProxyType
@@ -87,11 +88,73 @@ def page_of(job: str, stage: str) -> tuple[int, int, str] | None:
 
 
 _TRUSTED = 0.05
-"""From this share of a stage on its own pace counts."""
-_AS_USUAL = 0.02
-"""Share of a job that is taken for as fast as usual, before anything of it is known."""
+"""From this share of a stage on that is not known, its own pace counts."""
 _NOTICED_S = 0.5
 """A stage's own pace is told by no less time."""
+
+_MACHINE, _STAGE = 1.5, 0.25
+"""How far the pace of the machine, and that of a stage beside others, are from the usual ones at first: standard
+deviations of natural logarithms. Stages of another kind of set differ by a quarter."""
+_DRIFT = 0.02
+"""By how much the machine's pace changes from report to report where nothing happens to it."""
+_REPORT, _FEW = 0.25, 0.3
+"""Scatter of one report's time: of each, and by how few there are (divided by the root of their number)."""
+_SURPRISE = 2.0
+"""Two reports in a row that are both too late, or both too soon, by so many standard deviations: other work on the
+machine began, or ended."""
+_SHORTEST_S = 1e-3
+"""No report took less time than this, whatever the clock says."""
+
+
+class _Pace:
+    """Logarithms of how much slower than usual the machine and the present stage are, by a Kalman filter.
+
+    Each report tells the sum of both; the stage's part stays as it is as long as the stage lasts. So a change within a
+    stage is the machine's, which holds for the stages to come as well, and a change from stage to stage is shared.
+    """
+
+    def __init__(self) -> None:
+        self.machine = self.stage = 0.0
+        self._of_machine, self._of_stage, self._of_both = _MACHINE**2, _STAGE**2, 0.0
+        self._surprise = math.inf  # nothing is known of the machine yet: the first report is believed
+
+    @property
+    def here(self) -> float:
+        """How many times its usual time the present stage takes."""
+        return math.exp(self.machine + self.stage)
+
+    def begin_stage(self) -> None:
+        """Another stage begins: nothing is known of its own part."""
+        self.stage, self._of_stage, self._of_both = 0.0, _STAGE**2, 0.0
+
+    def learn(self, ratio: float, reports: int) -> None:
+        """One of so many `reports` of the stage took `ratio` times its usual time."""
+        self._of_machine += _DRIFT**2
+        off = math.log(ratio) - self.machine - self.stage
+        scatter = _REPORT**2 + _FEW**2 / reports
+        before, self._surprise = self._surprise, off / math.sqrt(self._variance + scatter)
+        if abs(self._surprise) > _SURPRISE:
+            if math.isinf(before) or (before * self._surprise > 0 and abs(before) > _SURPRISE):
+                self._of_machine += off**2
+            else:
+                scatter += off**2  # one report alone may be late for many reasons
+        whole = self._variance + scatter
+        machine, stage = (self._of_machine + self._of_both) / whole, (self._of_stage + self._of_both) / whole
+        self.machine += machine * off
+        self.stage += stage * off
+        both = self._of_both - machine * stage * whole
+        self._of_machine -= machine**2 * whole
+        self._of_stage -= stage**2 * whole
+        self._of_both = both
+
+    def later(self, late: float) -> float:
+        """How many times their usual time later stages take, if this one's report is late by the factor `late`."""
+        share = (self._of_machine + self._of_both) / self._variance
+        return math.exp(self.machine + share * math.log(late))
+
+    @property
+    def _variance(self) -> float:
+        return self._of_machine + self._of_stage + 2 * self._of_both
 
 
 class Remaining:
@@ -117,7 +180,8 @@ class Remaining:
         self._places = {stage: place for place, stage in enumerate(usual)}
         self._place = -1
         self._stage, self._begun, self._shown = "", clock(), 0.0
-        self._done, self._done_s = 0.0, 0.0  # of this stage: the share reported last, and when that was
+        self._done, self._done_s, self._reports = 0.0, 0.0, 1  # of this stage: share reported last, when, of how many
+        self._pace = _Pace()
         self.seconds: dict[str, float] = {}
 
     def tell(self, stage: str, done: int, total: int) -> None:
@@ -127,7 +191,10 @@ class Remaining:
             self._stage, self._begun = stage, self._clock()
             self._place = max(self._place, self._places.get(stage, -1))
             self._done, self._done_s = 0.0, 0.0
+            self._pace.begin_stage()
+        self._reports = max(total, 1)
         if total and done / total != self._done:
+            self._learn(done / total)
             self._done, self._done_s = done / total, self._in_stage
 
     def finish(self) -> dict[str, float]:
@@ -150,33 +217,31 @@ class Remaining:
     @property
     def left(self) -> float | None:
         """Seconds left, or None while nothing can be said."""
-        usual, in_stage, pace = self._usual.get(self._stage), self._in_stage, self._pace
-        told = self._done > _TRUSTED and self._done_s > _NOTICED_S
-        if usual is None and not told and not self._usual:
-            return None
-        by_usual = max((usual or 0.0) * pace - in_stage, 0.0)
-        by_itself = max(self._done_s / self._done - in_stage, 0.0) if told else by_usual
-        trust = 1.0 if usual is None else self._done**0.5
-        of_stage = trust * by_itself + (1 - trust) * by_usual
-        return of_stage + pace * sum(seconds for stage, seconds in self._usual.items() if self._is_to_come(stage))
+        usual, waited = self._usual.get(self._stage, 0.0), self._in_stage - self._done_s
+        if not usual:
+            told = self._done > _TRUSTED and self._done_s > _NOTICED_S
+            if not told and not self._usual:
+                return None
+            here = max(self._done_s * (1 / self._done - 1) - waited, 0.0) if told else 0.0
+            return here + self._to_come(1.0)
+        expected = usual * self._pace.here * min(1 / self._reports, 1 - self._done)
+        late = waited / expected if waited > expected > 0 else 1.0
+        here = max(usual * (1 - self._done) * self._pace.here * late - waited, 0.0)
+        return here + self._to_come(late)
+
+    def _to_come(self, late: float) -> float:
+        """Seconds of the stages to come, where this one's report is late by the factor `late`."""
+        return self._pace.later(late) * sum(s for stage, s in self._usual.items() if self._is_to_come(stage))
 
     @property
     def _in_stage(self) -> float:
         return self._clock() - self._begun
 
-    @property
-    def _pace(self) -> float:
-        """How much slower than usual the job is until now."""
-        took = {stage: seconds for stage, seconds in self.seconds.items() if stage in self._usual}
-        usual = sum(self._usual[stage] for stage in took)
-        first = _AS_USUAL * sum(self._usual.values())
-        spent, expected = sum(took.values()) + first, usual + first
-        here = self._usual.get(self._stage, 0.0)
-        if here and self._done:
-            spent, expected = spent + self._done_s, expected + here * self._done
-        elif here and self._in_stage > here * spent / expected:
-            spent, expected = spent + self._in_stage, expected + here
-        return spent / expected if expected else 1.0
+    def _learn(self, done: float) -> None:
+        """The share `done` of this stage is reported."""
+        usual = self._usual.get(self._stage, 0.0) * (done - self._done)
+        if usual > 0:
+            self._pace.learn(max(self._in_stage - self._done_s, _SHORTEST_S) / usual, self._reports)
 
     def _is_to_come(self, stage: str) -> bool:
         return (
@@ -187,6 +252,7 @@ class Remaining:
 
     def _close(self) -> None:
         if self._stage:
+            self._learn(1.0)
             self.seconds[self._stage] = self.seconds.get(self._stage, 0.0) + self._in_stage
 
 

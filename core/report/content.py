@@ -235,7 +235,7 @@ class ReportContent:
     timestamp
         When the measurement was evaluated.
     view
-        How the surface was left in 3D; None where nobody turned it.
+        How the surface was left in 3D; None where it was never turned.
     reported
         The day on which the report is made; None: it is not said, and the same content gives the same report.
     certificates

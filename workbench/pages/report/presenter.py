@@ -70,7 +70,7 @@ class ReportPresenter(StepPresenter):
 
     @property
     def view(self) -> str:
-        """How the surface was left in 3D, in numbers; "" where nobody turned it."""
+        """Numbers of how the surface was left in 3D; "" where it was never turned."""
         view = None if self.model.folder is None else read_view(self.model.folder)
         return "" if view is None else view.words
 
