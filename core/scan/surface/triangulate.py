@@ -58,18 +58,20 @@ def triangulate(
     Both are larger where each row sees another plane (`core.scan.network.read_out`).
     With r the ray and n the centreline's normal, in inverse depth w = π·r: var(w) = rᵀ Σ r + (∂w/∂(u,v)·n)² σ² + 2 c,
     and σ_z = z² σ_w. The plane goes where its crossings are, so it follows the line's noise and undoes some of it: c,
-    by `own`, is mostly negative. Points that the plane puts behind the camera, and saturated ones, are left out.
+    by `own`, is mostly negative. Points that the plane puts behind the camera, and saturated ones, are left out, and
+    those of a plane that is known so little that rᵀ Σ r is lost in rounding, and below 0: their σ is not known.
     """
     rays, rows = camera.rays(centreline.uv), camera.image_size[1]
     forms = row_forms(rays, centreline.uv[:, 1], rows, len(pi))
     inverse_depth = forms @ pi
     plane = np.broadcast_to(row_planes(pi[None], centreline.uv[:, 1], rows)[:, :2], (len(rays), 2))
     slope = np.einsum("ni,nij,nj->n", plane, camera.ray_jacobian(rays), centreline.normal)
-    variance = np.einsum("ni,ij,nj->n", forms, covariance, forms) + (slope * centreline.sigma) ** 2
+    of_plane = np.einsum("ni,ij,nj->n", forms, covariance, forms)
+    variance = of_plane + (slope * centreline.sigma) ** 2
     if own is not None and len(own.covariance):
         common = own.with_noise(centreline, rays, forms, slope, camera.focal)
         variance = np.maximum(variance + 2 * common, LEAST_VARIANCE_SHARE * variance)
-    keep = (inverse_depth > LEAST_INVERSE_DEPTH) & ~centreline.saturated & np.isfinite(inverse_depth)
+    keep = (inverse_depth > LEAST_INVERSE_DEPTH) & ~centreline.saturated & np.isfinite(inverse_depth) & (of_plane >= 0)
     centreline, rays, inverse_depth = centreline.select(keep), rays[keep], inverse_depth[keep]
     variance, slope = variance[keep], slope[keep]
     depth = 1 / inverse_depth
