@@ -131,13 +131,10 @@ class FanRest:
 def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> FanRest:
     """Find which frames of a scan saw the fan's light where it was in the reference."""
     count = len(features.frames)
-    known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
-    stretches = len(features.frames[known[0]].fan_shifts_px) if len(known) else 0
-    at_rest = FanRest(np.ones(count, dtype=np.bool_), frames=len(known), stretches=stretches)
+    known, shifts, noise = fan_shifts(features)
+    at_rest = FanRest(np.ones(count, dtype=np.bool_), frames=len(known), stretches=shifts.shape[1])
     if not at_rest.known:
         return at_rest
-    shifts = np.array([features.frames[i].fan_shifts_px for i in known])
-    noise = np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
     level = np.maximum(noise, LEAST_NOISE_PX)
     splits = sorted(_splits(shifts, level, 0))
     if not splits:
@@ -168,6 +165,15 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
         shift_mm=_median(in_depth),
         share=float(np.mean(moved)),
     )
+
+
+def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
+    """The frames (K,) that see the fan's light, how far in px its stretches lie aside (K, C), and their noise (C,)."""
+    known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
+    if not len(known):
+        return known, np.zeros((0, 0)), np.zeros(0)
+    shifts = np.array([features.frames[i].fan_shifts_px for i in known])
+    return known, shifts, np.array([mad_sd(step) for step in np.diff(shifts, axis=0).T]) / np.sqrt(2)
 
 
 def _splits(shifts: Array, noise: Array, first: int) -> list[int]:

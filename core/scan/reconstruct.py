@@ -6,8 +6,8 @@ No picture is needed here, so a scan can be solved again in a second with anothe
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,6 +25,7 @@ from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
+from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.method import Method
 from core.scan.network.datum import Datum, datum_of, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
@@ -121,13 +122,13 @@ def reconstruct(
     names = [frame.name for frame in features.frames]
     watched = watch_fan(features, lines, camera, fan)
     _require_rest(features, watched)
-    among = crossings, line
+    among, unrest = (crossings, line), partial(_unrest, watched, names)
     bounces = NO_BOUNCES
     if _together(options) and not watched.unsteady:  # the fan's light, moved, would be taken for a bounce
         bounces = find_second_bounces(features.frames, among, camera, fan)
     kept = watched.at_rest[crossings.a] & (crossings.with_fan | watched.at_rest[crossings.b])
     kept &= ~bounces.among(crossings)
-    with _unrest_first(watched, names):
+    with cause_first(unrest):
         solved = _solve(options, among, kept, camera, fan, names, watched, reported.within_step)
         sweeps = solved.sweeps
         if sweeps.collapsed and not _flat(features, lines, camera, fan):
@@ -137,7 +138,7 @@ def reconstruct(
     found = join(_fan_clouds(features, lines, camera, fan) + _sweep_clouds(features, sweeps, camera, bounces))
     cloud = _cut(found, options.sigma_cut_mm)
     progress("network", 2, 3)
-    with _unrest_first(watched, names):
+    with cause_first(unrest):
         if not np.any(cloud.sweep >= 0):
             raise _refused(
                 too_bright,
@@ -175,6 +176,9 @@ def reconstruct(
         fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
+        movements=tuple(sorted({*watched.first_after, *solved.movements})),
+        rig_explained=None if solved.explanation is None else solved.explanation.share,
+        rows_seen_to_roll=solved.read_out.moves and options.row_time_us is None,
     )
 
 
@@ -185,32 +189,36 @@ def _refused(too_bright: Message | None, what: Message, todo: Message) -> InputE
     return InputError(what, where="scan", todo=todo)
 
 
-@contextmanager
-def _unrest_first(watched: FanRest, names: Sequence[str]) -> Iterator[None]:
-    """A complaint about sweeps that do not fit together begins with the rig's drift, or what moved: that is why."""
-    try:
-        yield
-    except InputError as error:
-        if watched.drifts:
-            what = Message(
+def _unrest(watched: FanRest, names: Sequence[str]) -> Iterator[Reason]:
+    """The rig's drift, or what moved, as the reason of a complaint about sweeps that do not fit together."""
+    if watched.drifts:
+        yield Reason(
+            Suspect.DRIFTED,
+            lambda reason: Message(
                 "scan.drifted_too_much",
                 "the rig drifted: from the first frame to the last the fan's light moved evenly, by {shift_px:.2g} px; "
                 "of what was measured so: {reason}",
                 shift_px=watched.shift_px,
-                reason=error.what,
-            )
-            raise OwnCause(what, where=error.where, todo=WARM_UP) from error
-        if watched.first_after and not isinstance(error, OwnCause):
-            what = Message(
+                reason=reason,
+            ),
+            WARM_UP,
+            of_own=True,
+            kind=OwnCause,
+        )
+    if watched.first_after:
+        yield Reason(
+            Suspect.MOVED,
+            lambda reason: Message(
                 "scan.moved_and_not_solved",
                 "by the fan's light, {what} moved {when:and}, by {shift_px:.2g} px; of the frames without it: {reason}",
                 what=watched.what_moved,
                 when=watched.when(names),
                 shift_px=watched.shift_px,
-                reason=error.what,
-            )
-            raise OwnCause(what, where=error.where, todo=HOLD_STILL) from error
-        raise
+                reason=reason,
+            ),
+            HOLD_STILL,
+            kind=OwnCause,
+        )
 
 
 def _datum_notes(datum: Datum | None, found: Cloud, camera: Camera) -> tuple[Message, ...]:
@@ -240,6 +248,7 @@ class _Solved:
     moved: bool | None = None
     fan_disagrees: bool = False
     explanation: Explanation | None = None
+    movements: tuple[int, ...] = ()
 
 
 def _solve(
@@ -296,6 +305,7 @@ def _solve(
         bool(watched.first_after or moved) if watched.known or part.known else None,
         explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
+        tuple(movement.first_after for movement in part.movements) if moved else (),
     )
 
 

@@ -12,6 +12,7 @@ from core.model.arrays import Array
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameRecord
 from core.scan.network.datum import Datum
+from core.scan.network.fan_residuals import TIMES
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
 from core.scan.surface.cloud import Cloud
@@ -67,6 +68,12 @@ class ScanResult:
         Whether a single change of camera or fan since their calibration explains crossings that disagree.
     unsure_share
         Share of the sweeps' points that are less sure than the σ cut, and left out.
+    movements
+        The first frame after each movement that was found in light or crossings.
+    rig_explained
+        Share of what crossings are off too much that a single change of camera or fan explains; None if none does.
+    rows_seen_to_roll
+        Whether the crossings, and nothing that is stated, say that planes change with the rows.
     """
 
     cloud: Cloud
@@ -90,6 +97,15 @@ class ScanResult:
     rig_changed: bool = False
     unsure_share: float = 0.0
     second_bounces: SecondBounces = NO_BOUNCES
+    movements: tuple[int, ...] = ()
+    rig_explained: float | None = None
+    rows_seen_to_roll: bool = False
+
+    @property
+    def asks_for_cause(self) -> bool:
+        """Whether anything was found in its crossings that should not be there."""
+        seen = self.movements or self.drifted or self.fan_disagrees or self.rig_changed or self.second_bounces.pieces
+        return bool(seen) or self.rows_seen_to_roll or self.scale > TIMES
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:

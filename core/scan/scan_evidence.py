@@ -54,7 +54,10 @@ def scan_evidence(
     for _ in range(_ROUNDS):
         solution = equations.improve(solution, scan.crossing_weights[scan.of_solved])
     changes = np.array(
-        [_change(equations, solution, one.fan, one.camera if one.camera is not camera else None) for one in deviations]
+        [
+            change_of_misclosures(equations, solution, one.fan, one.camera if one.camera is not camera else None)
+            for one in deviations
+        ]
     ).T
     weight = solution.weights / solution.sigma**2
     eliminated = cho_solve(solution.factor, solution.design.T @ (weight[:, None] * changes), check_finite=False)
@@ -65,7 +68,7 @@ def scan_evidence(
     return Evidence(changes.T @ felt, scatter, gradient)
 
 
-def _change(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
+def change_of_misclosures(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
     """(M,) change of the misclosures observed − adjusted, in 1/mm, with another `fan` and `camera` (None: the same)."""
     rays = equations.geometry.rays
     here = np.einsum("mi,mi->m", equations.differences(solution.pis), rays)

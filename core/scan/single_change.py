@@ -118,6 +118,11 @@ class Explanation:
     misfit: float
 
     @property
+    def share(self) -> float:
+        """Share of what is too much of the misfit that the likeliest of them explains."""
+        return (self.misfit - self.changes[0].left) / (self.misfit - 1)
+
+    @property
     def note(self) -> Message:
         """How much crossings disagree, and what would explain it."""
         return note_of(

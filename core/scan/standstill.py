@@ -127,19 +127,10 @@ class _Scores:
 
     @classmethod
     def of(cls, equations: Adjustment, solution: Solution) -> _Scores:
-        table = equations.crossings
-        b = np.where(table.with_fan, -1, table.b)
-        rays = equations.geometry.rays
-        planes = equations.read_out.planes(solution.pis[table.a], table.uv[:, 1])
-        inverse = np.einsum("mi,mi->m", rays, planes) - 0.5 * np.einsum(
-            "mi,mi->m", rays, equations.differences(solution.pis)
-        )
-        pattern = _movements(rays, inverse)
         _, expected = equations.covariance(solution)
         scale = max(1.0, solution.misfit / max(expected, 1.0))
-        sign = np.where(table.a > b, 1.0, -1.0)
         weighted = csr_array(diags_array(solution.weights / solution.sigma**2) @ solution.design)
-        earlier, later, pattern = np.minimum(table.a, b), np.maximum(table.a, b), sign[:, None] * pattern
+        earlier, later, pattern = movements_of(equations, solution)
         return cls(equations, solution, weighted, equations.noise(solution), earlier, later, pattern, scale)
 
     def at(self, k: int) -> float:
@@ -159,6 +150,21 @@ class _Scores:
         return (
             _chi_square(score / own, (of_noise.T @ of_noise + of_cells.T @ of_cells) / np.outer(own, own)) / self.scale
         )
+
+
+def movements_of(equations: Adjustment, solution: Solution) -> tuple[Index, Index, Array]:
+    """What a movement between two sweeps does to the crossings across it.
+
+    The `earlier` and `later` (M,) sweep of each, −1 for the fan, and `pattern` (M, ≤ 12) in 1/mm, as of `_Scores`.
+    """
+    table = equations.crossings
+    b, rays = np.where(table.with_fan, -1, table.b), equations.geometry.rays
+    planes = equations.read_out.planes(solution.pis[table.a], table.uv[:, 1])
+    inverse = np.einsum("mi,mi->m", rays, planes) - 0.5 * np.einsum(
+        "mi,mi->m", rays, equations.differences(solution.pis)
+    )
+    sign = np.where(table.a > b, 1.0, -1.0)
+    return np.minimum(table.a, b), np.maximum(table.a, b), sign[:, None] * _movements(rays, inverse)
 
 
 def _chi_square(score: Array, covariance: Array) -> float:

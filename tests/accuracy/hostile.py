@@ -133,7 +133,12 @@ def codes_in(what: Message) -> list[str]:
 def _told(out: Path) -> list[str]:
     """Codes of the notes of all steps whose results are in the folder `out`, the gravest first, as they are read."""
     notes = gravest_first(note for notes in read_run(out / "run.json").notes.values() for note in notes)
-    return list(dict.fromkeys(note.code for note in notes))
+    return list(dict.fromkeys(code for note in notes for code in (*_compared(note), note.code)))
+
+
+def _compared(note: Message) -> list[str]:
+    """Codes of the causes that a note tells with their shares, the likeliest first."""
+    return [code for code in codes_in(note) if code.startswith("cause.") and code not in ("cause.first", "cause.next")]
 
 
 def _opened(case: HostileCase, place: Path) -> RecordingSet:

@@ -203,17 +203,21 @@ EFFECTS = (
 
 BOUNCES, LIGHT = "second bounces between table and part's sides", "scan.room_light_changed"
 CHANGED = (
-    "scan.fan_has_moved", "inspection.rig_has_changed", "inspection.rig_may_have_changed", "validity.check_failed",
+    "cause.rig_changed", "scan.fan_has_moved", "inspection.rig_has_changed", "inspection.rig_may_have_changed",
+    "validity.check_failed",
 )  # fmt: skip
 MOVEMENT = (
     "scan.moved", "scan.fan_shifted", "inspection.moved_during_scan", "scan.moved_too_early", "scan.moved_too_much",
-    "gauge.moved_and_no_faces", "scan.frames_moved",
+    "gauge.moved_and_no_faces", "scan.frames_moved", "cause.moved",
 )  # fmt: skip
-DRIFT = ("scan.drifted", "scan.drifted_too_much", "inspection.drifted_during_scan", "gauge.drifted_and_no_faces")
+DRIFT = (
+    "cause.drifted", "scan.drifted", "scan.drifted_too_much", "inspection.drifted_during_scan",
+    "gauge.drifted_and_no_faces",
+)  # fmt: skip
 LENS = ("camera.corners_err_together", "camera.pattern_outwards", "camera.pattern_in_region", "camera.bad_fit")
 CAUSES: Mapping[str, tuple[str, ...]] = {
     "nothing": (),
-    BOUNCES: ("scan.fan_light_ambiguous", "scan.second_bounces"),
+    BOUNCES: ("scan.fan_light_ambiguous", "scan.second_bounces", "cause.second_bounces"),
     "lamps that flicker at 100 Hz": (LIGHT,),
     "a lamp switched within the scan": (LIGHT,),
     "a shadow that passes": (LIGHT,),
@@ -236,9 +240,15 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
     "glossy part": ("inspection.light_is_skewed", "scan.shines"),
     "glossy part with a lay": ("inspection.light_is_skewed", "scan.shines"),
-    "fan lines that bow": ("fan.bow_or_bend", "fan.lines_bent", "fan.lines_wavy", "gauge.bent_and_no_faces"),
+    "fan lines that bow": (
+        "fan.bow_or_bend",
+        "fan.lines_bent",
+        "fan.lines_wavy",
+        "gauge.bent_and_no_faces",
+        "cause.bent_lines",
+    ),
     "speckle": ("scan.speckled", "form.scatter"),
-    "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll"),
+    "hand that moves": ("scan.hand_moved", "scan.points_unsure_by_motion", "scan.rows_roll", "cause.hand_moved"),
     "something moves within the scan": MOVEMENT,
 }
 """Codes of notes and refusals that name the cause of each effect: no other counts as told."""

@@ -38,6 +38,7 @@ from core.messages import Command, Message
 from core.model.arrays import Array
 from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
+from core.scan.first_cause import Cause, Causes, Suspect
 from core.scan.network.fan_speckle import FanSpeckle
 
 _TODO = Message(
@@ -68,6 +69,10 @@ _MEMBERS = {
     "crossings_used": real(None, 2),
     **_FACT_MEMBERS,
     "unsure_share": real(optional=True),
+    "cause_suspects": texts("causes", optional=True),
+    "cause_shares": real("causes", optional=True),
+    "cause_freedoms": whole("causes", optional=True),
+    "cause_p": real("causes", optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "common_sources": texts(None, optional=True),
     "common_cameras": real("displaced", 10, optional=True),
@@ -118,6 +123,8 @@ class ScanFile:
         Frame and number of the sweeps' centrelines that were left out as second bounces.
     unsure_share
         Share of the sweeps' points that were left out because they are less sure than the σ cut; 0 if not known.
+    causes
+        What explains most of what the scan's crossings are off too much, the likeliest first; none where nothing is.
     """
 
     features: ScanFeatures
@@ -134,6 +141,7 @@ class ScanFile:
     facts: ScanFacts = field(default_factory=ScanFacts)
     second_bounces: tuple[tuple[int, int], ...] = ()
     unsure_share: float = 0.0
+    causes: Causes = ()
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -153,6 +161,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "of_the_day_facts": pack_texts([doubt.fact for doubt in scan.facts.of_the_day]),
         "unsure_share": np.array(scan.unsure_share),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
+        **(_packed(scan.causes) if scan.causes else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
         **({} if common is None or common.bends is None else {"common_bends": common.bends}),
         **({f"speckle_{name}": getattr(speckle, name) for name in _SPECKLE} if speckle else {}),
@@ -207,6 +216,29 @@ def _unpacked(arrays: Arrays) -> ScanFile:
             (frame, piece) for frame, piece in arrays.get("second_bounces", np.zeros((0, 2))).tolist()
         ),
         unsure_share=float(arrays.get("unsure_share", 0.0)),
+        causes=_causes(arrays),
+    )
+
+
+def _packed(causes: Causes) -> dict[str, NDArray[Any]]:
+    return {
+        "cause_suspects": pack_texts([cause.suspect for cause in causes]),
+        "cause_shares": np.array([cause.share for cause in causes], dtype=np.float64),
+        "cause_freedoms": np.array([cause.freedom for cause in causes], dtype=np.int64),
+        "cause_p": np.array([cause.p for cause in causes], dtype=np.float64),
+    }
+
+
+def _causes(arrays: Arrays) -> Causes:
+    """The causes that were compared; those of another version, which this one does not know, are passed by."""
+    if "cause_suspects" not in arrays:
+        return ()
+    rows = (arrays[f"cause_{name}"].tolist() for name in ("shares", "freedoms", "p"))
+    known = {one.value: one for one in Suspect}
+    return tuple(
+        Cause(known[name], *row)
+        for name, *row in zip(unpack_texts(arrays["cause_suspects"]), *rows, strict=True)
+        if name in known
     )
 
 

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple, TypeVar
 
 import numpy as np
 
-from core.errors import InputError, NoThickness, OwnCause
+from core.errors import InputError, NoThickness
 from core.files.recording.rig import GaugeSpec, Rig, part_table
 from core.files.results.gauge_file import read_gauge, write_gauge
 from core.files.results.ply import read_cloud
@@ -28,7 +29,8 @@ from core.pipeline.steps.workspace import Workspace, check_calibration
 from core.progress import Progress, silent
 from core.scan.fan_watch import WARM_UP
 from core.scan.features.overexposure import ADVICE, overexposed
-from core.scan.features.picture_faults import faults_first
+from core.scan.features.picture_faults import at_fault
+from core.scan.first_cause import Reason, Suspect, cause_first
 from core.scan.standstill import HOLD_STILL
 from core.scan.surface.cloud import FAN, Cloud
 
@@ -63,8 +65,8 @@ def gauge_step(work: Workspace, progress: Progress = silent) -> GaugeResult:
         check_calibration(work.path("scan"), scan.calibration_id, calibration)
         cloud, spec, part = file.cloud, work.recording_set.rig.gauge or GaugeSpec(), work.recording_set.rig.part
         regions = _regions(spec)
-        bent = bent_first(cloud, calibration.fan.bends)
-        with _no_thickness(), bent, movement_first(scan), faults_first(scan.features.faults), unsure_first(scan):
+        why = partial(reasons_of_no_faces, scan, cloud, calibration.fan.bends)
+        with _no_thickness(), cause_first(why, scan.causes):
             gauge = measure_gauge(
                 cloud,
                 errors=replace(point_errors(scan), part=part),
@@ -111,106 +113,116 @@ def _no_thickness() -> Iterator[None]:
         raise NoThickness(error.what, where=error.where, todo=error.todo) from error
 
 
-@contextmanager
-def bent_first(cloud: Cloud, bends: Array | None) -> Iterator[None]:
-    """A complaint about faces begins with fan lines that are no planes of light: crossings disagree by that, too.
+def reasons_of_no_faces(scan: ScanFile, cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
+    """All that may be why no faces are found in the `cloud`: one row for each cause that holds.
 
-    That is told if the light is off its planes, by `bends` (N, 3, 3) in 1/mm, by half the largest σ that a point of the
-    cloud has, at most of those that the fan measured itself.
+    `bends` (N, 3, 3) in 1/mm are those of the fan's lines, None where they are not known.
     """
-    try:
-        yield
-    except InputError as error:
-        own = cloud.sweep <= FAN
-        if bends is None or not own.any():
-            raise
-        points, line = cloud.points[own], FAN - cloud.sweep[own]
-        off_mm = float(np.median(np.abs(np.einsum("ni,nij,nj->n", points, bends[line], points))))
-        if off_mm < cloud.sigma.max() / 2:
-            raise
-        what = Message(
+    yield from _bent(cloud, bends)
+    if scan.facts.moved:
+        yield Reason(
+            Suspect.MOVED,
+            lambda reason: Message(
+                "gauge.moved_and_no_faces",
+                "something moved during the scan; of what is left: {reason}",
+                reason=reason,
+            ),
+            HOLD_STILL,
+            of_own=True,
+        )
+    if scan.facts.drifted:
+        yield Reason(
+            Suspect.DRIFTED,
+            lambda reason: Message(
+                "gauge.drifted_and_no_faces",
+                "the rig drifted during the scan; of what it measured so: {reason}",
+                reason=reason,
+            ),
+            WARM_UP,
+            of_own=True,
+        )
+    yield from at_fault(scan.features.faults)
+    yield from _too_bright(scan)
+    yield from _unsure(scan)
+
+
+def _bent(cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
+    """That the fan's lines are no planes of light: crossings disagree by that, too.
+
+    It counts if the light is off its planes by half the largest σ that a point of the cloud has, at most of those that
+    the fan measured itself.
+    """
+    own = cloud.sweep <= FAN
+    if bends is None or not own.any():
+        return
+    points, line = cloud.points[own], FAN - cloud.sweep[own]
+    off_mm = float(np.median(np.abs(np.einsum("ni,nij,nj->n", points, bends[line], points))))
+    if off_mm < cloud.sigma.max() / 2:
+        return
+    yield Reason(
+        Suspect.BENT_LINES,
+        lambda reason: Message(
             "gauge.bent_and_no_faces",
             "by their calibration the fan's lines are no planes of light, but {off_mm:.2g} mm off them; of what is "
             "measured so: {reason}",
             off_mm=off_mm,
-            reason=error.what,
-        )
-        todo = Message(
+            reason=reason,
+        ),
+        Message(
             "gauge.advice_straight_lines",
             "see what the calibration of the light planes says of the lines, mend that, and calibrate them again",
-        )
-        raise InputError(what, where=error.where, todo=todo) from error
+        ),
+        of_own=True,
+    )
 
 
-@contextmanager
-def movement_first(scan: ScanFile) -> Iterator[None]:
-    """A complaint about faces begins with what moved or drifted in the scan, if anything did: that is why."""
-    try:
-        yield
-    except InputError as error:
-        if scan.facts.moved:
-            what = Message(
-                "gauge.moved_and_no_faces",
-                "something moved during the scan; of what is left: {reason}",
-                reason=error.what,
-            )
-            raise InputError(what, where=error.where, todo=HOLD_STILL) from error
-        if scan.facts.drifted:
-            what = Message(
-                "gauge.drifted_and_no_faces",
-                "the rig drifted during the scan; of what it measured so: {reason}",
-                reason=error.what,
-            )
-            raise InputError(what, where=error.where, todo=WARM_UP) from error
-        raise
-
-
-@contextmanager
-def unsure_first(scan: ScanFile) -> Iterator[None]:
-    """A complaint about faces begins with stripes that are overexposed, or with how many points the σ cut left out.
-
-    With these only if they are most: that may be why. Where the frames are few, their number is: with as many as are
-    usual, the same sweeps have faces.
-    """
-    try:
-        yield
-    except OwnCause:
-        raise
-    except InputError as error:
-        sweeps = [piece for frame in scan.features.frames for piece in frame.centrelines]
-        too_bright = overexposed(scan.features.fan, sweeps)
-        if too_bright is not None:
-            what = Message(
+def _too_bright(scan: ScanFile) -> Iterator[Reason]:
+    """That stripes are overexposed."""
+    sweeps = [piece for frame in scan.features.frames for piece in frame.centrelines]
+    too_bright = overexposed(scan.features.fan, sweeps)
+    if too_bright is not None:
+        yield Reason(
+            Suspect.OVEREXPOSED,
+            lambda reason: Message(
                 "gauge.overexposed_and_no_faces",
                 "{bright}; of the rest: {reason}",
                 bright=too_bright,
-                reason=error.what,
-            )
-            raise InputError(what, where=error.where, todo=ADVICE) from error
-        if scan.unsure_share < UNSURE:
-            raise
-        if len(scan.sweep_frames) < FEW_FRAMES:
-            what = Message(
+                reason=reason,
+            ),
+            ADVICE,
+        )
+
+
+def _unsure(scan: ScanFile) -> Iterator[Reason]:
+    """That the σ cut left most points out: for few frames, with as many as are usual, the same sweeps have faces."""
+    if scan.unsure_share < UNSURE:
+        return
+    if len(scan.sweep_frames) < FEW_FRAMES:
+        yield Reason(
+            Suspect.FEW_FRAMES,
+            lambda reason: Message(
                 "gauge.few_frames_and_no_faces",
                 "only {n} frames locate the surface, and {percent:.0f} % of their points are less sure than the σ cut; "
                 "of the rest: {reason}",
                 n=len(scan.sweep_frames),
                 percent=100 * scan.unsure_share,
-                reason=error.what,
-            )
-            todo = Message("gauge.advice_more_frames", "record {n} frames or more", n=USUAL_FRAMES)
-            raise InputError(what, where=error.where, todo=todo) from error
-        what = Message(
+                reason=reason,
+            ),
+            Message("gauge.advice_more_frames", "record {n} frames or more", n=USUAL_FRAMES),
+        )
+    yield Reason(
+        Suspect.UNSURE_POINTS,
+        lambda reason: Message(
             "gauge.unsure_and_no_faces",
             "{percent:.0f} % of the sweeps' points are less sure than the σ cut, and left out; of the rest: {reason}",
             percent=100 * scan.unsure_share,
-            reason=error.what,
-        )
-        todo = Message(
+            reason=reason,
+        ),
+        Message(
             "gauge.advice_surer_points",
             "raise the scan's σ cut, cross more of the fan with each sweep, or take sharper or larger pictures",
-        )
-        raise InputError(what, where=error.where, todo=todo) from error
+        ),
+    )
 
 
 def point_errors(scan: ScanFile) -> PointErrors:

@@ -7,11 +7,9 @@ moved. So a scan that is refused is told first what its pictures show.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
 
 import numpy as np
 
-from core.errors import InputError, OwnCause
 from core.findings.table import note_of
 from core.image.mosaic import PERIOD_PX, is_interpolated
 from core.image.stripes.centreline import Centreline
@@ -20,6 +18,7 @@ from core.image.stripes.precision import response_noise
 from core.image.stripes.stripe import filter_for
 from core.messages import Message
 from core.scan.features.reference import ReferenceFeatures
+from core.scan.first_cause import Reason, Suspect
 
 SPECKLED_SHARE = 0.08
 """Scatter of the brightness along the fan's lines, as a share of it, from which on it is told: between what fine
@@ -102,21 +101,16 @@ def _scatter(pieces: Sequence[Centreline], noise: NoiseModel) -> float:
     return float(np.sqrt(max(seen.mean() - np.concatenate(by_noise).mean(), 0.0))) if len(seen) else 0.0
 
 
-@contextmanager
-def faults_first(faults: Sequence[Message]) -> Iterator[None]:
-    """A complaint about what was made of pictures begins with their `faults`, if there are any: that may be why."""
-    try:
-        yield
-    except OwnCause:
-        raise
-    except InputError as error:
-        if not faults:
-            raise
-        what = Message(
-            "scan.pictures_at_fault",
-            "{faults:;} That may be why {reason}",
-            faults=faults,
-            reason=error.what,
+def at_fault(faults: Sequence[Message]) -> Iterator[Reason]:
+    """The `faults` of pictures, if there are any, as the reason of a complaint about what was made of them."""
+    if faults:
+        yield Reason(
+            Suspect.PICTURES,
+            lambda reason: Message(
+                "scan.pictures_at_fault",
+                "{faults:;} That may be why {reason}",
+                faults=faults,
+                reason=reason,
+            ),
+            Message("scan.advice_better_pictures", "mend that first, then scan again"),
         )
-        todo = Message("scan.advice_better_pictures", "mend that first, then scan again")
-        raise InputError(what, where=error.where, todo=todo) from error

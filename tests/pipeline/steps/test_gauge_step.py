@@ -10,15 +10,38 @@ from core.findings.proof import ScanFacts
 from core.findings.table import note_of
 from core.messages import Message
 from core.pipeline.steps import gauge_step
-from core.scan.features.picture_faults import faults_first
+from core.scan.first_cause import Cause, Suspect, cause_first
 from core.scan.surface.cloud import FAN
 
 
-def scan_of(*, unsure_share, saturated=0, faults=(), sweeps=36):
+def scan_of(*, unsure_share=0.0, saturated=0, faults=(), sweeps=36, facts=None):
     """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
     line = SimpleNamespace(saturated=np.arange(100) < saturated)
     features = SimpleNamespace(fan=[line], frames=[], notes=(), faults=faults)
-    return SimpleNamespace(unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps))
+    facts = ScanFacts() if facts is None else facts
+    return SimpleNamespace(
+        unsure_share=unsure_share, features=features, sweep_frames=np.arange(sweeps), facts=facts, causes=()
+    )
+
+
+def cloud_with(sigma=(0.01, 0.01, 0.01, 0.05)):
+    """Four points at 500 mm, three of them the fan's own."""
+    points = np.tile([0.0, 0.0, 500.0], (4, 1))
+    return SimpleNamespace(points=points, sweep=np.array([FAN, FAN, FAN, 0]), sigma=np.array(sigma))
+
+
+def told_first(scan, error, *, bends=None, causes=()):
+    """The complaint as the step tells it."""
+    with (
+        pytest.raises(InputError) as refused,
+        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), bends), causes),
+    ):
+        raise error
+    return refused.value
+
+
+def no_faces(kind=InputError):
+    return kind(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
 
 
 NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are parallel", n=1)
@@ -33,54 +56,60 @@ NO_FACES = Message("gauge.no_parallel_faces", "among {n} plane faces no two are 
     ],
 )
 def test_faces_that_are_not_found_are_told_with_what_happened_to_the_scan(facts, code, todo):
-    with pytest.raises(InputError) as refused, gauge_step.movement_first(SimpleNamespace(facts=facts)):
-        raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
-    assert refused.value.code == code
-    assert "no two are parallel" in str(refused.value)
-    assert todo in str(refused.value)
+    refused = told_first(scan_of(facts=facts), no_faces())
+    assert refused.code == code
+    assert "no two are parallel" in str(refused)
+    assert todo in str(refused)
 
 
 @pytest.mark.parametrize(("share", "said"), [(0.8, "80 % of the sweeps' points"), (0.2, "among 1 plane faces")])
 def test_faces_that_are_not_found_are_told_with_the_points_that_are_too_unsure(share, said):
-    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=share)):
-        raise InputError(NO_FACES, where="point cloud", todo=Message("x.y", "scan both faces"))
-    assert said in str(refused.value)
-    assert "no two are parallel" in str(refused.value)
-    assert ("raise the scan's σ cut" in str(refused.value)) == (share > 0.5)
+    refused = str(told_first(scan_of(unsure_share=share), no_faces()))
+    assert said in refused
+    assert "no two are parallel" in refused
+    assert ("raise the scan's σ cut" in refused) == (share > 0.5)
 
 
 def test_few_frames_are_named_before_points_that_are_too_unsure():
-    with pytest.raises(InputError) as refused, gauge_step.unsure_first(scan_of(unsure_share=0.8, sweeps=11)):
-        raise InputError(NO_FACES, where="point cloud")
+    refused = str(told_first(scan_of(unsure_share=0.8, sweeps=11), no_faces()))
     for said in ("only 11 frames", "no two are parallel", "record 30 frames or more"):
-        assert said in str(refused.value)
-    assert "raise the scan's σ cut" not in str(refused.value)
+        assert said in refused
+    assert "raise the scan's σ cut" not in refused
 
 
 @pytest.mark.parametrize(("off_mm", "bent"), [(0.05, True), (0.01, False), (None, False)])
 def test_lines_that_are_no_planes_are_named_before_what_seems_to_have_moved(off_mm, bent):
     """By what the light is off its planes at 500 mm, beside points of σ up to 0.05 mm."""
     bends = None if off_mm is None else np.diag([0, 0, off_mm / 500**2])[None]
-    points = np.tile([0.0, 0.0, 500.0], (4, 1))
-    cloud = SimpleNamespace(points=points, sweep=np.array([FAN, FAN, FAN, 0]), sigma=np.array([0.01, 0.01, 0.01, 0.05]))
-    moved = gauge_step.movement_first(SimpleNamespace(facts=ScanFacts(moved=True)))
-    with pytest.raises(InputError) as refused, gauge_step.bent_first(cloud, bends), moved:
-        raise InputError(NO_FACES, where="point cloud")
-    assert refused.value.code == ("gauge.bent_and_no_faces" if bent else "gauge.moved_and_no_faces")
-    assert "no two are parallel" in str(refused.value)
+    refused = told_first(scan_of(facts=ScanFacts(moved=True)), no_faces(), bends=bends)
+    assert refused.code == ("gauge.bent_and_no_faces" if bent else "gauge.moved_and_no_faces")
+    assert "no two are parallel" in str(refused)
+
+
+def test_what_moved_is_named_before_lines_that_bend_where_it_explains_most():
+    bends, scan = np.diag([0, 0, 0.05 / 500**2])[None], scan_of(facts=ScanFacts(moved=True))
+    most = [Cause(Suspect.MOVED, 0.8, 12, 1e-9), Cause(Suspect.BENT_LINES, 0.1, 1, 1e-4)]
+    assert told_first(scan, no_faces(), bends=bends, causes=most).code == "gauge.moved_and_no_faces"
+
+
+def test_only_the_likeliest_cause_is_told_of_faces_that_are_not_found():
+    scan = scan_of(unsure_share=0.8, saturated=53, facts=ScanFacts(moved=True))
+    refused = told_first(scan, no_faces())
+    assert refused.code == "gauge.moved_and_no_faces"
+    assert "saturated" not in str(refused)
 
 
 def test_overexposed_stripes_are_named_before_points_that_are_too_unsure():
-    bright = scan_of(unsure_share=0.8, saturated=53)
-    with pytest.raises(InputError) as refused, gauge_step.unsure_first(bright):
-        raise InputError(NO_FACES, where="point cloud")
+    refused = str(told_first(scan_of(unsure_share=0.8, saturated=53), no_faces()))
     for said in ("53 % of the fan's points", "no two are parallel", "1 stop less"):
-        assert said in str(refused.value)
-    assert "less sure than" not in str(refused.value)
+        assert said in refused
+    assert "less sure than" not in refused
 
 
-@pytest.mark.parametrize("first", [gauge_step.unsure_first, lambda scan: faults_first(scan.features.faults)])
-def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(first):
-    doubtful = scan_of(unsure_share=0.8, saturated=53, faults=(note_of("scan.speckled", percent=12.0),))
-    with pytest.raises(OwnCause, match=r"^point cloud: among 1 plane faces"), first(doubtful):
-        raise OwnCause(NO_FACES, where="point cloud")
+@pytest.mark.parametrize("holding", [{"unsure_share": 0.8, "saturated": 53}, {"faults": True}])
+def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(holding):
+    if "faults" in holding:
+        holding = {"faults": (note_of("scan.speckled", percent=12.0),)}
+    refused = told_first(scan_of(**holding), no_faces(OwnCause))
+    assert isinstance(refused, OwnCause)
+    assert str(refused).startswith("point cloud: among 1 plane faces")

@@ -13,11 +13,12 @@ from core.image.stripes.noise import Compression, NoiseModel
 from core.messages import Message
 from core.pipeline.steps.scan import judgement
 from core.scan.features.picture_faults import (
-    faults_first,
+    at_fault,
     faults_of,
     notes_on_compression,
 )
 from core.scan.features.reference import read_reference
+from core.scan.first_cause import cause_first
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
@@ -83,7 +84,7 @@ def test_frames_are_told_to_be_jpeg_where_that_rules_their_noise():
 
 def test_a_refusal_begins_with_the_faults_of_the_pictures():
     faults = notes_on_compression(NoiseModel(1.0, compression=Compression(3.0)))
-    with pytest.raises(InputError) as refused, faults_first(faults):
+    with pytest.raises(InputError) as refused, cause_first(lambda: at_fault(faults)):
         raise InputError(MOVED, where="scan", todo=Message("x.y", "hold both still"))
     assert refused.value.what.values["faults"] == faults
     assert str(refused.value).startswith("scan: The frames are JPEG")
@@ -105,6 +106,6 @@ def test_a_refusal_asks_for_faults_and_for_no_notes(monkeypatch):
 
 def test_a_refusal_of_faultless_pictures_stays_as_it_is():
     error = InputError(MOVED, where="scan")
-    with pytest.raises(InputError) as refused, faults_first(()):
+    with pytest.raises(InputError) as refused, cause_first(lambda: at_fault(())):
         raise error
     assert refused.value is error

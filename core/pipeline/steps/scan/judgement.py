@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
-from core.calibrate.change import Change, Evidence
-from core.calibrate.deviations import Deviation
+from core.calibrate.change import P_TOLD, Change, Evidence, changes
+from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
 from core.files.results.planes_file import planes_id
@@ -16,10 +17,12 @@ from core.messages import Message
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
+from core.scan.causes import compare_causes, note_on_causes
 from core.scan.changed_section import Section, changed_section
 from core.scan.common_errors import CommonErrors, solve_common
 from core.scan.features.extraction import ScanFeatures
-from core.scan.features.picture_faults import faults_first
+from core.scan.features.picture_faults import at_fault
+from core.scan.first_cause import Causes, cause_first
 from core.scan.method import Method
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import ScanResult
@@ -65,17 +68,23 @@ class Judgement:
         What displaced calibrations, and these changes, do to the scan.
     facts
         What decides whether anything measured in it can prove conformity.
+    causes
+        What explains most of what its crossings are off too much.
+    likely
+        The same in words; none where nothing is.
     """
 
     change: Change
     section: SectionChange
     common: CommonErrors
     facts: ScanFacts
+    causes: Causes = ()
+    likely: tuple[Message, ...] = ()
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """What changed, and why nothing measured is proof."""
-        return (*self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
+        """The most likely cause, what changed, and why nothing measured is proof."""
+        return (*self.likely, *self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
 
 
 def solved_scan(
@@ -88,7 +97,7 @@ def solved_scan(
     InputError
         If it cannot be solved; what is wrong with its pictures is told first.
     """
-    with faults_first(features.faults):
+    with cause_first(partial(at_fault, features.faults)):
         found = reconstruct_twice(features, calibration.camera.camera, calibration.fan.fan, options, progress)
     return Solved(*found, calibration)
 
@@ -125,7 +134,25 @@ def judged_scan(
     change = change_by(solved.evidence if method == Method.NETWORK else _nothing)
     deviations = (*change.deviations, *section.deviations)
     common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
-    return Judgement(change, section, common, facts_of(of_the_day, change, section, solved.scan))
+    causes = _causes(solved, change) if method == Method.NETWORK else ()
+    likely = note_on_causes(causes, solved.scan, [frame.name for frame in solved.features.frames])
+    return Judgement(change, section, common, facts_of(of_the_day, change, section, solved.scan), causes, likely)
+
+
+def _causes(solved: Solved, change: Change) -> Causes:
+    """What explains most of what crossings are off too much; nothing is compared where nothing is too large."""
+    if not solved.scan.asks_for_cause and change.p >= P_TOLD:
+        return ()
+    camera, fan = solved.calibration.camera, solved.calibration.fan
+    of_calibration = calibration_deviations(camera, fan)
+    return compare_causes(
+        solved.features,
+        solved.scan,
+        camera.camera,
+        replace(fan.fan, bends=fan.bends),
+        [one for one in of_calibration if one.source != UNEXPLAINED],
+        changes(camera.camera, fan.fan),
+    )
 
 
 def _nothing(deviations: Sequence[Deviation]) -> Evidence:

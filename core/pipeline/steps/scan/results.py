@@ -70,6 +70,7 @@ def scan_file(
         unsure_share=scan.unsure_share,
         common=judgement.common,
         facts=judgement.facts,
+        causes=judgement.causes,
     )
 
 

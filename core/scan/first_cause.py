@@ -1,0 +1,129 @@
+"""The one place where causes are compared: what explains most of what is too large, and what is said first.
+
+A cause is *measured* where it can be added to the model of a scan (`core.scan.causes`): then it explains a share of
+what is too large in the squares of the crossings, spends as many numbers as it has, and may do so by chance. Others
+cannot be put in that measure, and a fact decides of each by the rank or count that fails: frames that are too few,
+points that are too unsure, stripes that are saturated, pictures that are compressed. Of them `share` is None.
+
+A measured cause that explains most of what is too large is said before all others; then facts come, in the order of
+`Suspect`, for each of them leaves a result unsure whatever else there is; then the measured ones that explain less.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from enum import StrEnum
+
+from core.errors import InputError, OwnCause
+from core.messages import Message
+
+BY_CHANCE = 0.01
+"""A cause is named where chance alone would explain as much with a smaller probability, over all that were tried."""
+MOST = 0.5
+"""Share of what is too large from which on a cause is said before facts that have no share."""
+
+
+class Suspect(StrEnum):
+    """What may be the cause, by its name in files, in the order in which facts are said."""
+
+    BENT_LINES = "bent_lines"
+    MOVED = "moved"
+    DRIFTED = "drifted"
+    RIG_CHANGED = "rig_changed"
+    SECOND_BOUNCES = "second_bounces"
+    HAND_MOVED = "hand_moved"
+    PICTURES = "pictures"
+    OVEREXPOSED = "overexposed"
+    FEW_FRAMES = "few_frames"
+    UNSURE_POINTS = "unsure_points"
+
+
+@dataclass(frozen=True, slots=True)
+class Cause:
+    """A candidate cause, compared with the others.
+
+    Parameters
+    ----------
+    suspect
+        What it is.
+    share
+        Share of what is too large that it explains, of what those before it leave; None where it has no such measure.
+    freedom
+        Numbers that it spends.
+    p
+        Probability that it explains as much by chance, times the number of causes that were tried; at most 1.
+    """
+
+    suspect: Suspect
+    share: float | None = None
+    freedom: int = 0
+    p: float = 0.0
+
+
+Causes = tuple[Cause, ...]
+"""Causes beyond chance, the likeliest first; each explains some of what those before it leave."""
+
+
+@dataclass(frozen=True, slots=True)
+class Reason:
+    """Why nothing could be made of a scan, to be said before the complaint about what was made of it.
+
+    Parameters
+    ----------
+    suspect
+        The cause.
+    begun
+        Makes of the complaint the sentence that begins with the cause.
+    todo
+        What to do about it.
+    of_own
+        Whether it is the cause even of what names a cause of its own (`OwnCause`).
+    kind
+        Kind of the error that tells it.
+    """
+
+    suspect: Suspect
+    begun: Callable[[Message], Message]
+    todo: Message
+    of_own: bool = False
+    kind: type[InputError] = InputError
+
+
+def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[Reason, ...]:
+    """The reasons as they are to be said, by what their causes explain of what is too large in the scan.
+
+    Examples
+    --------
+    >>> few, moved = (Reason(s, lambda what: what, Message("x.y", "")) for s in (Suspect.FEW_FRAMES, Suspect.MOVED))
+    >>> [one.suspect.value for one in in_order([few, moved])]
+    ['moved', 'few_frames']
+    >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.MOVED, 0.1), Cause(Suspect.FEW_FRAMES)])]
+    ['few_frames', 'moved']
+    """
+    shares = {cause.suspect: cause.share for cause in causes if cause.share is not None}
+    rank = list(Suspect).index
+
+    def place(reason: Reason) -> tuple[int, float]:
+        share = shares.get(reason.suspect)
+        if share is None:
+            return 1, rank(reason.suspect)
+        return (0, -share) if share >= MOST else (2, -share)
+
+    return tuple(sorted(reasons, key=place))
+
+
+@contextmanager
+def cause_first(reasons: Callable[[], Iterable[Reason]], causes: Sequence[Cause] = ()) -> Iterator[None]:
+    """A complaint begins with the first of the reasons that holds: that is why.
+
+    `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared.
+    """
+    try:
+        yield
+    except InputError as error:
+        for reason in in_order(reasons(), causes):
+            if reason.of_own or not isinstance(error, OwnCause):
+                raise reason.kind(reason.begun(error.what), where=error.where, todo=reason.todo) from error
+        raise

@@ -1,0 +1,110 @@
+"""Which cause explains most of what a scan's crossings are off too much: the true one, and alone."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from core.calibrate.change import changes as rig_changes
+from core.calibrate.change import displaced_fan, laser_of
+from core.scan.causes import Normal, choose, compare_causes, note_on_causes
+from core.scan.first_cause import Cause, Suspect
+from core.scan.reconstruct import reconstruct
+from core.simulate.effects.warming import Warming
+from core.simulate.scenario import Scenario
+from tests.scan.centreline_scan import ExactScan
+from tests.scan.test_fan_watch import AT, BLOCK, features_of
+
+
+@pytest.fixture(scope="module")
+def still():
+    return ExactScan.of(Scenario(height_mm=50.0, seed=4, scale=0.35, frames=24))
+
+
+def compared(scan, *, seed=1, fan=None, movements=None):
+    """The solved scan, and what its causes are with a fan calibrated so."""
+    camera, fan = scan.rig.camera, scan.rig.fan if fan is None else fan
+    features = scan.measured(seed)
+    solved = reconstruct(features, camera, fan)
+    if movements is not None:
+        solved = replace(solved, movements=movements)
+    return solved, compare_causes(features, solved, camera, fan, (), rig_changes(camera, fan))
+
+
+@pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.accuracy)])
+def test_nothing_explains_a_scan_that_is_in_order(still, seed):
+    solved, causes = compared(still, seed=seed, movements=(12,))
+    assert causes == ()
+    assert not replace(solved, movements=()).asks_for_cause
+
+
+def test_a_part_that_moved_is_the_first_cause_and_says_when():
+    mask = ExactScan.of(Scenario(object="mask", scale=0.35), moved=(30, (0.3, 0.0, 0.0)))
+    solved, causes = compared(mask)
+    assert solved.asks_for_cause and causes[0].suspect == Suspect.MOVED and causes[0].share > 0.5
+    (note,) = note_on_causes(causes, solved, [f"frame{n:02d}" for n in range(60)])
+    assert note.code == "scan.cause_of_doubt"
+    assert str(note).startswith("Most likely cause: something moved between frame29 and frame30 (explains ")
+
+
+@pytest.mark.parametrize(
+    ("changes", "suspect"),
+    [
+        ({"moved_frame": 0, "warming": Warming(scan_px=0.3, scan_focal_ppm=150, scan_urad=100)}, Suspect.DRIFTED),
+        ({"lifted_mm": 0.4}, Suspect.MOVED),
+        pytest.param({"bumped_px": 0.2}, Suspect.MOVED, marks=pytest.mark.accuracy),
+    ],
+)
+def test_a_drift_is_no_movement_and_a_movement_no_drift(changes, suspect):
+    """Both are compared, also where only one was found: that of a rendered block."""
+    features, rig = features_of(replace(BLOCK, **changes))
+    solved = reconstruct(features, rig.camera, rig.fan)
+    assert solved.asks_for_cause
+    seen = replace(solved, movements=(AT,))
+    first, *others = compare_causes(features, seen, rig.camera, rig.fan, (), rig_changes(rig.camera, rig.fan))
+    assert first.suspect == suspect and first.share > 0.5
+    assert sum(one.share for one in others) < first.share / 4
+
+
+@pytest.mark.parametrize("axis", [0, 2])  # a turn about the other one changes no crossing
+def test_a_laser_that_turned_is_the_first_cause(still, axis):
+    turned = displaced_fan(still.rig.fan, np.radians(0.2) * np.eye(3)[axis], laser_of(still.rig.fan))
+    _, causes = compared(still, fan=turned, movements=(12,))
+    assert causes[0].suspect == Suspect.RIG_CHANGED and causes[0].share > 0.5
+
+
+def of_two(gradient, misfit, *, alike=0.0, places=1):
+    """Two causes of one number each, that move crossings `alike`, of the size of the noise."""
+    information = np.array([[1.0, alike], [alike, 1.0]])
+    suspects = (Suspect.DRIFTED, Suspect.MOVED)
+    return Normal(
+        information, np.array(gradient), information, suspects, dict.fromkeys(suspects, places), misfit, 100.0
+    )
+
+
+def test_what_the_first_cause_leaves_is_told_of_the_second():
+    first, second = choose(of_two([20.0, 10.0], 600.0))
+    assert (first.suspect, second.suspect) == (Suspect.DRIFTED, Suspect.MOVED)
+    assert first.share == pytest.approx(0.8, abs=0.02) and second.share == pytest.approx(0.2, abs=0.02)
+
+
+def test_a_cause_that_explains_nothing_of_what_is_left_is_not_told():
+    (only,) = choose(of_two([20.0, 18.0], 500.0, alike=0.9))
+    assert only.suspect == Suspect.DRIFTED and only.share == pytest.approx(1.0, abs=0.02)
+
+
+def test_what_chance_explains_is_no_cause_and_more_so_if_more_was_tried():
+    assert choose(of_two([3.5, 0.0], 112.0))[0].suspect == Suspect.DRIFTED
+    assert choose(of_two([3.5, 0.0], 112.0, places=60)) == ()
+    assert choose(of_two([0.0, 0.0], 900.0)) == ()
+
+
+def test_what_nothing_explains_counts_as_too_large():
+    (only,) = choose(of_two([20.0, 0.0], 1300.0))
+    assert only.share == pytest.approx(400 / 1200, abs=0.01)
+
+
+def test_a_cause_without_doubt_of_the_result_is_a_caution():
+    (note,) = note_on_causes((Cause(Suspect.SECOND_BOUNCES, 0.97, 30, 1e-12),), None, [])
+    assert note.code == "scan.cause_of_scatter" and "97 % of what is too large" in str(note)
+    assert note_on_causes((), None, []) == ()
