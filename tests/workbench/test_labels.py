@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Iterator, Mapping
 from datetime import date
 from pathlib import Path
@@ -81,6 +82,26 @@ def test_terminal_window_and_csv_call_a_fact_the_same(facts: tuple[Fact, ...], w
     for name, fact, *told in zip(names, facts, in_terminal, in_window, in_csv, strict=True):
         coverage, unit = " (95 %)" if fact.interval else "", f" [{fact.unit}]" if fact.unit else ""
         assert [one.casefold() for one in told] == [f"{name}{end}".casefold() for end in (coverage, coverage, unit)]
+
+
+def test_twenty_numbers_drawn_at_random_have_one_wording_each(
+    facts: tuple[Fact, ...], sheets: Sheets, printed: str, words: Words
+) -> None:
+    """As the tests of single readers, told by number: what each of the five calls it, without unit and coverage."""
+    drawn = random.Random(37).sample([fact for fact in for_reader(facts, Reader.AUDITOR) if fact.label != ""], 20)
+    in_workbook = {str(row[1]).casefold() for name in ("facts", "studies") for row in sheets[name][1:]}
+    counts = []
+    for fact in drawn:
+        name = words.known(fact.label)
+        own = fact.label.values.get("name", fact.label) if isinstance(fact.label, Message) else fact.label
+        in_terminal = output.fact_rows([fact], reader=Reader.METROLOGIST)[0][0]
+        in_csv = repeats_tsv((), [fact]).splitlines()[2].split("\t")[0].partition(" [")[0]
+        said = {one.removesuffix(" (95 %)").casefold() for one in (in_terminal, fact_row(fact)[0], in_csv)}
+        said |= {name.casefold()} if name.casefold() in in_workbook else {"another in the workbook"}
+        said |= {name.casefold()} if squeezed(words.known(own)) in printed else {"another in the PDF"}
+        counts.append((len(said), name))
+    print(*(f"{number}  {name}" for number, name in counts), sep="\n")
+    assert [number for number, _ in counts] == 20 * [1], counts
 
 
 def test_the_workbook_calls_each_fact_as_terminal_and_window(
