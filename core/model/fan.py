@@ -74,7 +74,7 @@ class Fan:
             sine = np.linalg.norm(np.cross(a, b))
             gradient = np.concatenate([-(b - a * (a @ b)) / lengths[0], -(a - b * (a @ b)) / lengths[1]]) / sine
             block = self.covariance[3 * k : 3 * k + 6, 3 * k : 3 * k + 6]
-            sds.append(float(np.sqrt(gradient @ block @ gradient)))
+            sds.append(float(np.sqrt(max(gradient @ block @ gradient, 0.0))))  # of an angle that is held, round 0
         return tuple(sds)
 
     @property
@@ -84,7 +84,8 @@ class Fan:
         sds = []
         for k, pi in enumerate(self.pis):  # d = 1/‖π‖
             gradient = pi / np.linalg.norm(pi) ** 3
-            sds.append(float(np.sqrt(gradient @ self.covariance[3 * k : 3 * k + 3, 3 * k : 3 * k + 3] @ gradient)))
+            block = self.covariance[3 * k : 3 * k + 3, 3 * k : 3 * k + 3]
+            sds.append(float(np.sqrt(max(gradient @ block @ gradient, 0.0))))
         return tuple(sds)
 
 
