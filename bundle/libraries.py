@@ -117,7 +117,9 @@ def link_data(data: bytes, symbol: str, library: Path, work: Path) -> None:
     subprocess.run(
         ("objcopy", *aligned, "-N", "_binary_data_end", "-N", "_binary_data_size", "data.o"), cwd=work, check=True
     )
-    subprocess.run(("ld", "-shared", "-soname", library.name, "-o", library, "data.o"), cwd=work, check=True)
+    # data says nothing of the stack, which counts as if it wanted to execute code there: refused from glibc 2.41 on
+    shared = ("ld", "-shared", "-z", "noexecstack", "-soname", library.name)
+    subprocess.run((*shared, "-o", library, "data.o"), cwd=work, check=True)
     for name in ("data", "data.o"):
         (work / name).unlink()
 

@@ -30,7 +30,7 @@ def main() -> int:
             try:
                 ctypes.CDLL(path)
             except OSError as error:
-                print(f"{path}: {error}", flush=True)
+                print(f"{path}: {error.__cause__ or error}", flush=True)  # the frozen program words it anew
         os._exit(0)  # what so many libraries do at their end is not tried
     folder = Path(sys.executable).resolve().parent / "_internal"
     found = (path for path in sorted(folder.rglob("*")) if LIBRARY.search(path.name) and not path.is_symlink())
