@@ -129,10 +129,31 @@ class OpenedProject:
 def open_project(path: str | Path) -> OpenedProject:
     """Open a project, or a folder of results, to be read.
 
+    Parameters
+    ----------
+    path
+        The folder, or the project's `project.json` in it.
+
+    Returns
+    -------
+    OpenedProject
+        Reads each result when it is asked for: lengths in mm, the cloud (n × 3) in the camera frame.
+
     Raises
     ------
     InputError
         If there is neither.
+
+    Examples
+    --------
+    >>> from tempfile import TemporaryDirectory
+    >>> from core.files.project.data import ProjectFile, new_project
+    >>> from core.files.project.folder import create_project
+    >>> with TemporaryDirectory() as made:
+    ...     create_project(Path(made, "block"), ProjectFile(new_project("Block")))
+    ...     project = open_project(Path(made, "block"))
+    ...     print(project.settings.info.name, project.gauge)
+    Block None
     """
     given = resolved(Path(path))
     folder = given.parent if given.name == PROJECT else given
