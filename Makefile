@@ -25,7 +25,7 @@ SIDE_BY_SIDE := -n 2 $(AS_MODULES)
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
 # is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera, so one
 # process of them runs beside the two of the others.
-BOTH_WAYS   := $(wildcard tests/workbench/views/scene/test_*.py)
+BOTH_WAYS   := $(filter-out %_numbers.py,$(wildcard tests/workbench/views/scene/test_*.py))
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 1 $(AS_MODULES)
 
