@@ -23,6 +23,8 @@ LIST_HEIGHT, LIST_SHARE = 240, 0.36
 
 It takes less where then nothing at the side has to be scrolled to.
 """
+FIELD_MARGIN = 60
+"""So many pixels above and below a field are brought in sight with it: what it is, and what it means."""
 ANY_HEIGHT = 16_777_215
 """Qt's own largest height of a widget: no limit."""
 
@@ -71,6 +73,15 @@ class StepPage(QWidget):
     def scroll_to_top(self) -> None:
         """Show the side from its top: as another project is open, or something else is edited there."""
         self.scrolled.verticalScrollBar().setValue(0)
+
+    def enter(self, editor: QWidget | None) -> None:
+        """Have something entered at the side: its field in sight, with the keys; None: nothing."""
+        if editor is None:
+            return
+        self.refreshing.at_once()  # or what it shows anew would take the side back to its top
+        self.side.activate()
+        self.scrolled.ensureWidgetVisible(editor, 0, FIELD_MARGIN)
+        editor.setFocus(Qt.FocusReason.OtherFocusReason)
 
     def add_panel(self, title: str, widget: QWidget, *, collapsed: bool = False, kept: str = "") -> QCollapsible:
         """A titled panel at the side that can be folded away; under the name `kept` it is remembered whether it is."""

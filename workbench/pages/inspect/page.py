@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from PySide6.QtCore import Qt, QTimer
+from PySide6.QtCore import QTimer
 from PySide6.QtGui import QResizeEvent
 from PySide6.QtWidgets import QWidget
 
@@ -93,6 +93,7 @@ class InspectPage(StepPage):
         self.features.draw.connect(self._draw)
         self.features.show_place.connect(self._show_place)
         self.features.ask_thickness.connect(self._ask_thickness)
+        self.features.ask_limits.connect(self.enter)
         self.features.measure_thickness.connect(presenter.do_run)
         self.picks.pick.connect(self._pick)
         self.surface.notice.connect(presenter.bench.notices.warning)
@@ -154,7 +155,7 @@ class InspectPage(StepPage):
 
     def _ask_thickness(self) -> None:
         self.faces_fold.expand(animate=False)
-        self.faces.form.editor("nominal_mm").setFocus(Qt.FocusReason.OtherFocusReason)
+        self.enter(self.faces.form.editor("nominal_mm"))
 
     def _pick(self, mode: Any) -> None:
         if mode:

@@ -7,7 +7,7 @@ from typing import cast
 
 import numpy as np
 import pytest
-from PySide6.QtCore import QRect, Qt
+from PySide6.QtCore import QPoint, QRect, Qt
 from PySide6.QtGui import QIcon
 from PySide6.QtWidgets import QAbstractButton, QLabel, QLineEdit, QStyleOptionViewItem
 
@@ -1008,3 +1008,31 @@ def test_the_thickness_has_limits_and_is_measured_again_from_its_row_but_not_rem
     can["show"].trigger()
     can["measure"].trigger()
     assert presenter.stage is Stage.MEASURING
+
+
+def in_sight(page, editor):
+    """Whether a field at the side is seen whole."""
+    seen = page.scrolled.viewport().rect()
+    return seen.contains(QRect(editor.mapTo(page.scrolled.viewport(), QPoint(0, 0)), editor.size()))
+
+
+@pytest.mark.parametrize("kind", ["plane", "section", "cylinder"])
+def test_limits_bring_their_field_in_sight_on_a_low_page(presenter, page, features, qtbot, kind):
+    page.resize(1050, 620)
+    presenter.feature.add(kind)
+    if kind == "section":
+        presenter.feature.add_cut()
+    qtbot.waitUntil(lambda: not features.measuring)
+    page.refreshing.at_once()
+    can = page.features.actions_of_row
+    can["limits"].trigger()
+    qtbot.waitUntil(lambda: page.features.form.first_limit.hasFocus())
+    qtbot.waitUntil(lambda: in_sight(page, page.features.form.first_limit))
+    qtbot.wait(50)
+    assert in_sight(page, page.features.form.first_limit), "and it stays there"
+    features.choose(THICKNESS)
+    page.refreshing.at_once()
+    can["limits"].trigger()
+    qtbot.waitUntil(lambda: page.faces.form.editor("nominal_mm").hasFocus())
+    qtbot.wait(50)
+    assert in_sight(page, page.faces.form.editor("nominal_mm"))

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from PySide6.QtCore import QSize, Qt, Signal
+from PySide6.QtCore import QSize, Signal
 from PySide6.QtWidgets import QGridLayout, QHBoxLayout, QLabel, QPushButton, QToolButton, QVBoxLayout, QWidget
 
 from core.inspect.plan.feature_kind import ChoiceField, FeatureKind, FormField, NumberField, ResultKind, TextField
@@ -90,11 +90,11 @@ class FeatureForm(QWidget):
         self.frames.show_frames(words.frames_of(spec, plan))
         self._show_tools()
 
-    def ask_limits(self) -> None:
-        """Have the first of its limits entered."""
+    @property
+    def first_limit(self) -> QWidget | None:
+        """The editor of the first of its limits; None if it has none."""
         key = next((key for key in self.what.values() if key.startswith("limits ")), None)
-        if key is not None:
-            self.what.editor(key).setFocus(Qt.FocusReason.OtherFocusReason)
+        return None if key is None else self.what.editor(key)
 
     # ---- making it
 

@@ -61,6 +61,8 @@ class FeaturesPanel(QWidget):
     """Name of a region and kind of tool: it is to be drawn."""
     show_place = Signal(str)
     """A feature, or THICKNESS, is to be shown on the part."""
+    ask_limits = Signal(object)
+    """The limits of the chosen feature are to be entered: the first editor of them, or None where it has none."""
     ask_thickness = Signal()
     """The limits of the thickness are to be entered."""
     measure_thickness = Signal()
@@ -302,7 +304,7 @@ class FeaturesPanel(QWidget):
         if self._features.chosen == THICKNESS:
             self.ask_thickness.emit()
         else:
-            QTimer.singleShot(0, self, self.form.ask_limits)
+            QTimer.singleShot(0, self, lambda: self.ask_limits.emit(self.form.first_limit))
 
     def _measure_again(self) -> None:
         if self._features.chosen == THICKNESS:
