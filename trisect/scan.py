@@ -23,6 +23,7 @@ from core.messages import Message
 from core.model import Camera, LightPlane
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan
 from core.pipeline.steps.scan.notes import assumed_shutter
+from core.pipeline.steps.scan.part_light import notes_on_part_light, part_light
 from core.pipeline.steps.validity import facts_of_calibration
 from core.pipeline.steps.workspace import Calibration
 from core.progress import Progress, silent
@@ -31,6 +32,7 @@ from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of
 from core.scan.features.reference import quantile_reference, sample_indices
+from core.scan.part_light import PartLight
 from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import ScanResult
 from core.scan.surface import fusion, mesh
@@ -64,6 +66,8 @@ class SolvedScan:
         What decides whether anything measured in it can prove conformity.
     notes
         What is to be known of it, the gravest first.
+    light
+        How much wider stripes are on the part than on the table; None: not known.
     """
 
     cloud: Cloud
@@ -72,13 +76,14 @@ class SolvedScan:
     common: CommonErrors
     facts: ScanFacts
     notes: tuple[Message, ...]
+    light: PartLight | None = None
 
     @property
     def errors(self) -> PointErrors:
         """How the errors of the points hang together: what an uncertainty is reckoned from."""
         scan = self.result
         errors = PointErrors.of_scan(self.features, scan.covariance, self.common, scan.speckle, scan.pis.shape[1])
-        return replace(errors, facts=self.facts)
+        return replace(errors, facts=self.facts, light=self.light)
 
 
 def triangulate(stripe: Centreline, plane: LightPlane, camera: Camera, *, covariance: ArrayLike | None = None) -> Cloud:
@@ -226,8 +231,9 @@ def solve_scan(
     cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
     notes = (*solved.scan.notes, *assumed_shutter(solving.row_time_us, solved.scan))
     scan = replace(solved.scan, cloud=cloud, notes=notes)
-    notes = gravest_first((*judgement.notes, *notes))
-    return SolvedScan(cloud, scan, solved.features, judgement.common, judgement.facts, notes)
+    light = part_light(solved, [(p.pose, lines) for p, lines in zip(fan.poses, fan.stripes, strict=False) if p.used])
+    notes = gravest_first((*judgement.notes, *notes, *notes_on_part_light(light)))
+    return SolvedScan(cloud, scan, solved.features, judgement.common, judgement.facts, notes, light)
 
 
 def _change_by_scan(

@@ -91,9 +91,15 @@ ROWS = (
             "The stated uncertainties do not hold {missing}: they are less than is known, and prove nothing.",
             fact="u_incomplete"),
     Finding("inspection.light_is_skewed", Weight.GRAVE, Effect.NO_PROOF,
-            "The laser's light is skewed in depth on what was measured: part of it comes from below the surface "
-            "(plastic, wax, paper), or shines to one side. U holds what that may do, but nothing is proved: spray "
-            "the part matt, or compare it with a master of its material.", fact="light_skewed"),
+            "On what was measured the laser's light is skewed in depth, or wider than on the table: part of it comes "
+            "from below the surface (plastic, wax, paper), or shines to one side. U holds what that may do, but "
+            "nothing is proved: spray the part matt, or compare it with a master of its material.",
+            fact="light_skewed"),
+    Finding("scan.stripes_wider_on_part", Weight.CAUTION, Effect.WIDENS_U,
+            "Stripes on the part are ({percent:.1f} ± {error:.1f}) % wider than on the table, besides what distance, "
+            "slant and focus do: light from below the surface? It may come from {behind_mm:.2f} mm behind it, which U "
+            "of what is measured on the part contains. Spray the part matt, or compare it with a master of its "
+            "material."),
     Finding("inspection.rig_not_checked", Weight.CAUTION, Effect.WIDENS_U,
             "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
             "Take 3 pictures of the plane target in the fan (1 min)."),

@@ -88,7 +88,7 @@ REASONS: Mapping[str, Message] = {
     "planes_unknown": Message("doubt.planes_unknown", "it is not known whether the planes' calibration had settled"),
     "size_unconfirmed": Message("doubt.size_unconfirmed", "the size of the plane target is not confirmed"),
     "u_incomplete": Message("doubt.u_incomplete", "U does not hold all that is known"),
-    "light_skewed": Message("doubt.light_skewed", "the light on the part is skewed in depth"),
+    "light_skewed": Message("doubt.light_skewed", "the light on the part is skewed or wider than on the table"),
     "faces_not_spanned": Message("doubt.faces_not_spanned", "the points do not span a face"),
     "several_faces": Message("doubt.several_faces", "several pairs of faces could be meant"),
     "master_doubted": Message("doubt.master_doubted", "the master that it is compared with proves nothing"),

@@ -18,7 +18,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 import numpy as np
-from numpy.typing import NDArray
 
 from core.findings.table import note_of
 from core.messages import Message
@@ -27,20 +26,13 @@ from core.model.arrays import Array
 from core.model.residuals import over_picture
 from core.model.robust import mad_sd, median
 from core.scan.features.frames import FrameFeatures
-from core.scan.network.datum import MAIN_PLANE_MM, main_plane
-from core.scan.network.geometry import inverse_depth_gradient
+from core.scan.footprint import GRID, px_per_mm, surfaces_of
 from core.scan.surface.cloud import Cloud
 
-GRID = (16, 12)
-"""Columns and rows of the parts of a picture in which sections at rest are taken for alike."""
 FEWEST_FRAMES = 4
 """Frames that pass a part at least, or it does not tell the width at rest."""
 FEWEST_PARTS = 4
 """Parts in which a frame is compared at least, or nothing is said of it."""
-FEWEST_POINTS, MOST_POINTS = 12, 300
-"""Points in a part by which its surface is known, at least; more than the second say no more of it."""
-LEAST_ACROSS = 0.08
-"""Of a part's width that these spread across their stripe at least (standard deviation), or they tell no surface."""
 AT_REST = 0.25
 """Quantile of the frames' widths in a part that is that at rest: a hand that trembles stands still now and then."""
 MATTERS = 0.5
@@ -55,7 +47,7 @@ def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array],
     `sheets` are the light planes π (3,) of the frames that were located, `cloud` the points of all. NaN for frames that
     pass too few parts of the picture where others pass, too.
     """
-    surfaces = _surfaces(cloud, camera)
+    surfaces = surfaces_of(cloud, camera)
     rows: list[tuple[int, int, float, float]] = []
     for number, frame in enumerate(frames):
         lines = [line for line in frame.centrelines if not line.saturated.all()]
@@ -63,7 +55,7 @@ def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array],
             continue
         uv = np.vstack([line.uv[~line.saturated] for line in lines])
         square = np.concatenate([line.width[~line.saturated] for line in lines]) ** 2
-        part, per_mm = over_picture(uv, camera.image_size, GRID), _px_per_mm(uv, sheets[number], surfaces, camera)
+        part, per_mm = over_picture(uv, camera.image_size, GRID), px_per_mm(uv, sheets[number], surfaces, camera)
         for one in np.unique(part[np.isfinite(per_mm)]):
             mine = (part == one) & np.isfinite(per_mm)
             rows.append((number, int(one), median(square[mine]), median(per_mm[mine] ** 2)))
@@ -83,44 +75,6 @@ def exposure_blurs(frames: Sequence[FrameFeatures], sheets: Mapping[int, Array],
             more, at_rest = float(np.median(square[mine] - rest[mine])), float(np.median(rest[mine]))
             found[number] = np.sqrt(max(more, 0.0)), np.sqrt(at_rest)
     return found
-
-
-def _surfaces(cloud: Cloud, camera: Camera) -> Array:
-    """The plane π (GRID, 3) that most points of `cloud` in each part of the picture lie on; NaN where none is known."""
-    planes = np.full((GRID[0] * GRID[1], 3), np.nan)
-    part = over_picture(cloud.uv, camera.image_size, GRID)
-    for one in np.unique(part):
-        mine = np.flatnonzero(part == one)
-        mine = mine[:: max(1, len(mine) // MOST_POINTS)]
-        if len(mine) < FEWEST_POINTS:
-            continue
-        rays = camera.rays(cloud.uv[mine])
-        plane, on_it = _face(rays, 1 / cloud.points[mine, 2])
-        across = np.linalg.svd(rays[on_it] - rays[on_it].mean(axis=0), compute_uv=False)[1] / np.sqrt(on_it.sum())
-        if across * camera.focal * GRID[0] > LEAST_ACROSS * camera.image_size[0]:
-            planes[one] = plane
-    return planes
-
-
-def _face(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """As `main_plane`; where all points lie on one plane no trials are needed."""
-    plane = np.asarray(np.linalg.lstsq(rays, inverse_depths, rcond=None)[0], dtype=np.float64)
-    near = np.abs(rays @ plane - inverse_depths) < MAIN_PLANE_MM * inverse_depths**2
-    return (plane, near) if near.all() else main_plane(rays, inverse_depths)
-
-
-def _px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array:
-    """By how many px (N,) a stripe at `uv` (N, 2) moves in the picture when its sheet moves by a mm across itself.
-
-    With ρ the surface's plane, n·X − d = d·(π·r/ρ·r − 1) on the surface; its gradient over the picture is
-    z·(π − ρ)·∂r/|π| where the two meet. NaN where no surface is known, or the light lies on another one.
-    """
-    rays, surface = camera.rays(uv), surfaces[over_picture(uv, camera.image_size, GRID)]
-    inverse_depth = rays @ sheet
-    gradient = inverse_depth_gradient(sheet - surface, camera.ray_jacobian(rays))
-    on_it = np.abs(np.einsum("ni,ni->n", rays, surface) - inverse_depth) < MAIN_PLANE_MM * inverse_depth**2
-    moved = np.linalg.norm(gradient, axis=1) / np.where(on_it, inverse_depth, np.nan)
-    return np.asarray(np.linalg.norm(sheet) / moved)
 
 
 def _of_lens(square: Array, spread: Array) -> float:

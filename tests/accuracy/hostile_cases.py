@@ -237,7 +237,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "JPEG": ("scan.compressed",),
     "Bayer mosaic": ("scan.colour_mosaic", "scan.compressed"),
     "hot pixels": ("camera.hot_pixels", "camera.misfound_corners"),
-    "translucent part": ("inspection.light_is_skewed", "part.material_assumed"),
+    "translucent part": ("inspection.light_is_skewed", "scan.stripes_wider_on_part", "part.material_assumed"),
     "glossy part": ("inspection.light_is_skewed", "scan.shines"),
     "glossy part with a lay": ("inspection.light_is_skewed", "scan.shines"),
     "fan lines that bow": (

@@ -40,6 +40,7 @@ from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
 from core.scan.first_cause import Cause, Causes, Suspect
 from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.part_light import PartLight
 
 _TODO = Message(
     "advice.measure_scan_first", "measure the scan first{command}", command=Command("trisect scan SET --out DIR")
@@ -73,6 +74,7 @@ _MEMBERS = {
     "cause_shares": real("causes", optional=True),
     "cause_freedoms": whole("causes", optional=True),
     "cause_p": real("causes", optional=True),
+    "part_light": real(6, optional=True),
     "second_bounces": whole(None, 2, optional=True),
     "common_sources": texts(None, optional=True),
     "common_cameras": real("displaced", 10, optional=True),
@@ -125,6 +127,8 @@ class ScanFile:
         Share of the sweeps' points that were left out because they are less sure than the σ cut; 0 if not known.
     causes
         What explains most of what the scan's crossings are off too much, the likeliest first; none where nothing is.
+    part_light
+        How much wider stripes are on the part than on the table; None if not known.
     """
 
     features: ScanFeatures
@@ -142,6 +146,7 @@ class ScanFile:
     second_bounces: tuple[tuple[int, int], ...] = ()
     unsure_share: float = 0.0
     causes: Causes = ()
+    part_light: PartLight | None = None
 
 
 def write_scan(path: Path, scan: ScanFile) -> None:
@@ -160,6 +165,7 @@ def write_scan(path: Path, scan: ScanFile) -> None:
         "of_the_day": pack_messages(notes_of(scan.facts.of_the_day)),
         "of_the_day_facts": pack_texts([doubt.fact for doubt in scan.facts.of_the_day]),
         "unsure_share": np.array(scan.unsure_share),
+        **({} if scan.part_light is None else {"part_light": _packed_light(scan.part_light)}),
         **({"second_bounces": np.array(scan.second_bounces)} if scan.second_bounces else {}),
         **(_packed(scan.causes) if scan.causes else {}),
         **({f"common_{name}": np.asarray(getattr(common, name)) for name in _COMMON} if common else {}),
@@ -217,6 +223,7 @@ def _unpacked(arrays: Arrays) -> ScanFile:
         ),
         unsure_share=float(arrays.get("unsure_share", 0.0)),
         causes=_causes(arrays),
+        part_light=_part_light(arrays),
     )
 
 
@@ -240,6 +247,17 @@ def _causes(arrays: Arrays) -> Causes:
         for name, *row in zip(unpack_texts(arrays["cause_suspects"]), *rows, strict=True)
         if name in known
     )
+
+
+def _packed_light(light: PartLight) -> Array:
+    return np.array([light.wider, light.error, light.behind_mm, *light.table])
+
+
+def _part_light(arrays: Arrays) -> PartLight | None:
+    if "part_light" not in arrays:
+        return None
+    wider, error, behind_mm, *table = arrays["part_light"].tolist()
+    return PartLight(wider, error, behind_mm, np.array(table))
 
 
 def _known(facts: ScanFacts) -> list[str]:

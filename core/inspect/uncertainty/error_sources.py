@@ -117,7 +117,7 @@ class Sources:
         lever = np.column_stack([mean(-gain * depth**2 * form) for form in errors.forms(rays, cloud.uv).T])
         form = np.zeros((count, int(patch.max()) + 1))
         np.add.at(form, (stretch, patch), share)
-        seen = light_below(cloud, part, np.broadcast_to(direction, cloud.points.shape), errors.part)
+        seen = light_below(cloud, part, np.broadcast_to(direction, cloud.points.shape), errors.part, errors.light)
         of_face = part[first]
         noise = mean(own)
         speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)

@@ -28,6 +28,7 @@ from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import ScanFeatures
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.network.read_out import row_forms
+from core.scan.part_light import PartLight
 from core.scan.surface.cloud import Cloud
 
 PATCHES = 6
@@ -65,6 +66,8 @@ class PointErrors:
     speckle: FanSpeckle | None = None
     stripe_px: float = 0.0
     facts: ScanFacts | None = None
+    light: PartLight | None = None
+    """How much wider stripes are on the part than on the table; None: not known."""
     part: Part | None = None
     """What is stated of the part; None: it is as opaque and as cold as it need be."""
     sweep_size: int = 3

@@ -16,8 +16,8 @@ well it agrees with the skewness κ ± its standard error that was found. Before
 below a surface with the probability that is stated of its material; then a share f of it, all alike up to a half, from
 depths D from 0.1 to 3 mm, all alike in their logarithm, falling evenly or exponentially (τ = D/2). What is left of m,
 so weighed, gives its standard uncertainty. Where sections tell nothing (a curved face, few sweeps, the fan's own lines)
-nothing but the probability before is left. The width of the sections is not used: on small pictures, where it would
-help, it cannot be told from the width of the light and of the lens's blur.
+nothing but the probability before is left. How wide sections are is compared on part and table, where lens and slant
+are known (`core.scan.part_light`): a part on which they are surely wider is behind by what that may do.
 """
 
 from __future__ import annotations
@@ -37,6 +37,7 @@ from core.inspect.results import Contribution
 from core.inspect.uncertainty.coverage import COVERAGE
 from core.inspect.uncertainty.part import Part
 from core.model.arrays import Array
+from core.scan.part_light import ON_PART_MM, PartLight
 from core.scan.surface.cloud import Cloud
 
 MEAN_OF_CUMULANT = 0.8
@@ -159,12 +160,22 @@ class LightBelow:
     unseen_mm: Array
 
 
-def light_below(cloud: Cloud, part: NDArray[np.int64], direction: Array, stated: Part | None) -> LightBelow:
+def light_below(
+    cloud: Cloud, part: NDArray[np.int64], direction: Array, stated: Part | None, light: PartLight | None = None
+) -> LightBelow:
     """What sections on each face show of light from below, and what they leave; arguments as `farthest_mean_mm`.
 
-    `stated` is what is known of the part; None: no more is reckoned with than what is seen.
+    `stated` is what is known of the part; None: no more is reckoned with than what is seen. `light` is how much wider
+    sections are on it than on the table: a face off the table is behind by what that may do, unless an offset that was
+    measured holds it.
     """
     farthest = farthest_mean_mm(cloud, part, direction)
+    if light is not None and light.behind_mm and (stated is None or stated.offset_mm is None):
+        off_table = np.abs(cloud.points @ light.table - 1) > ON_PART_MM * np.linalg.norm(light.table)
+        for number in np.flatnonzero(farthest == 0):
+            mine = part == number
+            if mine.any() and np.median(off_table[mine]) > 0:
+                farthest[number] = light.behind_mm
     unseen = np.zeros(len(farthest))
     chance = 0.0 if stated is None else stated.lets_light_in
     if chance:

@@ -228,7 +228,7 @@ def _unsure(scan: ScanFile) -> Iterator[Reason]:
 def point_errors(scan: ScanFile) -> PointErrors:
     """How the errors of a scan's points hang together."""
     errors = PointErrors.of_scan(scan.features, scan.covariance, scan.common, scan.speckle, scan.pis.shape[1])
-    return replace(errors, facts=scan.facts)
+    return replace(errors, facts=scan.facts, light=scan.part_light)
 
 
 class Thickness(NamedTuple):

@@ -13,6 +13,7 @@ from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
 from core.pipeline.steps.scan.judgement import judged_scan, section_change, solved_scan
 from core.pipeline.steps.scan.notes import notes_on_scan
+from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
 from core.pipeline.steps.scan.results import Measured, scan_file, write_measured
 from core.pipeline.steps.scan.surface import begin_surface
@@ -76,11 +77,12 @@ def scan_step(
         judgement = judged_scan(solved, change_by, facts, section, settings.method, progress)
         cloud, mesh = shaped()
         cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
-        notes = notes_on_scan(work, calibration, features.fan, solved.scan, judgement, logged)
+        light = part_light(solved, plates_of(work, calibration))
+        notes = notes_on_scan(work, calibration, solved, judgement, light, logged)
         scan = replace(solved.scan, cloud=cloud, notes=notes)
         log.frames.extend(scan.frames)
         log.notes.extend(notes)
         measured = Measured(scan, mesh)
-        file = scan_file(features, scan, judgement, calibration, log.pictures, settings)
+        file = scan_file(features, scan, judgement, calibration, log.pictures, settings, light)
         write_measured(log, measured, file, progress)
     return measured

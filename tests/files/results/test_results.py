@@ -32,6 +32,7 @@ from core.scan.common_errors import CommonErrors
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import FrameFeatures, ScanFeatures
 from core.scan.network.fan_speckle import FanSpeckle
+from core.scan.part_light import PartLight
 from core.scan.results import FrameRecord
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
@@ -403,6 +404,14 @@ def test_scan_round_trip_gives_the_same_bytes(tmp_path, scan):
     assert (back.fan_line, back.shown, back.calibration_id) == ((0, -1), 2, "abc")
     write_scan(tmp_path / "again.npz", back)
     assert (tmp_path / "again.npz").read_bytes() == path.read_bytes()
+
+
+def test_how_wide_stripes_are_on_the_part_is_kept(tmp_path, scan):
+    light = PartLight(0.2, 0.01, 0.3, np.array([1e-4, 2e-4, 2e-3]))
+    write_scan(tmp_path / "scan.npz", replace(scan, part_light=light))
+    back = read_scan(tmp_path / "scan.npz").part_light
+    assert (back.wider, back.error, back.behind_mm) == (0.2, 0.01, 0.3)
+    assert back.table.tolist() == light.table.tolist()
 
 
 def test_second_bounces_of_a_scan_are_kept(tmp_path, scan):

@@ -10,6 +10,7 @@ from core.inspect.conformity import Verdict
 from core.inspect.faces import FacePair
 from core.inspect.gauge import measure_gauge
 from core.inspect.results import Contribution
+from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.skewed_light import (
     MeanSkewness,
     doubts_of_light,
@@ -17,6 +18,7 @@ from core.inspect.uncertainty.skewed_light import (
     mean_skewness,
     unseen_mean_mm,
 )
+from core.scan.part_light import PartLight
 from tests.inspect.block_scan import BlockScan
 
 TOLD = "inspection.light_is_skewed"
@@ -64,6 +66,33 @@ def test_light_from_below_is_in_the_uncertainty_and_proves_nothing(scan):
     assert seen.U_mm >= 2 * row.u_mm
     assert seen.verdict == Verdict.NOT_PROVEN
     assert TOLD in {note.code for note in seen.notes}
+
+
+def test_stripes_that_are_wider_on_the_part_are_in_the_uncertainty_and_prove_nothing(scan):
+    """However symmetric they are; a face on the table, and an offset that a master has measured, have nothing of it."""
+    cloud = scan.measure(np.random.default_rng(3))
+    wide = PartLight(0.2, 0.01, 0.3, table_of(cloud, scan))
+
+    def measured(**more):
+        errors = scan.errors(common=scan.common_errors(camera=1.0004, fan=1.0002))
+        regions = FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper))
+        return measure_gauge(cloud, errors=replace(errors, **more), regions=regions, nominal_mm=50.0, tolerance_mm=5.0)
+
+    plain, seen = measured(), measured(light=wide)
+    (row,) = (row for row in seen.budget if row.source == Cause.SKEWED_LIGHT)
+    assert 2 * row.u_mm == pytest.approx(0.3, rel=0.2)
+    assert seen.thickness_mm == plain.thickness_mm
+    assert (seen.verdict, plain.verdict) == (Verdict.NOT_PROVEN, Verdict.CONFORMING)
+    assert TOLD in {note.code for note in seen.notes}
+    of_master = measured(light=wide, part=Part(material="wax", offset_mm=0.1, offset_sd_mm=0.01))
+    assert Cause.SKEWED_LIGHT not in {row.source for row in of_master.budget}
+    matt = measured(light=replace(wide, behind_mm=0.0))
+    assert (matt.thickness_mm, matt.u_mm) == (plain.thickness_mm, plain.u_mm)
+
+
+def table_of(cloud, scan):
+    """The plane π of the lower face."""
+    return np.linalg.lstsq(cloud.points[~scan.upper], np.ones(np.sum(~scan.upper)), rcond=None)[0]
 
 
 def test_light_that_may_come_from_below_the_other_face_hides_no_doubt(scan):

@@ -12,9 +12,11 @@ from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message
 from core.pipeline.steps.check_step import assumed_stability
-from core.pipeline.steps.scan.judgement import Judgement
+from core.pipeline.steps.scan.judgement import Judgement, Solved
+from core.pipeline.steps.scan.part_light import notes_on_part_light
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.scan.features.frames import left_out_notes
+from core.scan.part_light import PartLight
 from core.scan.preview.preflight import other_focus, stripe_width
 from core.scan.results import ScanResult
 
@@ -22,21 +24,19 @@ from core.scan.results import ScanResult
 def notes_on_scan(
     work: Workspace,
     calibration: Calibration,
-    fan: Sequence[Centreline],
-    scan: ScanResult,
+    solved: Solved,
     judgement: Judgement,
+    light: PartLight | None,
     log: FolderLog,
 ) -> tuple[Message, ...]:
-    """All that is told of a scan, the gravest first.
-
-    `fan` are the centrelines of the fan in its reference, `log` is that of its recording.
-    """
-    recording_set, readjusted = work.recording_set, calibration.fan.readjusted
+    """All that is told of a scan, the gravest first; `light` is that on its part, `log` that of its recording."""
+    recording_set, readjusted, scan = work.recording_set, calibration.fan.readjusted, solved.scan
     return gravest_first(
         (
             *judgement.notes,
             *left_out_notes(scan.frames),
-            *notes_on_focus(work, calibration, fan),
+            *notes_on_focus(work, calibration, solved.features.fan),
+            *notes_on_part_light(light),
             *(() if readjusted is None else (readjusted.note,)),
             *scan.notes,
             *assumed_stability(recording_set, judgement.change, calibration.fan),

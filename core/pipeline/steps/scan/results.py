@@ -16,6 +16,7 @@ from core.pipeline.steps.workspace import Calibration, StepLog
 from core.progress import Progress
 from core.scan.features.extraction import ScanFeatures
 from core.scan.network.adjustment import SILENCED
+from core.scan.part_light import PartLight
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface.fused_surface import Mesh
 from core.stage_times import StageTimes, stage
@@ -51,6 +52,7 @@ def scan_file(
     calibration: Calibration,
     pictures: PictureReader,
     settings: ScanSettings,
+    light: PartLight | None,
 ) -> ScanFile:
     """What scan.npz is to hold of a scan; the hashes of its pictures must have been taken."""
     shown = _shown(scan.frames)
@@ -71,6 +73,7 @@ def scan_file(
         common=judgement.common,
         facts=judgement.facts,
         causes=judgement.causes,
+        part_light=light,
     )
 
 

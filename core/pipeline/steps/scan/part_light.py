@@ -1,0 +1,65 @@
+"""Whether stripes on the part of a solved scan are wider than on the table."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from core.errors import InputError
+from core.files.recording.features_file import read_poses
+from core.files.results.planes_file import planes_id
+from core.findings.table import note_of
+from core.image.stripes.centreline import Centreline
+from core.messages import Message
+from core.model import Pose
+from core.pipeline.steps.scan.judgement import Solved
+from core.pipeline.steps.workspace import Calibration, Workspace
+from core.scan.network.read_out import row_planes
+from core.scan.part_light import PartLight, blur_of, light_on_part
+
+Plates = Sequence[tuple[Pose, Sequence[Centreline]]]
+"""The plates of a calibration, each with its pose and the stripes on it."""
+
+
+def part_light(solved: Solved, plates: Plates) -> PartLight | None:
+    """How much wider stripes are on the part than on the table; None where that is not known."""
+    scan, camera = solved.scan, solved.calibration.camera.camera
+    if scan.collapsed:
+        return None
+    blur = blur_of(plates, camera, solved.calibration.fan.fan)
+    return light_on_part(_stripes(solved), scan.cloud, camera, blur)
+
+
+def plates_of(work: Workspace, calibration: Calibration) -> Plates:
+    """The plates of a calibration whose pictures' features are kept; none where they cannot be known any more."""
+    try:
+        kept = read_poses(work.path("poses"), planes_id(calibration.fan.fan))
+    except InputError:  # the notes on focus tell
+        return ()
+    stripes = {pose.name: pose.centrelines for pose in kept}
+    return [(pose.pose, stripes[pose.name]) for pose in calibration.fan.poses if pose.used and pose.name in stripes]
+
+
+def notes_on_part_light(light: PartLight | None) -> tuple[Message, ...]:
+    """A note if stripes on the part are surely wider than on the table."""
+    if light is None or not light.surely:
+        return ()
+    return (
+        note_of(
+            "scan.stripes_wider_on_part",
+            percent=100 * light.wider,
+            error=200 * light.error,
+            behind_mm=light.behind_mm,
+        ),
+    )
+
+
+def _stripes(solved: Solved) -> Iterator[tuple[Sequence[Centreline], np.ndarray]]:
+    """Each located frame's stripes but for second bounces, and the sheet they lie on in its middle row."""
+    scan, frames = solved.scan, solved.features.frames
+    rows = solved.features.image_size[1]
+    sheets = row_planes(scan.pis, np.full(len(scan.pis), rows / 2), rows)
+    for number, sheet in zip(scan.sweep_frames.tolist(), sheets, strict=True):
+        pieces = enumerate(frames[number].centrelines)
+        yield [piece for k, piece in pieces if (number, k) not in scan.second_bounces.pieces], sheet
