@@ -37,6 +37,7 @@ WIDENED = {
     "scan.exposure_blur": Cause.POINT_NOISE,
     "scan.rows_roll": Cause.SWEEP_PLANES,
     "scan.crossings_scatter": Cause.SWEEP_PLANES,
+    "scan.stripes_wider_on_part": Cause.SKEWED_LIGHT,
     "scan.scale_weak": Cause.SWEEP_PLANES,
     "scan.scale_unknown": Cause.SWEEP_PLANES,
     "part.material_assumed": Cause.LIGHT_FROM_BELOW_ASSUMED,
