@@ -24,13 +24,13 @@ NOT_NEEDED = (
     "matplotlib.tests", "mpl_toolkits.tests", "numpy.tests", "scipy.tests", "numba.tests", "numba.cuda",
     "numba.np.ufunc.tbbpool", "numba.np.ufunc.omppool", "readline",
     "llvmlite.tests",
-    "PySide6.QtQml", "PySide6.QtQuick", "PySide6.QtDesigner", "PySide6.QtSql", "PySide6.QtHelp", "PySide6.QtOpenGL",
+    "PySide6.QtQml", "PySide6.QtQuick", "PySide6.QtDesigner", "PySide6.QtSql", "PySide6.QtHelp",
     "PySide6.QtTest", "PIL.AvifImagePlugin", "PIL._avif", "PIL.ImageQt",
     "lxml.html", "lxml.isoschematron", "lxml.objectify",
     "pyqtgraph.examples", "pyqtgraph.opengl", "trame", "vtk",
 )  # fmt: skip
 """Modules that some library would import if asked for what this program never asks for. readline is GPL-3.0."""
-UNSEEN = ("resources", "numba._devicearray")
+UNSEEN = ("resources", "numba._devicearray", "PySide6.QtOpenGL")
 """Modules that are imported where no reading of the code shows it."""
 
 QT_PLUGINS = (

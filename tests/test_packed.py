@@ -1,14 +1,15 @@
-"""The libraries that `make bundle` makes smaller can still be loaded."""
+"""What `make bundle` leaves out or makes smaller: the program needs none of it, and libraries can still be loaded."""
 
 import ctypes
 import importlib
 import shutil
+import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-BUNDLE = Path(__file__).parents[1] / "bundle"
+ROOT = Path(__file__).parents[1]
 needs_binutils = pytest.mark.skipif(
     sys.platform != "linux" or not all(map(shutil.which, ("ld", "objcopy", "readelf"))), reason="made by binutils"
 )
@@ -16,7 +17,7 @@ needs_binutils = pytest.mark.skipif(
 
 @pytest.fixture
 def libraries(monkeypatch):
-    monkeypatch.syspath_prepend(BUNDLE)
+    monkeypatch.syspath_prepend(ROOT / "bundle")
     return importlib.import_module("libraries")
 
 
@@ -28,3 +29,18 @@ def test_a_library_of_data_asks_for_no_stack_that_can_be_executed(libraries, tmp
     (stack,) = (line for line in libraries.readelf("-l", made).splitlines() if "GNU_STACK" in line)
     assert " RW " in stack
     assert (ctypes.c_char * 16).in_dll(ctypes.CDLL(str(made)), "held").raw == b"0123456789abcdef"
+
+
+WITHOUT = """
+import sys
+sys.path.insert(0, "bundle")
+from contents import NOT_NEEDED
+sys.modules |= dict.fromkeys(NOT_NEEDED)  # importing them fails
+import workbench.main_window, pyvistaqt, pyqtgraph
+import core.cli, core.pipeline.run
+"""
+
+
+def test_the_program_can_be_imported_without_what_is_left_out():
+    ran = subprocess.run([sys.executable, "-c", WITHOUT], cwd=ROOT, capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
