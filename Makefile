@@ -16,15 +16,18 @@ WINDOW := $(VENV)/.window
 READY  := $(VENV)/.ready
 OUT    ?= out
 
-# Two tests at a time, each on one core.
+# Tests at a time, each on one core, for two cores. A third of their time and more they wait: for the disk, a window, a
+# camera, another process. Proofs compute. Each takes up to 2 GB with the processes of its windows.
+TESTS_AT_ONCE  ?= 3
+PROOFS_AT_ONCE ?= 2
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
 # Modules are handed out in the order tests/conftest.py puts them into: long ones first.
 AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
-SIDE_BY_SIDE := -n 2 $(AS_MODULES)
+SIDE_BY_SIDE := -n $(TESTS_AT_ONCE) $(AS_MODULES)
 
 # On a virtual screen, with the real 3D view: what a technician does there. Most of it is tested there only, if there
 # is one; the 3D view is also tested without a screen, where 3D is a picture. These tests often wait for a camera, so one
-# process of them runs beside the two of the others.
+# process of them runs beside those of the others.
 BOTH_WAYS   := $(filter-out %_numbers.py,$(wildcard tests/workbench/views/scene/test_*.py))
 SCREEN_ONLY := $(wildcard tests/workbench/test_behaviour_*.py tests/workbench/test_whole_job*.py)
 ON_SCREEN   := -n 1 $(AS_MODULES)
@@ -34,7 +37,7 @@ ON_SCREEN   := -n 1 $(AS_MODULES)
 PROOFS           = $(sort $(shell grep -rl --include='test_*.py' 'mark\.accuracy' tests))
 PROOFS_ON_SCREEN = $(filter $(SCREEN_ONLY),$(PROOFS))
 # $(call prove,SURROUNDINGS,FILES): pytest would take no file for all of them.
-prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -p tests.passed_proofs -rs $(SIDE_BY_SIDE) -m accuracy $(2)),true)
+prove = $(if $(strip $(2)),(set -x; $(1) $(BIN)/pytest -p tests.time_left -p tests.passed_proofs -rs -n $(PROOFS_AT_ONCE) $(AS_MODULES) -m accuracy $(2)),true)
 
 # Compiled modules are kept, whatever the surroundings say: each of some hundreds of processes of a test run would
 # compile half a million lines anew.
