@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import shutil
 from collections.abc import Callable, Generator, Iterable, Iterator, Sequence
 from contextlib import closing
@@ -144,6 +145,12 @@ def scenario_rig(scenario: Scenario) -> Rig:
         laser=scenario.laser,
     )
     rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
+    if scenario.transport.sheet_deg:
+        end = {
+            "end_angle": math.radians(scenario.transport.sheet_deg),
+            "end_fade": math.radians(scenario.transport.edge_deg),
+        }
+        rig = replace(rig, fan_beam=replace(rig.fan_beam, **end), sweep_beam=replace(rig.sweep_beam, **end))
     if scenario.setup.fan_turned_deg:
         turn = Turn.about_the_view(WORK_POINT, scenario.setup.fan_turned_deg)
         planes = tuple(turn.plane(plane) for plane in rig.fan.planes)
@@ -240,6 +247,7 @@ def _stage(scenario: Scenario, rig: Rig, scene: Scene) -> ScanStage:
             scenario.mirror_share,
             scenario.frames,
             scenario.readout_ms / 1000,
+            scenario.transport,
         ),
     )
 

@@ -95,6 +95,9 @@ class Beam:
         emitter, leaves the plane by ½ · bow · φ² rad (its "smile"); 0 for a plane.
     section
         What is added to the Gaussian across, or takes its place.
+    end_angle, end_fade
+        Angle in rad from the middle at which the housing cuts the sheet off, and over which it fades there; 0: it ends
+        by itself.
     """
 
     sigma_mm: float = 0.22
@@ -104,6 +107,8 @@ class Beam:
     peak_grey: float = 300.0
     bow: float = 0.0
     section: LaserEffects = GAUSSIAN_LASER
+    end_angle: float = 0.0
+    end_fade: float = 0.0
 
     @property
     def rayleigh_mm(self) -> float:

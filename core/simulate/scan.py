@@ -12,14 +12,17 @@ from core.calibrate.change import displaced_fan
 from core.model.arrays import Array
 from core.simulate.effects.lens import IDEAL_LENS, LensEffects
 from core.simulate.effects.room import STEADY_ROOM, RoomEffects
+from core.simulate.effects.transport import ONE_WAY, Transport
 from core.simulate.effects.warming import NO_WARMING, Warming
 from core.simulate.rays import Map
 from core.simulate.rig import Rig
+from core.simulate.scene.bounce import bounced_light
 from core.simulate.scene.image import Picture, Sensor, generator
 from core.simulate.scene.laser import Sheet, fan_sheets, laser_light
 from core.simulate.scene.mirrors import mirrored_light
 from core.simulate.scene.scene import Scene, SurfaceMaps, surface_maps
 from core.simulate.scene.speckle import LEAST_LIGHT, Speckle
+from core.simulate.scene.window import hand_hides, window_places, window_seen
 
 LAMP = np.array([-0.35, -0.5, -0.79])
 """Direction (3,) from the scene to the lamp that gives the room's light its shade, in the camera frame."""
@@ -38,7 +41,8 @@ class StageEffects:
     """What else happens in a scan.
 
     `mirror_share` of the lasers' light is mirrored by flat sides of the objects; `frames` is how many pictures are
-    taken, over which the rig warms; `readout_s` the time from the first row of a picture to the last.
+    taken, over which the rig warms; `readout_s` the time from the first row of a picture to the last. `transport` says
+    what light does beyond a single way.
     """
 
     lens: LensEffects = IDEAL_LENS
@@ -47,6 +51,7 @@ class StageEffects:
     mirror_share: float = 0.0
     frames: int = 1
     readout_s: float = 0.0
+    transport: Transport = ONE_WAY
 
     def over(self, index: int) -> float:
         """Share of the scan that is over at frame `index`; the reference, −1, is its beginning."""
@@ -94,6 +99,7 @@ class ScanStage:
         self.maps = _textured(surface_maps(scene, rig.camera), texture, rig.scale, seed)
         contrast = rig.optics.speckle_contrast
         self._speckle = Speckle(contrast, rig.grain_px, generator(seed, "speckle")) if contrast > 0 else None
+        self._lamp_light: Map | None = None
         self._room_light = self._room(ambient_grey)
         self._fan_light = self._fan(rig)
         self._still = self._room_light + self._fan_light
@@ -105,7 +111,7 @@ class ScanStage:
     def frame(self, index: int, *sheets: Sheet) -> Picture:
         """Frame number `index`, the hand-held laser at one sheet, or at several in the course of the exposure."""
         rng = generator(self.seed, "frame", index)
-        return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor)
+        return self._taken(self.lit_by(*sheets, rng=rng), index, rng, self.sensor, self._hidden_by_hand(sheets))
 
     def further_references(self) -> dict[int, Picture]:
         """As `reference`, in the sensor's further exposures, by their number."""
@@ -119,14 +125,22 @@ class ScanStage:
         if not self.sensor.further:
             return {}
         light = self.lit_by(*sheets, rng=generator(self.seed, "frame", index))
+        hidden = self._hidden_by_hand(sheets)
         return {
-            number: self._taken(light, index, generator(self.seed, f"frame@{number}", index), sensor)
+            number: self._taken(light, index, generator(self.seed, f"frame@{number}", index), sensor, hidden)
             for number, sensor in self.sensor.further.items()
         }
 
-    def _taken(self, light: Map, index: int, rng: np.random.Generator, sensor: Sensor) -> Picture:
-        """The picture of frame `index` (−1: the reference) of the `light` (h, w) before anything has changed."""
+    def _taken(
+        self, light: Map, index: int, rng: np.random.Generator, sensor: Sensor, hidden: Map | None = None
+    ) -> Picture:
+        """The picture of frame `index` (−1: the reference) of the `light` (h, w) before anything has changed.
+
+        Of the room's light, `hidden` (h, w) does not arrive.
+        """
         effects, room, over = self.effects, self._room_light, self.effects.over(index)
+        if hidden is not None:
+            light, room = light - hidden, room - hidden
         if effects.warming.scan_urad and over:
             turn = np.array([over * effects.warming.scan_urad * 1e-6, 0.0, 0.0])
             turned = replace(self.rig, fan=displaced_fan(self.rig.fan, turn, self.rig.fan_emitter))
@@ -171,6 +185,8 @@ class ScanStage:
             laser_light(sheet, self.scene, self.maps, light)
             if self.effects.mirror_share:
                 mirrored_light(sheet, self.scene, self.maps, self.effects.mirror_share, light)
+        if self.effects.transport.bounced:
+            light += bounced_light(light, self.maps, self.rig.camera.focal)
         return light
 
     def _image(self, light: Map) -> Map:
@@ -179,7 +195,21 @@ class ScanStage:
 
     def _room(self, grey: float) -> Map:
         facing = np.maximum(self.maps.normals @ (LAMP / np.linalg.norm(LAMP)).astype(np.float32), 0)
+        window = np.radians(self.effects.transport.window_deg)
+        if window:
+            facing *= window_seen(self.scene, self.maps, window_places(LAMP, float(window)))
+            self._lamp_light = self.maps.albedo * (np.float32(grey * LAMP_SHARE) * facing)
         return self._image(self.maps.albedo * (np.float32(grey) * (DIFFUSE_SHARE + LAMP_SHARE * facing)))
+
+    def _hidden_by_hand(self, sheets: Sequence[Sheet]) -> Map | None:
+        """The room's light (h, w) that the hand takes which holds the laser at `sheets`; None: nothing."""
+        transport = self.effects.transport
+        if self._lamp_light is None or not transport.hand_mm or not sheets:
+            return None
+        sheet = sheets[len(sheets) // 2]
+        behind = sheet.emitter - transport.hand_mm * sheet.axis
+        window = float(np.radians(transport.window_deg))
+        return self._image(self._lamp_light * hand_hides(self.maps, LAMP, window, (behind, transport.hand_mm)))
 
     def _with_speckle(self, light: Map, rng: np.random.Generator) -> Map:
         if self._speckle is None:

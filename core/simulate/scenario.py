@@ -20,6 +20,7 @@ from core.simulate.effects.ranges import require_ranges
 from core.simulate.effects.room import STEADY_ROOM, RoomEffects
 from core.simulate.effects.sensor import IDEAL_SENSOR, SensorEffects
 from core.simulate.effects.setup import USUAL_SETUP, Setup
+from core.simulate.effects.transport import ONE_WAY, Transport
 from core.simulate.effects.warming import NO_WARMING, Warming
 
 OBJECTS = ("block", "narrow-block", "steps", "sphere", "cylinder", "mask", "stl", "plane")
@@ -102,6 +103,9 @@ class Scenario:
         rig.toml says that nothing can change and that plates are true; False: it says nothing of either, as most do.
     laser, lens, sensor, room, plates, warming
         What real rigs do beyond that, by subject (`core.simulate.effects`); tables of these names in TOML.
+    transport
+        What light does beyond a single way: where sheets end, window and hand, interreflection, light that wanders
+        through the object; a table as well.
     setup
         How fan, table and hand are turned beside their usual places; a table as well.
     yaw_deg, right_mm, away_mm
@@ -165,6 +169,7 @@ class Scenario:
     plates: PlateEffects = TRUE_PLATES
     warming: Warming = NO_WARMING
     setup: Setup = USUAL_SETUP
+    transport: Transport = ONE_WAY
 
     def __post_init__(self) -> None:
         choices = (
@@ -230,7 +235,7 @@ class Scenario:
             )
 
     def with_effects_of(self, other: Scenario) -> Scenario:
-        """Make the same scenario with laser, lens, sensor, room, plates, warming and setup of another one."""
+        """Make the same scenario with laser, lens, sensor, room, plates, warming, setup and transport of another."""
         effects = {field.name: getattr(other, field.name) for field in fields(other) if is_dataclass(field.default)}
         return replace(self, **effects)
 

@@ -7,7 +7,8 @@ Light on a surface point X at distance ρ from the emitter, d off the sheet's mi
 with θ the angle of incidence; 0 where θ ≥ 90° or something is in the way. Only pixels within 4.5 σ of the sheet are
 looked at. A laser may have another section than the Gaussian (`core.simulate.effects.laser`). Of an object whose
 material takes light in, a share is that of the points behind, down to a depth, seen through it along the pixel's ray
-(without refraction); one that is glossy adds a lobe about the mirrored light, which is narrower along a lay.
+(without refraction), or wanders through it (`core.simulate.scene.walk`); one that is glossy adds a lobe about the
+mirrored light, which is narrower along a lay. A housing may cut a sheet off at its ends.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from core.simulate.rays import Map
 from core.simulate.rig import Beam, Rig
 from core.simulate.scene.scene import MATT, TILE, Material, Scene, SurfaceMaps
 from core.simulate.scene.shadow import ShadowCaster
+from core.simulate.scene.walk import FARTHEST_PATHS, walk
 
 REACH_SIGMAS = 4.5
 """σ from the sheet's middle beyond which light is left out: 4e-5 of the crest."""
@@ -97,7 +99,7 @@ def laser_light(
     light = np.zeros(maps.albedo.shape, np.float32) if out is None else out
     beam = sheet.beam
     widest = beam.sigma_mm * np.hypot(1, max(1.0, FARTHEST_FROM_FOCUS_MM / beam.rayleigh_mm))
-    inner = scene.material.inner_mm if scene.material.inner_share else 0.0
+    inner = _farthest_mm(scene.material)
     reach = REACH_SIGMAS * beam.section.reach * widest + _largest_bow(beam) + _largest_shift(sheet) + inner
     v, u = _near(maps, sheet.plane, reach)
     points = maps.points[v, u].astype(np.float64)
@@ -117,11 +119,15 @@ def laser_light(
     if scene.material != MATT:
         mine = ~maps.table[v, u] if maps.table.size else np.ones(len(v), np.bool_)
         normals, row = maps.normals[v[mine], u[mine]], v[mine]
-        if scene.material.inner_share:
+        if scene.material.scattered:
+            across[mine] = _wandered(scene.material, sheet, points[mine], normals, row, sigma[mine])
+        elif scene.material.inner_share:
             across[mine] = _through(scene.material, sheet, points[mine], normals, row, sigma[mine])
         if scene.material.gloss:
             shine[mine] += maps.albedo[v[mine], u[mine]] * _gloss(scene.material, points[mine], towards[mine], normals)
     profile = across * np.exp(-2 * (angle / beam.half_angle) ** 2)
+    if beam.end_angle:
+        profile *= _within_end(angle, beam)
     light[v, u] += (strength * profile * shine * open_sky).astype(np.float32)
     return light
 
@@ -138,6 +144,34 @@ def _through(
         off = sheet.off_light(points + material.inner_mm * (1 + place) / 2 * per_mm, row)
         found += material.inner_share * share / 2 * sheet.beam.section.across(off / sigma)
     return np.asarray(found)
+
+
+def _farthest_mm(material: Material) -> float:
+    """How far in mm from where it entered light comes out of an object at most."""
+    if material.scattered:
+        return 2 * FARTHEST_PATHS * material.free_path_mm
+    return material.inner_mm if material.inner_share else 0.0
+
+
+def _wandered(
+    material: Material, sheet: Sheet, points: Array, normals: Map, row: NDArray[np.intp], sigma: Array
+) -> Array:
+    """Light (N,) across a sheet at points (N, 3) where a share has wandered through the matter, 1 at its crest."""
+    photons = walk(material.scatter_albedo)
+    outward = normals.astype(np.float64)
+    aside = sheet.plane.normal - (outward @ sheet.plane.normal)[:, None] * outward
+    aside /= np.maximum(np.linalg.norm(aside, axis=1), _LEAST_COSINE)[:, None]
+    found = (1 - material.scattered) * sheet.beam.section.across(sheet.off_light(points, row) / sigma)
+    for depth, along, weight in zip(photons.depth, photons.aside, photons.weight, strict=True):
+        began = points + material.free_path_mm * (along * aside - depth * outward)
+        found += material.scattered * weight * sheet.beam.section.across(sheet.off_light(began, row) / sigma)
+    return np.asarray(found)
+
+
+def _within_end(angle: Array, beam: Beam) -> Array:
+    """Share (N,) of the light at these angles beside a sheet's axis that the rim of its housing lets pass."""
+    rise = np.clip((beam.end_angle + beam.end_fade / 2 - angle) / beam.end_fade, 0.0, 1.0)
+    return np.asarray(rise**2 * (3 - 2 * rise))
 
 
 def _gloss(material: Material, points: Array, towards: Array, normals: Map) -> Array:

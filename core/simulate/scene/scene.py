@@ -41,6 +41,8 @@ class Material:
         doi:10.1145/133994.134078).
     lay
         Direction (x, y, z) of the lay in the camera's frame; on each face as its plane has it.
+    scattered, free_path_mm, scatter_albedo
+        Share of the light that wanders through the matter, its free path and albedo: `core.simulate.scene.walk`.
     """
 
     inner_share: float = 0.0
@@ -49,6 +51,9 @@ class Material:
     gloss_rad: float = 0.1
     along_rad: float = 0.0
     lay: tuple[float, float, float] = (1.0, 0.0, 0.0)
+    scattered: float = 0.0
+    free_path_mm: float = 0.3
+    scatter_albedo: float = 0.98
 
 
 MATT = Material()

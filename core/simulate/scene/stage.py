@@ -71,6 +71,9 @@ def _material(scenario: Scenario, table: Pose) -> Material:
         np.radians(scenario.gloss_deg),
         np.radians(scenario.gloss_along_deg),
         (float(x), float(y), float(z)),
+        scenario.transport.scattered,
+        scenario.transport.free_path_mm,
+        scenario.transport.scatter_albedo,
     )
 
 
