@@ -27,13 +27,13 @@ ROWS = (
     Finding("scan.compressed", Weight.CAUTION, Effect.WIDENS_U,
             "The frames are JPEG: it loses {grey:.1f} grey levels, more than their noise of {noise:.1f}. σ contains "
             "it; record PNG."),
-    Finding("scan.colour_mosaic", Weight.CAUTION, Effect.NONE,
-            "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are finer than its "
-            "tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), or "
-            "stripes of σ {tile} px or more."),
-    Finding("scan.raw_mosaic", Weight.CAUTION, Effect.NONE,
+    Finding("scan.colour_mosaic", Weight.GRAVE, Effect.NO_PROOF,
+            "The pictures are interpolated from a colour mosaic; stripes of σ {width_px:.1f} px are too fine "
+            "for its tiles and may be off by more than their σ. Use a grey camera, raw pictures (mosaic in rig.toml), "
+            "or stripes of σ {least_px:g} px or more.", fact="too_fine_for_mosaic"),
+    Finding("scan.raw_mosaic", Weight.GRAVE, Effect.NO_PROOF,
             "The pictures look like the raw ones of a colour camera: the laser is seen {times:.1f} times as bright "
-            "at some pixels of each 2 × 2 as at others. State mosaic in rig.toml."),
+            "at some pixels of each 2 × 2 as at others. State mosaic in rig.toml.", fact="too_fine_for_mosaic"),
     Finding("scan.speckled", Weight.CAUTION, Effect.WIDENS_U,
             "The fan's light scatters by {percent:.0f} % from point to point beyond noise: strong speckle, or a "
             "grainy surface. Open the lens's aperture, spray the part, or use wider lines."),

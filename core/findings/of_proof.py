@@ -28,6 +28,9 @@ SCAN = (
     Finding("inspection.section_has_changed", Weight.GRAVE, Effect.NO_PROOF,
             "The light of the fan reaches further to one side than when it was calibrated: nothing measured proves "
             "conformity.", fact="section_changed"),
+    Finding("inspection.too_fine_for_mosaic", Weight.GRAVE, Effect.NO_PROOF,
+            "The stripes are too fine for the tiles of the colour camera's mosaic, which draws them aside by more than "
+            "U need contain: nothing measured proves conformity.", fact="too_fine_for_mosaic"),
 )  # fmt: skip
 """Why nothing is proven where a fact of the scan holds, in the order in which it is said."""
 PLANES = (
@@ -74,6 +77,9 @@ REASONS: Mapping[str, Message] = {
     "rig_changed": Message("doubt.rig_changed", "camera or laser have changed"),
     "rig_seems_changed": Message("doubt.rig_seems_changed", "camera or laser seem to have changed"),
     "section_changed": Message("doubt.section_changed", "the fan's light is skewed otherwise than when calibrated"),
+    "too_fine_for_mosaic": Message(
+        "doubt.too_fine_for_mosaic", "the stripes are too fine for the camera's colour mosaic"
+    ),
     "scan_unknown": Message("doubt.scan_unknown", "it is not known whether anything moved or changed"),
     DAY: Message("doubt.of_the_day", "calibration or check did not hold on the day"),
     "calibration_undated": Message("doubt.calibration_undated", "it is not known when the rig was calibrated"),

@@ -107,6 +107,8 @@ class ScanFacts:
         in order.
     section_changed
         Whether the fan's light is skewed otherwise than in its calibration, whose stripes may not tell.
+    too_fine_for_mosaic
+        Whether the fan's stripes are too fine for the tiles of a colour camera's mosaic, which draws them aside.
     camera_unsettled, planes_unsettled, points_off_alike
         Whether the calibration of the camera, or of the planes, was not solved to its end, and whether the plane
         target's points lie off alike in all poses and no artefact holds what that may do.
@@ -125,6 +127,7 @@ class ScanFacts:
     rig_changed: bool | None = None
     rig_seems_changed: bool | None = None
     section_changed: bool | None = None
+    too_fine_for_mosaic: bool | None = None
     camera_unsettled: bool | None = None
     planes_unsettled: bool | None = None
     points_off_alike: bool | None = None

@@ -10,6 +10,7 @@ from core.acquire.grey import PLAIN_CHANNELS, to_grey
 from core.image.mosaic import ALL_SITES, colours_of, even_grey, is_interpolated, sites_of
 from core.image.stripes.extraction import choose_settings, extract_centrelines
 from core.image.stripes.noise import estimate_noise
+from core.scan.features.picture_faults import FINEST_PX
 
 
 def sensed(seed, shape=(200, 300)):
@@ -81,6 +82,21 @@ def test_a_stripe_is_found_by_the_sites_that_see_it_where_it_is_as_sure_as_it_sa
         errors.append((line.uv[:, 1] - 120.37 - 0.2 * line.uv[:, 0]) * cosine / line.sigma)
     assert abs(np.mean(np.concatenate(errors))) < 0.2
     assert 0.85 < np.std(np.concatenate(errors)) < 1.15
+
+
+@pytest.mark.parametrize(("width", "least", "most"), [(1.0, 5.0, 30.0), (FINEST_PX, 0.7, 1.4)])
+def test_interpolated_a_stripe_too_fine_for_the_tiles_is_off_by_more_than_its_sigma(width, least, most):
+    """Nearly along the rows, where it is worst: the bound from which on it is as sure as it says is measured."""
+    v, u = np.mgrid[:300, :400].astype(float)
+    light, errors = 150 * np.exp(-((v - 40.37 - 0.02 * u) ** 2) / (2 * width**2)), []
+    for seed in range(2):
+        noise = np.random.default_rng(seed).normal(0, 2, light.shape)
+        raw = (10 + behind("RGGB", light, RED_LASER) + noise).round().clip(0, 255).astype(np.uint8)
+        seen = to_grey(cv2.cvtColor(raw, cv2.COLOR_BayerRGGB2BGR), "red").astype(np.float32)
+        lines = extract_centrelines(seen, choose_settings(seen, 255.0), noise=estimate_noise(seen))
+        line = max(lines, key=len)
+        errors.append((line.uv[:, 1] - 40.37 - 0.02 * line.uv[:, 0]) / line.sigma)
+    assert least < np.sqrt(np.mean(np.concatenate(errors) ** 2)) < most
 
 
 def test_places_and_stripes_go_to_the_sites_and_back():

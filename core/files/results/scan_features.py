@@ -53,6 +53,7 @@ FEATURES_MEMBERS: Mapping[str, Member] = {
     "frame_gain": real("frames", optional=True),
     "notes": texts(None),
     "faults": texts(None, optional=True),
+    "too_fine_for_mosaic": truth(optional=True),
     "stripes": real(2, 2),
     "frame_fan_shifts_px": real("frames", None, optional=True),
     "frame_fan_known": truth("frames", optional=True),
@@ -97,6 +98,11 @@ def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:
         "notes": pack_messages(features.notes),
         "faults": pack_messages(features.faults),
         "stripes": _stripes(features.fan_stripe, features.sweep_stripe),
+        **(
+            {}
+            if features.too_fine_for_mosaic is None
+            else {"too_fine_for_mosaic": np.array(features.too_fine_for_mosaic)}
+        ),
         **_pack_shifts(features),
         **_pack_gains(features),
         **{f"crossing_{name}": np.asarray(getattr(crossings, name)) for name in _CROSSINGS},
@@ -131,6 +137,7 @@ def unpack_features(arrays: Arrays) -> ScanFeatures:
         fan_stripe=fan_stripe,
         notes=tuple(filter(None, unpack_messages(arrays["notes"]))),
         faults=tuple(filter(None, unpack_messages(arrays["faults"]))) if "faults" in arrays else (),
+        too_fine_for_mosaic=bool(arrays["too_fine_for_mosaic"]) if "too_fine_for_mosaic" in arrays else None,
     )
 
 

@@ -66,7 +66,8 @@ class ScanFeatures:
     """All that a scan's pictures show; frames in the order of the recording, `frames[i].index == i`.
 
     `faults` tell what is wrong with the pictures themselves, which may be why what is made of them is refused; `notes`
-    whatever else they tell.
+    whatever else they tell. `too_fine_for_mosaic` is whether the fan's stripes are too fine for the
+    tiles of a colour mosaic; None: not known.
     """
 
     image_size: tuple[int, int]
@@ -77,6 +78,7 @@ class ScanFeatures:
     fan_stripe: StripeSettings
     notes: tuple[Message, ...] = ()
     faults: tuple[Message, ...] = ()
+    too_fine_for_mosaic: bool | None = None
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -17,12 +17,15 @@ from core.image.stripes.noise import NoiseModel
 from core.image.stripes.precision import response_noise
 from core.image.stripes.stripe import filter_for
 from core.messages import Message
-from core.scan.features.reference import ReferenceFeatures
+from core.scan.features.reference import Picture, ReferenceFeatures
 from core.scan.first_cause import Reason, Suspect
 
 SPECKLED_SHARE = 0.08
 """Scatter of the brightness along the fan's lines, as a share of it, from which on it is told: between what fine
 stripes (σ 1.1 px) have at a contrast of 0.18 (0.054, ± 0.004 between seeds) and of 0.35 (0.108 ± 0.006)."""
+FINEST_PX = 1.6
+"""σ of a stripe from which on pictures interpolated from a colour mosaic show it as sure as it says: within 1° of the
+rows it is off by 13 times its σ at 1.0 px, by 3.2 times at 1.3 px, and by 1.2 times from here on, at any angle."""
 _UNEVEN = 2.5
 """Times the laser's light at one place of a mosaic's tile over another's from which on it is one. Sites of another
 colour see less than a sixth of a laser's light; a stripe of σ 0.5 px, half a px aside, gives 1.6 at most."""
@@ -36,8 +39,15 @@ _CLEAR = 10.0
 
 def faults_of(reference: ReferenceFeatures) -> tuple[Message, ...]:
     """Notes on the faults that the picture with the fan alone shows."""
-    mosaic = (*_notes_on_mosaic(reference), *_notes_on_raw_mosaic(reference))
-    return (*notes_on_compression(reference.noise), *mosaic, *_notes_on_speckle(reference))
+    return (*notes_on_compression(reference.noise), *_notes_on_mosaic(reference), *_notes_on_speckle(reference))
+
+
+def is_too_fine_for_mosaic(fan: Sequence[Centreline], base: Picture) -> bool:
+    """Whether the fan's stripes in the picture `base` (H, W) are too fine for the tiles of a colour mosaic behind it.
+
+    Raw, or interpolated to stripes below FINEST_PX.
+    """
+    return _width_if_interpolated(fan, base) is not None or _unevenness(fan, base) is not None
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
@@ -47,30 +57,35 @@ def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
     return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)
 
 
-def _notes_on_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
-    """A note on pictures interpolated from a colour mosaic, if their stripes are finer than its tiles."""
-    widths = np.concatenate([piece.width for piece in reference.fan])
-    width = float(np.median(widths))
-    if width >= PERIOD_PX or not is_interpolated(reference.base):
-        return ()
-    return (note_of("scan.colour_mosaic", width_px=width, tile=PERIOD_PX),)
+def _notes_on_mosaic(reference: ReferenceFeatures) -> Iterator[Message]:
+    """Notes on pictures interpolated from a colour mosaic that is too coarse for the stripes, and on raw ones."""
+    width, uneven = (of(reference.fan, reference.base) for of in (_width_if_interpolated, _unevenness))
+    if width is not None:
+        yield note_of("scan.colour_mosaic", width_px=width, least_px=FINEST_PX)
+    if uneven is not None:
+        least, most = uneven
+        yield note_of("scan.raw_mosaic", times=most / max(least, reference.noise.read_grey))
 
 
-def _notes_on_raw_mosaic(reference: ReferenceFeatures) -> tuple[Message, ...]:
-    """A note on a picture whose sites see the fan's light by their place in tiles of 2 × 2."""
-    uv = np.vstack([piece.uv[~piece.saturated] for piece in reference.fan])
+def _width_if_interpolated(fan: Sequence[Centreline], base: Picture) -> float | None:
+    """Width in px of stripes too fine for the colour mosaic that a picture is interpolated from; else None."""
+    width = float(np.median(np.concatenate([piece.width for piece in fan])))
+    return None if width >= FINEST_PX or not is_interpolated(base) else width
+
+
+def _unevenness(fan: Sequence[Centreline], base: Picture) -> tuple[float, float] | None:
+    """Least and most light of the fan by its sites' place in tiles of 2 × 2, if it differs as behind a mosaic."""
+    uv = np.vstack([piece.uv[~piece.saturated] for piece in fan])
     u, v = np.rint(uv).astype(int).T
-    height, width = reference.base.shape
+    height, width = base.shape
     u, v = np.clip(u, 0, width - 1), np.clip(v, 0, height - 1)
-    light = reference.base[v, u].astype(np.float64) - float(np.median(reference.base[::16, ::16]))
+    light = base[v, u].astype(np.float64) - float(np.median(base[::16, ::16]))
     place = PERIOD_PX * (v % PERIOD_PX) + u % PERIOD_PX
     seen = [light[place == at] for at in range(PERIOD_PX**2)]
     if min(map(len, seen)) < _ENOUGH:
-        return ()
+        return None
     medians = [float(np.median(each)) for each in seen]
-    if max(medians) <= _UNEVEN * max(min(medians), 0.0):
-        return ()
-    return (note_of("scan.raw_mosaic", times=max(medians) / max(min(medians), reference.noise.read_grey)),)
+    return None if max(medians) <= _UNEVEN * max(min(medians), 0.0) else (min(medians), max(medians))
 
 
 def _notes_on_speckle(reference: ReferenceFeatures) -> tuple[Message, ...]:

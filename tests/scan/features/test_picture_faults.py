@@ -15,6 +15,7 @@ from core.pipeline.steps.scan import judgement
 from core.scan.features.picture_faults import (
     at_fault,
     faults_of,
+    is_too_fine_for_mosaic,
     notes_on_compression,
 )
 from core.scan.features.reference import read_reference
@@ -57,11 +58,17 @@ def test_lines_without_light_have_no_speckle():
     assert faults_of(replace(seen, fan=(seen.fan[0].select(slice(0, 1)),))) == ()
 
 
+def is_too_fine(scenario):
+    seen = read_reference(to_grey(scan_of(scenario)[0].reference(), "red"))
+    return is_too_fine_for_mosaic(seen.fan, seen.base)
+
+
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3))])
 @pytest.mark.parametrize("scale", [0.25, pytest.param(0.5, marks=pytest.mark.accuracy)])
 def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
     raw = replace(RIG, scale=scale, seed=seed, sensor=SensorEffects(colour=True, raw=True))
-    assert RAW in told_of(raw)
+    assert RAW in told_of(raw) and is_too_fine(raw)
+    assert not is_too_fine(replace(raw, sensor=SensorEffects()))
     assert RAW not in told_of(replace(raw, sensor=SensorEffects()))
     picture = scan_of(raw)[0].reference()
     assert RAW not in [note.code for note in faults_of(read_reference(sites_of("RGGB", "red").of(picture)))]
@@ -70,7 +77,8 @@ def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
 @pytest.mark.accuracy
 def test_stripes_finer_than_the_mosaic_they_are_interpolated_from_are_told():
     colour = replace(RIG, sensor=SensorEffects(colour=True))
-    assert told_of(colour) == [MOSAIC]
+    assert told_of(colour) == [MOSAIC] and is_too_fine(colour)
+    assert not is_too_fine(replace(colour, scale=1.0))
     assert told_of(replace(colour, scale=1.0)) == [], "wide stripes lose nothing"
 
 

@@ -65,7 +65,7 @@ def crossed_scan(looked: SeenScan, camera: Camera, progress: Progress = silent) 
     """The features of a scan whose pictures have been looked at."""
     features = crossed(looked.lines, looked.averaged, FeatureOptions(camera=camera), progress)
     notes, faults = (*looked.notes, *features.notes), (*looked.faults, *features.faults)
-    return replace(features, notes=notes, faults=faults)
+    return replace(features, notes=notes, faults=faults, too_fine_for_mosaic=looked.too_fine_for_mosaic)
 
 
 def _watching(

@@ -136,7 +136,8 @@ def judged_scan(
     common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
     causes = _causes(solved, change) if method == Method.NETWORK else ()
     likely = note_on_causes(causes, solved.scan, [frame.name for frame in solved.features.frames])
-    return Judgement(change, section, common, facts_of(of_the_day, change, section, solved.scan), causes, likely)
+    facts = facts_of(of_the_day, change, section, solved.features.too_fine_for_mosaic, solved.scan)
+    return Judgement(change, section, common, facts, causes, likely)
 
 
 def _causes(solved: Solved, change: Change) -> Causes:
@@ -160,7 +161,11 @@ def _nothing(deviations: Sequence[Deviation]) -> Evidence:
 
 
 def facts_of(
-    of_the_day: ScanFacts, change: Change, section: SectionChange, scan: ScanResult | None = None
+    of_the_day: ScanFacts,
+    change: Change,
+    section: SectionChange,
+    too_fine_for_mosaic: bool | None,
+    scan: ScanResult | None = None,
 ) -> ScanFacts:
     """The facts of the planes and the day, with those that the pictures show; within one picture nothing moves."""
     return replace(
@@ -172,6 +177,7 @@ def facts_of(
         rig_changed=change.surely or (scan is not None and scan.rig_changed),
         rig_seems_changed=change.seemingly,
         section_changed=section.surely,
+        too_fine_for_mosaic=too_fine_for_mosaic,
     )
 
 

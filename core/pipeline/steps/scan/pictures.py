@@ -39,7 +39,7 @@ from core.scan.features.extraction import (
     saturated_pixels,
 )
 from core.scan.features.overexposure import notes_on_shine
-from core.scan.features.picture_faults import faults_of
+from core.scan.features.picture_faults import faults_of, is_too_fine_for_mosaic
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
@@ -52,14 +52,15 @@ FEWEST_FOR_QUANTILE = 3
 class SeenScan:
     """What the pictures of a scan show, and what its reader has found: a `PictureReader` learns it.
 
-    `averaged` are the same `lines`, averaged along themselves; `notes` and `faults` are those of `ScanFeatures`;
-    `reference` is the picture that shows the fan alone, or the first of those it was made from.
+    `averaged` are the same `lines`, averaged along themselves; `notes`, `faults` and `too_fine_for_mosaic` are those of
+    `ScanFeatures`; `reference` is the picture that shows the fan alone, or the first of those it was made from.
     """
 
     lines: SeenLines
     averaged: SeenLines
     notes: tuple[Message, ...]
     faults: tuple[Message, ...]
+    too_fine_for_mosaic: bool
     reference: Path
     hashes: Mapping[str, str]
     channels: Mapping[str, LaserChannel]
@@ -121,7 +122,8 @@ def look_at_scan(
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
     notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference), *shine)
     path = found.reference or taken_frames(found, settings)[0]
-    return SeenScan(lines, averaged, notes, faults, path, pictures.hashes, pictures.channels)
+    finer = is_too_fine_for_mosaic(reference.fan, reference.base)
+    return SeenScan(lines, averaged, notes, faults, finer, path, pictures.hashes, pictures.channels)
 
 
 def begin_looking(
