@@ -150,7 +150,8 @@ class ScanFacts:
         """
         size = () if self.size_unconfirmed is False else (SIZE_UNCONFIRMED,)
         of_planes = self._held(OF_PLANES, PLANES_UNKNOWN)
-        return (*self._held(OF_SCAN, SCAN_UNKNOWN), *self.of_the_day, *of_planes, *size)
+        every = (*self._held(OF_SCAN, SCAN_UNKNOWN), *self.of_the_day, *of_planes, *size)
+        return tuple(dict.fromkeys(every))
 
     def _held(self, rows: Mapping[str, Doubt], unknown: Doubt) -> Doubts:
         """The doubts of those facts that hold, and `unknown` where one of them is not known."""

@@ -32,7 +32,7 @@ from core.files.arrays_file import (
 )
 from core.files.results.scan_features import FEATURES_MEMBERS, pack_features, unpack_features
 from core.findings.of_proof import DAY
-from core.findings.proof import Doubt, Doubts, ScanFacts, notes_of
+from core.findings.proof import SCAN_UNKNOWN, Doubt, Doubts, ScanFacts, notes_of
 from core.inspect.causes import CALIBRATIONS
 from core.messages import Command, Message
 from core.model.arrays import Array
@@ -270,10 +270,13 @@ def _facts(arrays: Arrays) -> ScanFacts:
 
 
 def _of_the_day(arrays: Arrays) -> Doubts:
-    """The facts of the day, each with its note if there is one; of an earlier version's file notes alone."""
+    """The facts of the day, each with its note if there is one; of an earlier version's file notes alone.
+
+    Without either it is not known whether all held on the day.
+    """
     notes = unpack_messages(arrays["of_the_day"]) if "of_the_day" in arrays else []
     if "of_the_day_facts" not in arrays:
-        return tuple(Doubt(DAY, note) for note in notes if note is not None)
+        return tuple(Doubt(DAY, note) for note in notes if note is not None) or (SCAN_UNKNOWN,)
     named = map(Doubt.named, unpack_texts(arrays["of_the_day_facts"]))
     return tuple(
         doubt if note is None else Doubt(doubt.fact, note)
