@@ -18,6 +18,7 @@ import workbench.app as program
 from workbench.main_window import MainWindow
 from workbench.views.scene.ready import readiness
 from workbench.views.scene.view import SceneView
+from workbench.work import tasks
 
 LOOK_MS = 50
 """How often it is looked whether what is waited for has come."""
@@ -121,6 +122,8 @@ def visit(window: MainWindow) -> None:
     timer.start()
 
 
+# A job that does not stop soon is ended with its process, as a busy machine would have it; here none may end.
+tasks.STOP_WITHIN_MS = int(1000 * PATIENCE_S)
 after_start = program._after_start
 
 
