@@ -5,8 +5,8 @@ what is too large in the squares of the crossings, spends as many numbers as it 
 cannot be put in that measure, and a fact decides of each by the rank or count that fails: frames that are too few,
 points that are too unsure, stripes that are saturated, pictures that are compressed. Of them `share` is None.
 
-A measured cause that explains most of what is too large is said before all others; then facts come, in the order of
-`Suspect`, for each of them leaves a result unsure whatever else there is; then the measured ones that explain less.
+A measured cause that explains most of what is too large is said before all others. The others come in the order of
+`Suspect`: each is a fact that leaves a result unsure, whatever else there is, and no other explains most.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from core.messages import Message
 BY_CHANCE = 0.01
 """A cause is named where chance alone would explain as much with a smaller probability, over all that were tried."""
 MOST = 0.5
-"""Share of what is too large from which on a cause is said before facts that have no share."""
+"""Share of what is too large from which on a cause is said before all that explain less, or have no share."""
 
 
 class Suspect(StrEnum):
@@ -99,17 +99,17 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
     >>> few, moved = (Reason(s, lambda what: what, Message("x.y", "")) for s in (Suspect.FEW_FRAMES, Suspect.MOVED))
     >>> [one.suspect.value for one in in_order([few, moved])]
     ['moved', 'few_frames']
-    >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.MOVED, 0.1), Cause(Suspect.FEW_FRAMES)])]
+    >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.FEW_FRAMES, 0.1)])]
+    ['moved', 'few_frames']
+    >>> [one.suspect.value for one in in_order([few, moved], [Cause(Suspect.FEW_FRAMES, 0.7)])]
     ['few_frames', 'moved']
     """
-    shares = {cause.suspect: cause.share for cause in causes if cause.share is not None}
+    shares = {cause.suspect: cause.share or 0.0 for cause in causes}
     rank = list(Suspect).index
 
-    def place(reason: Reason) -> tuple[int, float]:
-        share = shares.get(reason.suspect)
-        if share is None:
-            return 1, rank(reason.suspect)
-        return (0, -share) if share >= MOST else (2, -share)
+    def place(reason: Reason) -> tuple[float, int]:
+        share = shares.get(reason.suspect, 0.0)
+        return -share if share >= MOST else 0.0, rank(reason.suspect)
 
     return tuple(sorted(reasons, key=place))
 

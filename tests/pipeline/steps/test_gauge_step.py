@@ -113,3 +113,10 @@ def test_faces_that_are_seen_to_lie_askew_are_told_as_they_are(holding):
     refused = told_first(scan_of(**holding), no_faces(OwnCause))
     assert isinstance(refused, OwnCause)
     assert str(refused).startswith("point cloud: among 1 plane faces")
+
+
+def test_lines_that_bend_are_named_before_unsure_points_though_they_explain_little():
+    bends = np.diag([0, 0, 0.05 / 500**2])[None]
+    little = [Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
+    refused = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends, causes=little)
+    assert refused.code == "gauge.bent_and_no_faces"

@@ -1,10 +1,12 @@
 """Pictures exposed otherwise than the reference: told by the fan's light, and the fan is not taken for the sweep."""
 
+import cv2
 import numpy as np
 import pytest
 
 from core.scan.features.extraction import extract_features
 from core.scan.features.reference import read_reference
+from core.simulate.effects.warming import Warming
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
 
@@ -38,6 +40,24 @@ def test_the_gain_of_each_picture_is_found_by_the_fan(scan):
     for (_, picture), gain in zip(frames, GAINS, strict=True):
         found = seen.of_lasers(exposed(picture, gain)).gain
         assert found - 1 == pytest.approx(gain - 1, abs=0.01 + 0.2 * abs(gain - 1))
+
+
+@pytest.mark.parametrize("shift_px", [0.3, 0.8])
+def test_a_fan_that_lies_aside_is_no_other_exposure_and_one_is_found_all_the_same(scan, shift_px):
+    reference, frames = scan
+    seen, aside = read_reference(reference), np.float32([[1, 0, shift_px], [0, 1, 0]])
+    for _, picture in frames[:2]:
+        moved = cv2.warpAffine(picture.astype(np.float32), aside, picture.shape[::-1], flags=cv2.INTER_CUBIC)
+        assert seen.of_lasers(exposed(moved, 1.0)).gain == 1.0
+        for gain in (0.75, 1.3):
+            assert abs(seen.of_lasers(exposed(moved, gain)).gain - 1) > 0.5 * abs(gain - 1)
+
+
+def test_a_fan_of_a_warm_rig_is_no_other_exposure():
+    warm = Scenario(scale=0.25, frames=36, seed=1, warming=Warming(scan_px=1.5, scan_focal_ppm=750, scan_urad=450))
+    stage, sheets, _ = scan_of(warm)
+    seen = read_reference(stage.reference())
+    assert [seen.of_lasers(stage.frame(i, sheets[i])).gain for i in (30, 35)] == [1.0, 1.0]
 
 
 def test_a_fan_brighter_than_in_the_reference_is_no_sweep(scan):
