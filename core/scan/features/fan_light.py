@@ -10,6 +10,10 @@ with m the mean of the middle half, which whole grey levels do not round as they
 those pixels. The background under the fan is the lowest beside it, which makes F too large, and gain − 1 too small by
 up to a fifth where the fan is faint; their product stays. What a gain other than 1 leaves of the fan in d, which is
 (gain − 1)·F, is taken off: else it would be looked at as a stripe of the sweep.
+
+A fan that lies aside, as that of a rig that warms, is darker where it was brightest, too: by (shift / σ)² / 2 of its
+light. But the light of its whole width stays. So a gain counts only where the sums over tiles of the picture have
+changed, too.
 """
 
 from __future__ import annotations
@@ -29,6 +33,11 @@ FEWEST, MOST = 200, 4000
 """Pixels of the fan that tell a gain, and that are looked at."""
 SPARSE = 32
 """Rows and columns from one pixel to the next where the background is looked at."""
+TILE_PX = 16
+"""Size of the tiles over which the fan's light is summed up: wider than its lines."""
+AS_WELL = 0.5
+"""Of a gain − 1 by the brightest pixels that the sums show at least. Of a fan 0.3 px aside, of σ 1 px, they show a
+third of it, by what leaves the tiles; of other exposures about all of it."""
 LARGEST_GAIN = 2.0
 """Frames whose light differs by more, either way, are not exposed otherwise: their fan is off, or lost."""
 
@@ -47,6 +56,8 @@ class FanLight:
         (S,) level of the background there over its median in the picture.
     least
         Smallest gain − 1 that matters: it leaves of the strong light what matters to no stripe.
+    tile, sums
+        (K,) the tile of each of those pixels, and (T,) the light of the brighter half of the tiles; 0 of the others.
     """
 
     pixels: NDArray[np.intp]
@@ -54,6 +65,8 @@ class FanLight:
     strong: NDArray[np.intp]
     under: NDArray[np.float32]
     least: float
+    tile: NDArray[np.intp]
+    sums: NDArray[np.float64]
 
     @classmethod
     def of(cls, base: Picture, bare: NDArray[np.float32], full_scale: float) -> FanLight:
@@ -64,11 +77,15 @@ class FanLight:
         crest = STRONG * float(np.quantile(light, 0.9)) if len(light) else 0.0
         strong = np.flatnonzero((light > crest) & (level < UNSATURATED * full_scale))
         if len(strong) < FEWEST:
-            return cls(pixels, light, strong[:0], light[:0], np.inf)
+            return cls(pixels, light, strong[:0], light[:0], np.inf, strong[:0], np.zeros(0))
+        across = -(-base.shape[1] // TILE_PX)
+        tile = pixels // base.shape[1] // TILE_PX * across + pixels % base.shape[1] // TILE_PX
+        sums = np.bincount(tile, light)
+        sums[sums < np.median(sums[sums > 0])] = 0.0
         least = LEAST_CHANGE * full_scale / float(np.median(light[strong]))
         strong = strong[:: -(-len(strong) // MOST)]
         under = bare.ravel()[pixels[strong]] / max(float(np.median(bare[::SPARSE, ::SPARSE])), 1.0)
-        return cls(pixels, light, strong, under.astype(np.float32), least)
+        return cls(pixels, light, strong, under.astype(np.float32), least, tile, sums)
 
     def gain(self, difference: Difference) -> float:
         """Factor of a frame's light over the reference's, given frame − reference (H, W); 1: as good as the same."""
@@ -78,7 +95,11 @@ class FanLight:
         of_fan = difference.ravel()[self.pixels[self.strong]] - of_room * self.under
         change = _middle_mean(of_fan / self.light[self.strong])
         gain = 1 + change
-        return gain if abs(change) >= self.least and 1 / LARGEST_GAIN < gain < LARGEST_GAIN else 1.0
+        if abs(change) < self.least or not 1 / LARGEST_GAIN < gain < LARGEST_GAIN:
+            return 1.0
+        bright = self.sums > 0
+        summed = np.bincount(self.tile, difference.ravel()[self.pixels] - of_room, len(self.sums))
+        return gain if _middle_mean(summed[bright] / self.sums[bright]) / change >= AS_WELL else 1.0
 
     def take_off(self, difference: Difference, gain: float) -> None:
         """Take off frame − reference (H, W) what such a gain has left of the fan in it, in place."""
