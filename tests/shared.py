@@ -12,6 +12,8 @@ import pytest
 
 REAL_SETS = Path(__file__).resolve().parents[2] / "shared" / "real"
 """Photographs of others with published results; tests that need them are skipped where they are not."""
+CASES = REAL_SETS.parent / "cases"
+"""Small inputs that others filed, a `make.sh` each; the same holds of them."""
 
 GIVE_UP_S = 240.0
 

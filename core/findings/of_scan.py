@@ -6,9 +6,9 @@ from core.findings.finding import Effect, Finding, Weight
 
 ROWS = (
     # What explains most of what is too large
-    Finding("scan.cause_of_doubt", Weight.GRAVE, Effect.NONE,
+    Finding("scan.most_likely_cause", Weight.GRAVE, Effect.NONE,
             "Most likely cause: {causes:;}."),
-    Finding("scan.cause_of_scatter", Weight.CAUTION, Effect.NONE,
+    Finding("scan.most_likely_scatter", Weight.CAUTION, Effect.NONE,
             "Most likely cause of crossings that are off: {causes:;}."),
     # What moved within it
     Finding("scan.moved", Weight.GRAVE, Effect.NO_PROOF,

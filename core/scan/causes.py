@@ -366,8 +366,8 @@ def note_on_causes(causes: Causes, scan: ScanResult, names: Sequence[str]) -> tu
         return ()
     told = [_explains(cause, number, _words_of(cause, scan, names)) for number, cause in enumerate(causes)]
     if causes[0].suspect in _TAKE_PROOF_AWAY:
-        return (note_of("scan.cause_of_doubt", causes=told),)
-    return (note_of("scan.cause_of_scatter", causes=told),)
+        return (note_of("scan.most_likely_cause", causes=told),)
+    return (note_of("scan.most_likely_scatter", causes=told),)
 
 
 def _explains(cause: Cause, number: int, what: Message) -> Message:

@@ -43,7 +43,7 @@ def test_a_part_that_moved_is_the_first_cause_and_says_when():
     solved, causes = compared(mask)
     assert solved.asks_for_cause and causes[0].suspect == Suspect.MOVED and causes[0].share > 0.5
     (note,) = note_on_causes(causes, solved, [f"frame{n:02d}" for n in range(60)])
-    assert note.code == "scan.cause_of_doubt"
+    assert note.code == "scan.most_likely_cause"
     assert str(note).startswith("Most likely cause: something moved between frame29 and frame30 (explains ")
 
 
@@ -106,5 +106,5 @@ def test_what_nothing_explains_counts_as_too_large():
 
 def test_a_cause_without_doubt_of_the_result_is_a_caution():
     (note,) = note_on_causes((Cause(Suspect.SECOND_BOUNCES, 0.97, 30, 1e-12),), None, [])
-    assert note.code == "scan.cause_of_scatter" and "97 % of what is too large" in str(note)
+    assert note.code == "scan.most_likely_scatter" and "97 % of what is too large" in str(note)
     assert note_on_causes((), None, []) == ()

@@ -31,6 +31,7 @@ from core.model import Camera
 from core.scan.common_errors import CommonErrors
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.extraction import FrameFeatures, ScanFeatures
+from core.scan.first_cause import Cause, Suspect
 from core.scan.network.fan_speckle import FanSpeckle
 from core.scan.part_light import PartLight
 from core.scan.results import FrameRecord
@@ -412,6 +413,17 @@ def test_how_wide_stripes_are_on_the_part_is_kept(tmp_path, scan):
     back = read_scan(tmp_path / "scan.npz").part_light
     assert (back.wider, back.error, back.behind_mm) == (0.2, 0.01, 0.3)
     assert back.table.tolist() == light.table.tolist()
+
+
+def test_causes_that_were_compared_are_kept_and_of_another_version_passed_by(tmp_path, scan):
+    causes = (Cause(Suspect.MOVED, 0.83, 12, 1e-9), Cause(Suspect.SECOND_BOUNCES, 0.1, 40, 1e-4))
+    write_scan(tmp_path / "scan.npz", replace(scan, causes=causes))
+    assert read_scan(tmp_path / "scan.npz").causes == causes
+    arrays = dict(np.load(tmp_path / "scan.npz"))
+    np.savez(tmp_path / "scan.npz", **{**arrays, "cause_suspects": np.array(["melted", "second_bounces"])})
+    assert read_scan(tmp_path / "scan.npz").causes == causes[1:]
+    write_scan(tmp_path / "scan.npz", scan)
+    assert read_scan(tmp_path / "scan.npz").causes == ()
 
 
 def test_second_bounces_of_a_scan_are_kept(tmp_path, scan):
