@@ -53,8 +53,8 @@ def walk(albedo: float) -> Walk:
         along = np.sqrt(1 - up**2) * np.cos(rng.uniform(0.0, 2 * np.pi, len(going)))
         below = depth[going] - step * up
         leaves = below <= 0
-        share = np.where(leaves, depth[going] / np.maximum(depth[going] - below, 1e-12), 1.0)
-        aside[going] += share * step * along
+        part = np.where(leaves, depth[going] / np.maximum(depth[going] - below, 1e-12), 1.0)
+        aside[going] += part * step * along
         depth[going] = np.maximum(below, 0.0)
         out[going[leaves]] = True
         going = going[~leaves]
