@@ -7,7 +7,7 @@ release = version = __version__
 extensions = ["myst_parser"]
 source_suffix = {".md": "markdown"}
 myst_heading_anchors = 3
-exclude_patterns = ["conf.py"]
+exclude_patterns = ["conf.py", "de", "zh_CN"]  # the window shows these
 html_theme = "furo"
 html_title = f"Trisect {version}"
 html_favicon = "../icons/trisect.svg"

@@ -184,8 +184,13 @@ def _inspect_tabs(app: QApplication, bench: Bench, window: MainWindow) -> Iterat
     yield "conditions"
     page.conditions_fold.collapse(animate=False)
     _wait(app, lambda: not bench.measuring.busy, PATIENCE_S)
+    page.surface.choices.shapes["mesh"].click()
+    _settle(app, bench, 3.0)
+    yield "mesh"
+    page.surface.choices.shapes["points"].click()
     inspect.cut.show(True)
     inspect.cut.hide(1)
+    inspect.cut.turn_to(25.0, 0.0)
     yield "cut"
     inspect.cut.show(False)
     page.comparison_fold.expand(animate=False)
@@ -252,6 +257,7 @@ def _each(app: QApplication, bench: Bench, window: MainWindow, folder: Path, nam
         bench.settings.theme = theme
         for size in SIZES:
             window.resize(size)
+            window.move(0, 0)  # one as large as the screen would lie partly beside it
             _settle(app, bench, 0.7)
             path = folder / f"{name}-{theme}-{size.width()}x{size.height()}.png"
             grab(window).save(str(path))

@@ -1,4 +1,8 @@
-"""The manual in a window of its own: the same pages that `make docs` builds for a browser, offline."""
+"""The manual in a window of its own, offline: the pages that `make docs` builds for a browser, and their translations.
+
+A page in the window's language lies in a folder of its name (`de/scan.md`); where there is none, it is the English one.
+Its headings are those of the English page one by one, and links name them as there.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +14,7 @@ from PySide6.QtCore import Qt, QUrl
 from PySide6.QtGui import QDesktopServices, QTextBlockFormat, QTextCharFormat, QTextCursor, QTextDocument
 from PySide6.QtWidgets import QHBoxLayout, QPushButton, QTextBrowser, QVBoxLayout, QWidget
 
-from workbench.language import tr
+from workbench.language import spoken, tr
 from workbench.views.layouts import enable, keep_focus, resize_on_screen
 
 SIZE = (980, 900)
@@ -20,12 +24,26 @@ MARGIN_PX = 24
 ABOVE_HEADING_PX = 18
 """Room above a heading, so that it is seen to belong to what follows."""
 _NOT_IN_ANCHORS = re.compile(r"[^\w-]")  # as MyST makes names of headings
+_FENCED = re.compile(r"^```.*?^```$", re.MULTILINE | re.DOTALL)
 _DIRECTIVE = re.compile(r"^```{.*?^```$", re.MULTILINE | re.DOTALL)  # for Sphinx alone
 
 
 def manual_folder() -> Path:
     """Where the pages of the manual lie."""
     return Path(str(files("resources") / "manual"))
+
+
+def manual_page(name: str) -> Path:
+    """A page by its name without an ending, in the window's language if there is one in it."""
+    translated = manual_folder() / spoken() / f"{name}.md"
+    return translated if translated.is_file() else manual_folder() / f"{name}.md"
+
+
+def headings(path: Path) -> list[str]:
+    """Names of the headings of a page by which links know them, as Sphinx makes them."""
+    lines = _FENCED.sub("", path.read_text(encoding="utf-8")).splitlines()
+    titles = [line.lstrip("#").strip() for line in lines if line.startswith("#")]
+    return [_NOT_IN_ANCHORS.sub("", title.lower().replace(" ", "-")) for title in titles]
 
 
 class ManualPages(QTextBrowser):
@@ -38,15 +56,23 @@ class ManualPages(QTextBrowser):
 
     def open_page(self, name: str) -> None:
         """Show one page by its name without an ending: "scan"."""
-        self._follow(QUrl.fromLocalFile(str(manual_folder() / f"{name}.md")))
+        self._show(QUrl.fromLocalFile(str(manual_page(name))))
 
     def _follow(self, link: QUrl) -> None:
         target = self.source().resolved(link)
-        if target.isLocalFile():
-            self.setSource(target)
-            self.scrollToAnchor(target.fragment())
-        else:
+        if not target.isLocalFile():
             QDesktopServices.openUrl(target)
+            return
+        path = Path(target.toLocalFile())
+        if path.suffix == ".md":  # as it is in the window's language, whichever page the link is on
+            place = target.fragment()
+            target = QUrl.fromLocalFile(str(manual_page(path.stem)))
+            target.setFragment(place)
+        self._show(target)
+
+    def _show(self, target: QUrl) -> None:
+        self.setSource(target)
+        self.scrollToAnchor(target.fragment())
 
     def doSetSource(
         self, name: QUrl | str, type: QTextDocument.ResourceType = QTextDocument.ResourceType.UnknownResource
@@ -59,11 +85,11 @@ class ManualPages(QTextBrowser):
         self.setMarkdown(_DIRECTIVE.sub("", path.read_text(encoding="utf-8")))
         self.document().setBaseUrl(QUrl(name))
         self.document().setDocumentMargin(MARGIN_PX)
-        self._dress_headings()
+        self._dress_headings(headings(manual_folder() / path.name)[1:])
 
-    def _dress_headings(self) -> None:
-        """Space above them, and the names by which links know them, as Sphinx makes them."""
-        block = self.document().begin().next()
+    def _dress_headings(self, names: list[str]) -> None:
+        """Space above them, and the `names` by which links know them."""
+        block, left = self.document().begin().next(), iter(names)
         while block.isValid():
             if block.blockFormat().headingLevel():
                 cursor = QTextCursor(block)
@@ -72,7 +98,7 @@ class ManualPages(QTextBrowser):
                 cursor.mergeBlockFormat(spaced)
                 named = QTextCharFormat()
                 named.setAnchor(True)
-                named.setAnchorNames([_NOT_IN_ANCHORS.sub("", block.text().lower().replace(" ", "-"))])
+                named.setAnchorNames([next(left, "")])
                 cursor.movePosition(QTextCursor.MoveOperation.NextCharacter, QTextCursor.MoveMode.KeepAnchor)
                 cursor.mergeCharFormat(named)
             block = block.next()

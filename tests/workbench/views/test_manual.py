@@ -1,14 +1,24 @@
 import re
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from pathlib import Path
 
 import pytest
+from babel.messages.pofile import read_po
 from PySide6.QtCore import QUrl
 from PySide6.QtGui import QTextBlock, QTextCursor
+from PySide6.QtWidgets import QApplication
 from pytestqt.qtbot import QtBot
 
-from workbench.views.manual import ManualWindow, manual_folder
+from core.translations import language
+from workbench.language import choose
+from workbench.steps import STEPS
+from workbench.views.manual import ManualWindow, headings, manual_folder, manual_page
 
 PAGES = sorted(path.stem for path in manual_folder().glob("*.md"))
+TRANSLATED = [(name, path.stem) for name in ("de", "zh_CN") for path in sorted((manual_folder() / name).glob("*.md"))]
+FOR_USERS = {"first-measurement", "projects", "calibrate-camera", "calibrate-planes", "scan", "inspect", "report"}
+TRANSLATIONS = Path(__file__).parents[3] / "resources" / "translations"
+ITALIC = re.compile(r"(?<![*\w])\*([^*\n]+)\*(?!\*)")
 LINK = re.compile(r"\]\(([\w-]+)\.md\)")
 
 
@@ -67,6 +77,76 @@ def test_a_link_to_a_place_in_a_page_leads_there(manual: ManualWindow, name: str
         heading = next(one for one in blocks(manual) if slug(one) == place)
         top = manual.pages.cursorRect(QTextCursor(heading)).top()
         assert abs(top) < 10 or (bar.value() == bar.maximum() and 0 < top < bar.pageStep()), f"{page}.md#{place}"
+
+
+@pytest.fixture
+def in_language(qapp: QApplication) -> Iterator[Callable[[str], None]]:
+    yield lambda name: choose(language(name), qapp)
+    choose(language("en"), qapp)
+
+
+@pytest.mark.parametrize("name", ["de", "zh_CN"])
+def test_the_pages_for_users_and_of_every_step_are_in_the_windows_language(
+    name: str, in_language: Callable[[str], None]
+) -> None:
+    in_language(name)
+    assert {page for other, page in TRANSLATED if other == name} >= FOR_USERS
+    for page in (*FOR_USERS, "index", *(step.manual for step in STEPS)):
+        assert manual_page(page).parent.name == name, page
+    assert manual_page("accuracy") == manual_folder() / "accuracy.md", "what is not translated is in English"
+
+
+@pytest.mark.parametrize(("name", "page"), TRANSLATED)
+def test_a_translated_page_has_headings_pictures_and_links_of_the_english_one(name: str, page: str) -> None:
+    there, english = manual_folder() / name / f"{page}.md", manual_folder() / f"{page}.md"
+    assert len(headings(there)) == len(headings(english))
+    text, first = there.read_text(encoding="utf-8"), english.read_text(encoding="utf-8")
+    assert set(LINK.findall(text)) <= set(PAGES)
+    for other, place in re.findall(r"\]\(([\w-]*)(?:\.md)?#([\w-]+)\)", text):
+        assert place in headings(manual_folder() / f"{other or page}.md"), place
+    pictures = re.findall(r"pictures/(\w+\.png)", first)
+    assert [part.rpartition("/")[2] for part in re.findall(r"pictures/(\S+\.png)", text)] == pictures
+    for picture in re.findall(r"\]\((\S+\.png)\)", text):
+        assert (there.parent / picture).is_file(), picture
+    levels = [re.findall(r"^(#+) ", re.sub(r"(?ms)^```.*?^```$", "", one), re.MULTILINE) for one in (text, first)]
+    assert levels[0] == levels[1]
+
+
+NO_BUTTONS = {
+    "de": {
+        "Büschel",
+        "U",
+        "k",
+        "u",
+        "die Unsicherheit eingerechnet",
+        "Leertaste",
+        "Bild ab",
+        "Bild auf",
+        "größere x verbergen",
+    },
+    "zh_CN": {"平面束", "三交点", "U", "k", "u", "计入不确定度后", "空格", "Page Down", "Page Up", "隐藏 x 较大的一侧"},
+}
+"""In italics, but no words of the window alone: keys, terms, and words with a letter of an axis in them."""
+KEYS = re.compile(r"((Shift|Umschalt|Ctrl|Strg)\+)?[A-Z]")
+
+
+def plainly(words: str) -> str:
+    """Words of the window without marks of keys, dots and colons."""
+    return re.sub(r"\(&?[A-Z]\)|[&…]", "", words).strip()
+
+
+@pytest.mark.parametrize(("name", "page"), TRANSLATED)
+def test_a_translated_page_names_buttons_as_the_window_does(name: str, page: str) -> None:
+    with (TRANSLATIONS / f"{name}.po").open("rb") as file:
+        known = {
+            plainly(said)
+            for one in read_po(file)
+            for said in (one.string if isinstance(one.string, (tuple, list)) else [one.string or ""])
+        }
+    text = re.sub(r"(?ms)^```.*?^```$", "", (manual_folder() / name / f"{page}.md").read_text(encoding="utf-8"))
+    told = [plainly(part) for words in ITALIC.findall(text) for part in re.split(r"[,，]\s*", words)]
+    known |= {plainly(part) for words in known for part in re.split(r"[,，]\s*", words)}
+    assert [part for part in told if part not in known | NO_BUTTONS[name] and not KEYS.fullmatch(part)] == []
 
 
 def test_contents_leads_to_every_page() -> None:

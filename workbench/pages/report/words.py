@@ -8,7 +8,7 @@ from workbench.language import tr
 USUAL_EXPORTS = ("pdf", "cloud", "csv", "stl", "xlsx", "json")
 """Exports with a button of their own; the others are in a menu."""
 
-SHORT_TITLES = {"maps": label("Residuals of both faces"), "inputs": label("Inputs")}
+SHORT_TITLES = {"view": label("3D view"), "maps": label("Residuals of both faces"), "inputs": label("Inputs")}
 """What the page calls the sections of the report whose own titles are too long for a box that is ticked."""
 
 
