@@ -68,10 +68,8 @@ class CutPanel(QWidget):
             angle.setKeyboardTracking(False)
             angle.valueChanged.connect(lambda _: cut.turn_to(self.turned.value(), self.tilted.value()))
         where = in_row(QLabel(tr("Cut")), self.axis, self.at, self.side, STRETCH, spacing=6)
-        how = in_row(
-            QLabel(tr("turned")), self.turned, QLabel(tr("tilted")), self.tilted, STRETCH, self.keep, spacing=6
-        )
-        row = Folding(where, how, spacing=6, share=0)
+        how = in_row(QLabel(tr("turned")), self.turned, QLabel(tr("tilted")), self.tilted, STRETCH, spacing=6)
+        row = Folding(where, how, in_row(STRETCH, self.keep), spacing=6, share=0)
         in_column(row, on=self)
         self.axis.currentIndexChanged.connect(cut.square_to)
         self.at.valueChanged.connect(cut.move_to)
