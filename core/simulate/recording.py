@@ -146,11 +146,9 @@ def scenario_rig(scenario: Scenario) -> Rig:
     )
     rig = replace(rig, camera=scenario.lens.seen_by(rig.camera))
     if scenario.transport.sheet_deg:
-        end = {
-            "end_angle": math.radians(scenario.transport.sheet_deg),
-            "end_fade": math.radians(scenario.transport.edge_deg),
-        }
-        rig = replace(rig, fan_beam=replace(rig.fan_beam, **end), sweep_beam=replace(rig.sweep_beam, **end))
+        angle, fade = math.radians(scenario.transport.sheet_deg), math.radians(scenario.transport.edge_deg)
+        fan, sweep = (replace(one, end_angle=angle, end_fade=fade) for one in (rig.fan_beam, rig.sweep_beam))
+        rig = replace(rig, fan_beam=fan, sweep_beam=sweep)
     if scenario.setup.fan_turned_deg:
         turn = Turn.about_the_view(WORK_POINT, scenario.setup.fan_turned_deg)
         planes = tuple(turn.plane(plane) for plane in rig.fan.planes)

@@ -80,7 +80,7 @@ class FanLight:
             return cls(pixels, light, strong[:0], light[:0], np.inf, strong[:0], np.zeros(0))
         across = -(-base.shape[1] // TILE_PX)
         tile = pixels // base.shape[1] // TILE_PX * across + pixels % base.shape[1] // TILE_PX
-        sums = np.bincount(tile, light)
+        sums = np.bincount(tile, light).astype(np.float64)
         sums[sums < np.median(sums[sums > 0])] = 0.0
         least = LEAST_CHANGE * full_scale / float(np.median(light[strong]))
         strong = strong[:: -(-len(strong) // MOST)]

@@ -59,7 +59,8 @@ def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
 
 def _notes_on_mosaic(reference: ReferenceFeatures) -> Iterator[Message]:
     """Notes on pictures interpolated from a colour mosaic that is too coarse for the stripes, and on raw ones."""
-    width, uneven = (of(reference.fan, reference.base) for of in (_width_if_interpolated, _unevenness))
+    width = _width_if_interpolated(reference.fan, reference.base)
+    uneven = _unevenness(reference.fan, reference.base)
     if width is not None:
         yield note_of("scan.colour_mosaic", width_px=width, least_px=FINEST_PX)
     if uneven is not None:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import cv2
 import numpy as np
+from numpy.typing import NDArray
 
 from core.model.arrays import Array
 from core.simulate.rays import Map
@@ -53,7 +54,7 @@ def bounced_light(light: Map, maps: SurfaceMaps, focal_px: float) -> Map:
     return np.asarray(maps.albedo * fine, dtype=np.float32)
 
 
-def _evened(light: Map, sources: Array, every: int) -> Array:
+def _evened(light: Map, sources: NDArray[np.intp], every: int) -> Array:
     """What each of the patches sends back: the mean over the pixels it stands for, in the order of the rows."""
     values = light[sources[:, 0], sources[:, 1]].astype(np.float64)
     patches = len(values[every // 2 :: every])
