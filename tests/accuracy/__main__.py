@@ -1,4 +1,5 @@
-"""`make accuracy`: measure the accuracy table anew, the hostile one, false alarms on ideal rigs, or causes told.
+"""`make accuracy`: measure the accuracy table anew, the hostile one, false alarms on ideal rigs, causes told, the
+simulated tour, or what assumptions do to sets in order.
 
 Long: hours; `--short` takes a few minutes.
 """
@@ -6,7 +7,9 @@ Long: hours; `--short` takes a few minutes.
 from __future__ import annotations
 
 import argparse
+import json
 import subprocess
+import tempfile
 from datetime import UTC, datetime
 from pathlib import Path
 
@@ -14,15 +17,19 @@ import numpy as np
 
 from core.files.atomic import write_text
 from tests.accuracy import bounds, coverage, hostile, points
+from tests.accuracy import ideal as assumptions
 from tests.accuracy.campaign import PROCESSES, Figures, run
 from tests.accuracy.cases import FULL, HALF, Case, cases
 from tests.accuracy.causes import benign_cases, benign_table, first_cases, first_table
 from tests.accuracy.hostile_cases import CHECK_POSES, NOTHING_STATED, SEEDS, hostile_cases
 from tests.accuracy.table import between, table, within_2_sigma
+from tests.accuracy.tour import tour, tour_table
 
 ROOT = Path(__file__).parents[2]
 IDEAL_SEEDS = range(101, 201)
 """Of rigs to which nothing happens, each with a calibration of its own."""
+TOURS = range(1, 21)
+"""Seeds of the rigs on which the simulated tour is done."""
 BEGIN, END = "<!-- accuracy table: make accuracy -->", "<!-- end of the accuracy table -->"
 
 
@@ -31,7 +38,7 @@ def main() -> None:
     parser.add_argument(
         "what",
         nargs="?",
-        choices=("accuracy", "hostile", "ideal", "benign", "causes"),
+        choices=("accuracy", "hostile", "ideal", "benign", "causes", "tour", "assumptions"),
         default="accuracy",
         help="which table",
     )
@@ -49,6 +56,15 @@ def main() -> None:
         known = hostile_cases(0.25, IDEAL_SEEDS, (CHECK_POSES,))
         ideal = [case for case in known if case.effect == "nothing" and case.strength != NOTHING_STATED]
         print("\n".join(hostile.false_alarms(ideal, hostile.run(ideal, chosen.out / f"ideal-{commit}.jsonl"))))
+        return
+    if chosen.what == "tour":
+        _tours(chosen.out / f"tour-{commit}.jsonl")
+        return
+    if chosen.what == "assumptions":
+        found = assumptions.run_all(
+            list(assumptions.KINDS), assumptions.SEEDS, chosen.out / f"ideal-own-{commit}.jsonl"
+        )
+        print("\n".join(assumptions.summary(found)))
         return
     if chosen.what in ("benign", "causes"):
         made, table_of = (benign_cases, benign_table) if chosen.what == "benign" else (first_cases, first_table)
@@ -68,6 +84,18 @@ def main() -> None:
     write_text(chosen.out / "table.md", "\n".join(lines) + "\n")
     if chosen.manual:
         _into_manual(lines)
+
+
+def _tours(kept: Path) -> None:
+    """Print the table of the simulated tour; those found in the file `kept` (JSON lines) are not done again."""
+    found = [json.loads(line) for line in kept.read_text(encoding="utf-8").splitlines()] if kept.exists() else []
+    kept.parent.mkdir(parents=True, exist_ok=True)
+    for seed in sorted(set(TOURS) - {one["seed"] for one in found}):
+        with tempfile.TemporaryDirectory(prefix="tour-") as folder:
+            found.append(tour(seed, Path(folder)))
+        with kept.open("a", encoding="utf-8") as lines:
+            lines.write(json.dumps(found[-1]) + "\n")
+    print("\n".join(tour_table(found)))
 
 
 def _hostile(out: Path, commit: str, *, short: bool, only: str) -> None:
