@@ -32,7 +32,7 @@ def changed_since(names: Sequence[str]) -> Message:
     >>> str(changed_since(["camera", "the pictures"]))
     'out of date: changed since: camera, the pictures'
     """
-    return Message("state.changed_since", "out of date: changed since: {names}", names=tuple(names))
+    return Message("project.outdated_since", "out of date: changed since: {names}", names=tuple(names))
 
 
 def outdated_with(steps: Sequence[str]) -> Message:
@@ -43,7 +43,7 @@ def outdated_with(steps: Sequence[str]) -> Message:
     >>> str(outdated_with(["scan"]))
     'out of date, because this is: scan'
     """
-    return Message("state.outdated_with", "out of date, because this is: {steps}", steps=tuple(steps))
+    return Message("project.outdated_with", "out of date, because this is: {steps}", steps=tuple(steps))
 
 
 CHECKS = {"passed": label("in order"), "doubtful": label("in doubt"), "failed": label("changed")}
