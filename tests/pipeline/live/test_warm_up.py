@@ -62,8 +62,13 @@ sys.exit("\\n".join(map(str, new)) or None)
 """
 
 
-@pytest.mark.accuracy
-@pytest.mark.parametrize("work", [pytest.param(SCAN, id="measuring a scan"), pytest.param(LIVE, id="a live one")])
+@pytest.mark.parametrize(
+    "work",
+    [
+        pytest.param(SCAN, id="measuring a scan", marks=pytest.mark.accuracy),
+        pytest.param(LIVE, id="looking at a live one"),
+    ],
+)
 def test_after_warming_up_nothing_is_compiled_nor_loaded(simulated, measured, tmp_path, work):
     out = copy_of(measured, tmp_path / "out")
     program = [sys.executable, "-c", COMPILED + work + NEW, simulated, out]
