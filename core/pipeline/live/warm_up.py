@@ -11,6 +11,7 @@ from collections.abc import Callable
 from functools import cache
 
 import numpy as np
+from scipy.sparse import csr_array
 
 from core.acquire.source import Frame, Picture
 from core.compiled import is_complete, keep_complete
@@ -25,6 +26,8 @@ from core.scan.features.crossing_search import all_crossings
 from core.scan.features.crossings import CrossingWindow
 from core.scan.features.extraction import extract_features, saturated_pixels
 from core.scan.features.reference import FeatureOptions, picture_difference
+from core.scan.network.normal_matrix import normal_matrix
+from core.scan.surface.bends import bends_of
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fusion import fuse
 from core.scan.surface.mesh import build_mesh
@@ -128,11 +131,12 @@ def _picture(levels: PixelType, rows: tuple[float, ...], column: float | None = 
 
 
 def _crossings() -> None:
-    """Level lines crossed by upright ones, all of them with a kink, which wants a judgement."""
+    """Level lines crossed by upright ones, all of them with a kink, which wants a judgement; three equations."""
     along = np.arange(20.0, 220.0)
     level = [_line(np.column_stack([along, row + 0.3 * np.abs(along - 120)])) for row in _FAN_PX]
     upright = [[_line(np.column_stack([column + 0.3 * np.abs(along - 120), along]))] for column in _SWEEPS_PX]
     all_crossings(level, upright, CrossingWindow())
+    normal_matrix(csr_array(np.eye(3)), np.ones(3))
 
 
 def _line(uv: Array) -> Centreline:
@@ -144,10 +148,11 @@ def _line(uv: Array) -> Centreline:
 
 
 def _surface() -> None:
-    """A level patch of points, fused, with normals and triangles."""
+    """A level patch of points, fused, with normals, bends and triangles."""
     u, v = (axis.ravel().astype(np.float64) for axis in np.meshgrid(np.arange(40, 200, 2), np.arange(40, 160, 2)))
     uv, count = np.column_stack([u, v]), u.size
     points = 500.0 * np.column_stack([(u - 160) / 400, (v - 120) / 400, np.ones(count)])
     level, none = np.full(count, 0.02), np.zeros(count, dtype=np.int64)
     cloud = with_normals(Cloud(points, uv, level, level, none, none, np.zeros((count, 3))))
+    bends_of(cloud, SIZE)
     build_mesh(with_normals(fuse(cloud, SIZE)))
