@@ -366,7 +366,9 @@ def wrong_count(m: Mouse) -> None:
     page: Any = m.window.pages["camera"]
     presenter = page.presenter
     m.idle()
-    presenter.target.set_value("columns", presenter.target.values()["columns"] + 1)  # the mistake, no part of the task
+    presenter.target.set_target(
+        "columns", presenter.target.target_values()["columns"] + 1
+    )  # the mistake, no part of the task
     m.effort = Effort()
     m.click(page.card.buttons["run"])
     m.until(lambda: presenter.counted is not None, "the right number to be seen")
