@@ -50,7 +50,7 @@ NAMES = (
     "source.scene*", "source.simulated", "source.simulated_help", "study.after_the_guideline", "study.flatness_error",
     "study.its_columns", "study.nearest_column", "study.probing_*", "study.sphere_spacing", "study.tip_*",
     "surface.where_*",
-    "state.*", "target.board", "target.poses", "target.print_to_size", "target.target", "target.views", "told.*",
+    "target.board", "target.poses", "target.print_to_size", "target.target", "target.views", "told.*",
     "window.another_*", "window.elsewhere", "window.profile_tilt", "window.results_folder",
 )  # fmt: skip
 """Codes of what is neither error nor warning: advice, which stands beside its error; names, numbers, places, and what
