@@ -48,7 +48,7 @@ Target = Literal["camera_target", "plane_target"]
 
 
 def size_assumed(target: Target, scale_sd: float) -> Message:
-    """Note that the size of a target is assumed to be uncertain by this share of it: it is not stated."""
+    """Note on the standard uncertainty that is assumed of a target's size, as a share of the size."""
     return note_of("target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=scale_sd * 1e3)
 
 
