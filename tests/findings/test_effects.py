@@ -85,6 +85,8 @@ def test_with_all_notes_stripped_from_all_files_the_verdict_is_as_before(wide, o
         {"scale_assumed": True},
         {"scale_assumed": None},
         {"scale_sd": None},
+        {"bends": None},
+        {"by_camera": None},
     ],
 )
 def test_a_fact_of_the_planes_takes_away_the_proof_and_so_does_its_lack(facts, wide, out):

@@ -130,6 +130,11 @@ class _PlanesFile(ResultFile):
     poses: list[_Pose] = Field(default_factory=list)
     notes: list[KeptMessage] = Field(default_factory=list)
 
+    @property
+    def tells_all_of_u(self) -> bool:
+        """Whether all that U is made of is there, a null for what there is none of: what is left out is not known."""
+        return {"bends", "by_camera"} <= self.model_fields_set and self.by_camera is not None
+
     @model_validator(mode="after")
     def _shapes(self) -> _PlanesFile:
         size = 3 * len(self.planes)
@@ -318,7 +323,7 @@ def _calibration(file: _PlanesFile, camera: Camera, path: Path) -> FanCalibratio
         board=board_shape(file.board),
         bends=None if file.bends is None else np.array(file.bends),
         readjusted=_readjusted(file.readjusted),
-        converged=file.converged,
+        converged=file.converged if file.tells_all_of_u else None,
         points_off_alike=file.points_off_alike,
         flatness_assumed=file.flatness_assumed,
         taken=None if file.taken is None else Taken(file.taken.camera, file.taken.first, file.taken.last),
