@@ -1,4 +1,4 @@
-"""Tasks done in the real window with the mouse, as a new user would: python -m tests.workbench.five_tasks [NAME …].
+"""Five tasks done in the real window with the mouse, as a new user would: python -m tests.workbench.five_tasks.
 
 Every action is a click on something that is in sight, or text that cannot be clicked; the program's own waiting is
 timed apart. How long a person takes over the actions is told by the keystroke-level model: 1.35 s to find each, 1.1 s
@@ -27,7 +27,6 @@ import numpy as np
 from PySide6.QtCore import QPoint, Qt, QTimer
 from PySide6.QtTest import QTest
 from PySide6.QtWidgets import (
-    QAbstractButton,
     QApplication,
     QComboBox,
     QDialogButtonBox,
@@ -39,7 +38,6 @@ from PySide6.QtWidgets import (
 
 from core.files.project.folder import source_folder
 from core.pipeline.project.sample_project import sample_project
-from core.simulate.sample import sample_folder
 from tests.workbench.running import ROOT
 from tests.workbench.screenshots import PATIENCE_S
 from workbench import first_measurement as first
@@ -267,148 +265,12 @@ def report_in_chinese(m: Mouse) -> None:
     assert m.window.model.project.report.language == "zh_CN"
 
 
-SCENE = "scale = 0.25\nseed = 3\n"
-"""Of the simulated rig, which otherwise renders pictures of full size while it is watched."""
-VIEWS, POSES, FRAMES = 8, 6, 60
-"""So many are recorded live."""
-
-
-def simulated_tour(m: Mouse) -> None:
-    """From the welcome page to the report on the simulated rig, live."""
-    scene = Path(tempfile.mkdtemp()) / "small.toml"
-    scene.write_text(SCENE)
-    m.click(m.window.welcome.simulated)
-    m.until(lambda: m.window.current == "camera", "the camera page")
-    for step, wanted in (("camera", VIEWS), ("planes", POSES)):
-        page: Any = m.window.pages[step]
-        live = page.presenter.live
-        m.until(lambda: not live.settings.looking, "the scenes to be listed")  # noqa: B023  asked at once
-        if step == "camera":
-            live.settings.set_id(str(scene))  # smaller pictures, for time: no part of the task
-        _start(m, page)
-        m.until(lambda: live.recorded >= wanted or not live.running, f"{wanted} pictures")  # noqa: B023
-        if live.running:
-            _press(m, page, "Stop")
-        m.click(page.card.buttons["accept"])
-        m.click(m.window.next)
-    scan: Any = m.window.pages["scan"]
-    m.until(lambda: scan.presenter.work.fan is not None, "the calibrations to be read")
-    _start(m, scan)
-    m.until(lambda: scan.presenter.live.recorded >= FRAMES, f"{FRAMES} frames")
-    _press(m, scan, "Stop")
-    m.until(lambda: "gauge" in m.window.model.results, "the thickness")
-    m.idle()
-    m.click(m.window.next)
-    m.click(m.window.next)
-    m.click(cast(Any, m.window.pages["report"]).make)
-    m.until(lambda: "report" in m.window.model.results, "the report")
-    m.idle()
-
-
-def _start(m: Mouse, page: Any) -> None:
-    _press(m, page, "Start live")
-    m.until(lambda: page.presenter.live.running, "the live source to run")
-
-
-def _press(m: Mouse, page: Any, words: str) -> None:
-    """Click a button that is in sight, by what stands on it."""
-
-    def found() -> Any:
-        buttons = page.window().findChildren(QAbstractButton)
-        return next((one for one in buttons if one.isVisible() and one.text().replace("&", "") == words), None)
-
-    m.until(found, words)
-    m.click(found())
-
-
-def own_recording(m: Mouse) -> None:
-    """A folder of pictures with its rig.toml, recorded elsewhere: to the report."""
-    folder = sample_folder()
-    ask.choose_folder = lambda *_: folder
-    m.effort.clicks += FILE_CLICKS
-    m.click(m.window.welcome.from_set)
-    m.until(lambda: m.window.model.is_open, "the project")
-    m.idle()
-    _press(m, m.window.pages["project"], "Measure everything")
-    m.until(lambda: "report" in m.window.model.results, "the report")
-    m.idle()
-
-
-def limits_to_pdf(m: Mouse) -> None:
-    """The height of the upper face clicked in 3D, with limits, to the report."""
-    step_by_clicking(m)
-    page: Any = m.window.pages["inspect"]
-    panel = page.features
-    view = panel.list
-    index = view.currentIndex()
-    m.effort.clicks += 1
-    view.customContextMenuRequested.emit(view.visualRect(index).center())
-    m._below(panel._row_menu, ("Limits …",))
-    m.until(lambda: panel.form.first_limit is not None and panel.form.first_limit.hasFocus(), "the field")
-    for text in ("50", "-0.2", "0.2"):
-        field: Any = QApplication.focusWidget()
-        m.effort.keys += len(text) + 1
-        field.selectAll()
-        QTest.keyClicks(field, text)
-        QTest.keyClick(field, Qt.Key.Key_Tab)
-    m.idle()
-    name = page.presenter.features.chosen
-    m.until(lambda: (result := page.presenter.features.result(name)) and result.rows[0].verdict, "a verdict")
-    m.step("report")
-    m.click(cast(Any, m.window.pages["report"]).make)
-    m.until(lambda: "report" in m.window.model.results and not m.bench.measuring.busy, "the report")
-    m.idle()
-
-
-def wrong_count(m: Mouse) -> None:
-    """The board's columns are entered wrong: what the program does about it, to a calibrated camera."""
-    m.step("camera")
-    page: Any = m.window.pages["camera"]
-    presenter = page.presenter
-    m.idle()
-    presenter.target.set_target(
-        "columns", presenter.target.target_values()["columns"] + 1
-    )  # the mistake, no part of the task
-    m.effort = Effort()
-    m.click(page.card.buttons["run"])
-    m.until(lambda: presenter.counted is not None, "the right number to be seen")
-    _press(m, page, next(one.text() for one in _offers(page)))
-    m.until(lambda: presenter.counted is None and not m.bench.measuring.busy, "the pictures to be searched again")
-    m.idle()
-    m.click(page.card.buttons["accept"])
-    m.idle()
-
-
-def _offers(page: Any) -> list[QAbstractButton]:
-    """Buttons in sight that offer what is seen."""
-    buttons = page.findChildren(QAbstractButton)
-    return [one for one in buttons if one.isVisible() and one.text().startswith("Take over")]
-
-
-def why_large(m: Mouse) -> None:
-    """Why U is as large as it is: the largest row of the budget; and what is said of it is done."""
-    m.step("inspect")
-    page: Any = m.window.pages["inspect"]
-    m.until(lambda: page.presenter.scan.gauge is not None, "the thickness")
-    m.idle()
-    page.result_fold.expand(animate=False)
-    rows = sorted(page.presenter.scan.gauge.budget, key=lambda row: -row.u_mm)
-    m.effort.scrolls += 1
-    m._scroll_to(page.result)
-    print("largest rows:", [(str(row.source), round(row.u_mm, 4)) for row in rows[:3]])
-
-
 TASKS: tuple[tuple[str, bool, Callable[[Mouse], None]], ...] = (
     ("First measurement", False, first_measurement),
     ("Next part with plan, limits and report of the last", True, next_part),
     ("Which view makes a calibration worst", True, why_poor),
     ("A step by clicking two faces", True, step_by_clicking),
     ("Report in Chinese", True, report_in_chinese),
-    ("Tour on the simulated rig, live", False, simulated_tour),
-    ("Own recorded set to the report", False, own_recording),
-    ("Thickness by two clicks, with limits, to the PDF", True, limits_to_pdf),
-    ("Why is U large", True, why_large),
-    ("Board counted wrongly, to a camera", True, wrong_count),
 )
 """Title, whether the finished sample is open when it begins, and what is done."""
 
