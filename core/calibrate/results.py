@@ -231,7 +231,8 @@ class FanCalibration:
     @property
     def told(self) -> tuple[Message, ...]:
         """All that is to be said of it: its notes, and of its target's size that it is assumed, unless it is not."""
-        size = () if self.scale_assumed is False else (size_assumed("plane_target", self.scale_sd),)
+        unstated = self.scale_assumed is not False and self.scale_sd > 0
+        size = (size_assumed("plane_target", self.scale_sd),) if unstated else ()
         return tuple(dict.fromkeys((*self.notes, *size)))
 
     @property

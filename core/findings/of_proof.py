@@ -59,8 +59,9 @@ OTHERS = (
             "first calibrate the laser planes again.", fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the camera's or the laser planes' calibration, of another program or an earlier version, does "
-            "not say whether it had settled and fitted its target, or the planes' poses are too few to tell: nothing "
-            "measured proves conformity. Calibrate again, the laser planes with eight poses or more.",
+            "not say whether it had settled and fitted its target, or not all that U is made of, or the planes' poses "
+            "are too few to tell: nothing measured proves conformity. Calibrate again, the laser planes with eight "
+            "poses or more.",
             fact="planes_unknown"),
 )  # fmt: skip
 """That of the size, which a comparison with a master does not need, and of what a file does not say."""

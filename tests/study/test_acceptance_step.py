@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.files.arrays_file import write_arrays
+from core.files.arrays_file import pack_messages, pack_texts, write_arrays
 from core.files.results.ply import write_cloud
+from core.findings.proof import notes_of
 from core.pipeline.steps.acceptance_step import read_positions
 from core.scan.surface.cloud import Cloud
 from core.study.acceptance import acceptance_check
@@ -40,7 +41,9 @@ def bar(folder, centres, noise=0.01, seed=0):
 def with_facts(folder, facts):
     """The folder with a scan.npz, as far as its facts are read."""
     known = {f"fact_{name}": np.array(holds) for name, holds in asdict(facts).items() if name != "of_the_day"}
-    write_arrays(folder / "scan.npz", known)
+    day = {"of_the_day": pack_messages(notes_of(facts.of_the_day)),
+           "of_the_day_facts": pack_texts([doubt.fact for doubt in facts.of_the_day])}  # fmt: skip
+    write_arrays(folder / "scan.npz", known | day)
     return folder
 
 

@@ -18,7 +18,7 @@ from pye57 import libe57
 
 from core.errors import InputError
 from core.files.atomic import write_beside
-from core.files.results.frame_text import IN_WORDS
+from core.files.results.frame_text import frame_words
 from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.messages import Message
 from core.scan.surface.cloud import Cloud
@@ -66,7 +66,7 @@ def write_e57(
 
     placed = replace(cloud, points=frame.coordinates(cloud.points))
     about = (
-        f"Points in m; frame of reference: {IN_WORDS[frame.kind]}. Intensity is the standard uncertainty of each "
+        f"Points in m; {frame_words(frame.kind)}. Intensity is the standard uncertainty of each "
         "point's depth in mm, without what is common to the scan. "
         f"Calibration {calibration_id or 'not told'}."
     )

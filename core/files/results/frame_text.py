@@ -25,14 +25,19 @@ SHORT: Mapping[FrameKind, str] = {
     FrameKind.PART: "part coordinates of the plan",
 }
 """Where there is room for 80 letters."""
-_BACK = "into the camera frame: "
+_FRAME, _BACK = "frame of reference: ", "into the camera frame: "
 _LARGEST_SHEAR = 1e-6
 """That rows of a rotation may be off right angles and length 1."""
 
 
+def frame_words(kind: FrameKind) -> str:
+    """What a head says of the frame."""
+    return f"{_FRAME}{IN_WORDS[kind]}"
+
+
 def frame_comments(frame: ViewFrame) -> list[str]:
     """What the head of a PLY file says of its frame: the words, and where it is not the camera's the motion into it."""
-    words = f"frame of reference: {IN_WORDS[frame.kind]}"
+    words = frame_words(frame.kind)
     if frame.kind is FrameKind.CAMERA:
         return [words]
     pose = frame.pose_camera_frame
@@ -41,18 +46,18 @@ def frame_comments(frame: ViewFrame) -> list[str]:
 
 
 def told_pose(comments: Sequence[str], path: Path) -> Pose:
-    """The motion into the camera frame that a file's head states; none of the frame means the camera's own.
+    """The motion into the camera frame that a file's head states; where no frame is named it is the camera's own.
 
     Raises
     ------
     InputError
-        If it is no rotation and translation.
+        If it is no rotation and translation, or another frame is named without it.
     """
     told = [line.removeprefix(_BACK) for line in comments if line.startswith(_BACK)]
-    if not told:
+    if not told and all(line == frame_words(FrameKind.CAMERA) for line in comments if line.startswith(_FRAME)):
         return CAMERA_FRAME.pose_camera_frame
     try:
-        numbers = np.array([float(word) for word in told[0].split()])
+        numbers = np.array([float(word) for word in told[0].split()]) if told else np.zeros(0)
     except ValueError:
         numbers = np.zeros(0)
     rotation = numbers[:9].reshape(3, 3) if numbers.shape == (12,) else np.zeros((3, 3))
@@ -60,7 +65,10 @@ def told_pose(comments: Sequence[str], path: Path) -> Pose:
         rigid = np.abs(rotation @ rotation.T - np.eye(3)).max() < _LARGEST_SHEAR and np.linalg.det(rotation) > 0
     if not rigid or not np.all(np.abs(numbers[9:]) <= LARGEST):
         raise InputError(
-            Message("file.no_frame", "the motion into the camera frame in its head is no rotation and translation"),
+            Message(
+                "file.no_frame",
+                "the motion into the camera frame, which its head states, is missing or no rotation and translation",
+            ),
             where=path,
             todo=Message("advice.make_file_again", "make it again"),
         )

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from core import __version__
 from core.files.atomic import write_bytes, write_text
-from core.files.results.frame_text import IN_WORDS, SHORT
+from core.files.results.frame_text import SHORT, frame_words
 from core.files.stl import HEAD, TRIANGLE
 from core.inspect.shown.view_frame import CAMERA_FRAME, ViewFrame
 from core.model.arrays import Array
@@ -44,7 +44,7 @@ def write_obj(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME) -> None:
     InputError
         If it cannot be written.
     """
-    head = f"# Trisect {__version__}\n# unit mm; frame of reference: {IN_WORDS[frame.kind]}\n"
+    head = f"# Trisect {__version__}\n# unit mm; {frame_words(frame.kind)}\n"
     parts = [head, _rows("v", frame.coordinates(mesh.vertices)), _rows("vn", frame.directions(mesh.normals))]
     for name, chosen in _groups(mesh):
         corners = mesh.triangles[chosen] + 1
@@ -77,7 +77,7 @@ def write_3mf(path: Path, mesh: Mesh, frame: ViewFrame = CAMERA_FRAME, name: str
         '<model unit="millimeter" xml:lang="en-US" '
         'xmlns="http://schemas.microsoft.com/3dmanufacturing/core/2015/02">'
         f'<metadata name="Application">Trisect {__version__}</metadata>'
-        f'<metadata name="Description">frame of reference: {IN_WORDS[frame.kind]}</metadata>'
+        f'<metadata name="Description">{frame_words(frame.kind)}</metadata>'
         f"<resources>{''.join(objects)}</resources><build>{''.join(items)}</build></model>"
     )
     data = io.BytesIO()

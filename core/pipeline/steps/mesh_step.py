@@ -96,8 +96,8 @@ def mesh_step(
                 where="--format",
                 todo=Message("advice.choose_among", "choose among {choices}", choices=tuple(FORMATS)),
             )
-    made = prepared_mesh(read_mesh(results / FILES["mesh"]), options, progress)
     frame = frame_of(results, in_camera_frame=in_camera_frame)
+    made = prepared_mesh(read_mesh(results / FILES["mesh"]), options, progress)
     folder = make_folder(to)
     written = {name: folder / f"surface.{name}" for name in formats}
     for name, path in written.items():

@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from itertools import chain
 
+import numpy as np
+
 from core.calibrate.grades import POSES
 from core.calibrate.results import FanCalibration, PlanePose
 from core.messages import Message, decimals_of, label, plural_message
@@ -60,6 +62,7 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
     sds = () if calibration.free.covariance is None else calibration.free.angle_sds
     fan = calibration.fan
     of_d, of_kept = ((), ()) if fan.covariance is None else (fan.distance_sds, fan.angle_sds)
+    held_used = not np.array_equal(fan.pis, calibration.free.pis)
     rows: list[tuple[Fact, ...]] = []
     for place, plane in enumerate(calibration.fan.planes):
         rms = calibration.rms_mm[place] if place < len(calibration.rms_mm) else math.nan
@@ -77,7 +80,7 @@ def plane_cells(calibration: FanCalibration) -> tuple[tuple[Fact, ...], ...]:
             angle, sd = calibration.free_angles[place], sds[place] if sds else None
             if place < len(calibration.angles):
                 kept = math.degrees(calibration.angles[place])
-                digits = _angle_digits(of_kept[place]) if of_kept else 3
+                digits = (_angle_digits(of_kept[place]) if held_used else None) if of_kept else 3
                 row.append(
                     Fact(label("to the next"), kept, "°", digits, held, Reader.AUDITOR, grade=_suits(calibration))
                 )

@@ -161,7 +161,7 @@ def _view(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
     if "view" not in pictures:
         return []
     words = look.words
-    cut = "" if content.view is None or content.view.hidden is None else words("What the cut hid is left out.")
+    cut = "" if content.view is None or content.view.hidden is None else words("What the cut hid is not drawn.")
     caption = words("From where the surface was looked at last, in parallel projection; colour: height as above.")
     body = [Picture(pictures["view"], limits.picture_scale), look.text(f"{caption} {cut}".strip(), "caption")]
     return [section(look, "view", "The surface as it was left in 3D", body)]

@@ -117,7 +117,8 @@ def test_planes_whose_file_does_not_know_its_facts_are_kept_anew_under_their_id(
     kept_id = keep_planes(tmp_path, fan, camera.camera, POSES)
     (entry,) = history(tmp_path)
     assert not entry.facts_known, "as of an earlier version"
-    known = replace(fan, converged=True, points_off_alike=None, flatness_assumed=False)
+    every = np.zeros((3 * fan.fan.lines, 10))
+    known = replace(fan, converged=True, points_off_alike=None, flatness_assumed=False, by_camera=every)
     assert keep_planes(tmp_path, known, camera.camera, POSES) == kept_id
     (entry,) = history(tmp_path)
     assert entry.facts_known, "and that its few poses leave one of them open"

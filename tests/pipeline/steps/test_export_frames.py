@@ -156,3 +156,12 @@ def test_a_motion_that_is_none_is_told(results, tmp_path, numbers):
     path.write_bytes(data[:start] + b"into the camera frame: " + numbers.encode() + data[end:])
     with pytest.raises(InputError, match="no rotation and translation"):
         read_cloud(path)
+
+
+def test_another_frame_without_its_motion_is_not_taken_for_the_cameras(results, tmp_path):
+    for name, path in export_results(results, ["cloud", "mesh"], tmp_path / "to").items():
+        data = path.read_bytes()
+        start = data.index(b"comment into the camera frame: ")
+        path.write_bytes(data[:start] + data[data.index(b"\n", start) + 1 :])
+        with pytest.raises(InputError, match="is missing or no rotation"):
+            (read_cloud if name == "cloud" else read_mesh)(path)

@@ -527,7 +527,7 @@ def test_old_values_stay_marked_while_only_what_an_edit_concerns_is_measured_aga
     assert features.measuring
     listed, (top, table, height) = page.features.list, range(1, 4)
     for one in (top, height):
-        assert shown(listed, one, 1) == "50.012 ± 0.024 mm" and "Out of date" in tip(listed, one, 1)
+        assert shown(listed, one, 1) == "50.012 ± 0.024 mm" and "out of date" in tip(listed, one, 1)
         assert "Conformity is proven" not in tip(listed, one, 1)
     assert features.result("top") is None and features.result("height") is None
     assert features.result("table") is before
@@ -934,7 +934,7 @@ def test_the_thickness_is_the_first_of_all_results_and_an_old_one_looks_old(pres
     presenter.faces.set_number("nominal_mm", 51.0)
     presenter.faces.set_number("tolerance_mm", 0.1)
     page.refreshing.at_once()
-    assert "Out of date" in tip(listed, 0, 1) and "Conformity" not in tip(listed, 0, 1)
+    assert "out of date" in tip(listed, 0, 1) and "Conformity" not in tip(listed, 0, 1)
 
 
 def test_a_new_feature_is_measured_at_once(presenter, features, qtbot):
