@@ -15,8 +15,9 @@ of their noise, and add up.
 
 With the network's unknowns eliminated, as in `core.scan.scan_evidence`, a cause takes E = gᵀ N⁻¹ g off the misfit, and
 T = gᵀ Σ⁻¹ g is χ² distributed if it does nothing, with Σ the covariance of g by the crossings' whole noise and by what
-the calibrations leave uncertain. The likeliest takes most off, numbers that it spends counted as noise. Then it is
-part of the model, and the others are tried on what is left: so a movement is not told of a rig that drifts.
+the calibrations leave uncertain. Of those beyond chance, the likeliest takes most off, numbers that it spends counted
+as noise. Then it is part of the model, and the others are tried on what is left: so a movement is not told of a rig
+that drifts.
 
 What is too large is the misfit without any of them, less the noise that is left with all that were found; noise above
 what is stated counts as too large, and is explained by none. The measure is linear: of a picture that is shifted by
@@ -161,7 +162,7 @@ def compare_causes(
 
 
 def choose(normal: Normal) -> Causes:
-    """Choose the likeliest cause, and then of the others whichever explains most of what is left, if beyond chance.
+    """Choose, of the causes beyond chance, whichever explains most, and then of the others most of what is left.
 
     Examples
     --------
@@ -173,19 +174,21 @@ def choose(normal: Normal) -> Causes:
     [('drifted', 0.99)]
     """
     chosen: list[tuple[Suspect, float, int, float]] = []
+    count = sum(normal.places.values())
     while left := [one for one in dict.fromkeys(normal.of) if one not in {suspect for suspect, *_ in chosen}]:
         taken = sum(squares for _, squares, _, _ in chosen)
         spent = sum(freedom for _, _, freedom, _ in chosen)
-        tried = [(one, *_explained(normal, one, [suspect for suspect, *_ in chosen])) for one in left]
-        level = [_level(normal, taken + squares, spent + freedom) for _, squares, freedom, _ in tried]
-        gained = [squares - freedom * noise for (_, squares, freedom, _), noise in zip(tried, level, strict=True)]
-        best = int(np.argmax(gained))
-        suspect, squares, freedom, score = tried[best]
-        count = sum(normal.places.values())
-        p = min(1.0, count * float(chdtrc(freedom, score / max(1.0, level[best])))) if freedom else 1.0
-        if p >= BY_CHANCE or gained[best] <= 0:
+        beyond_chance = []
+        for suspect in left:  # of each: what takes most off may be what the calibrations leave most uncertain
+            squares, freedom, score = _explained(normal, suspect, [one for one, *_ in chosen])
+            level = _level(normal, taken + squares, spent + freedom)
+            p = min(1.0, count * float(chdtrc(freedom, score / max(1.0, level)))) if freedom else 1.0
+            gained = squares - freedom * level
+            if p < BY_CHANCE and gained > 0:
+                beyond_chance.append((gained, (suspect, squares, freedom, p)))
+        if not beyond_chance:
             break
-        chosen.append((suspect, squares, freedom, p))
+        chosen.append(max(beyond_chance, key=lambda one: one[0])[1])
     if not chosen:
         return ()
     noise = min(1.0, _level(normal, sum(one[1] for one in chosen), sum(one[2] for one in chosen)))

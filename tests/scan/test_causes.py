@@ -104,6 +104,22 @@ def test_what_nothing_explains_counts_as_too_large():
     assert only.share == pytest.approx(400 / 1200, abs=0.01)
 
 
+def test_an_unsure_cause_that_explains_more_does_not_hide_a_sure_one():
+    """The calibrations leave the first so uncertain that chance explains as much; the second they do not touch."""
+    suspects = (Suspect.RIG_CHANGED, Suspect.MOVED)
+    normal = Normal(
+        np.eye(2),
+        np.sqrt([200.0, 150.0]),
+        np.diag([60.0, 1.0]),
+        suspects,
+        dict.fromkeys(suspects, 1),
+        450.0,
+        100.0,
+    )
+    (only,) = choose(normal)
+    assert only.suspect == Suspect.MOVED and only.p < 1e-6
+
+
 def test_a_cause_without_doubt_of_the_result_is_a_caution():
     (note,) = note_on_causes((Cause(Suspect.SECOND_BOUNCES, 0.97, 30, 1e-12),), None, [])
     assert note.code == "scan.most_likely_scatter" and "97 % of what is too large" in str(note)
