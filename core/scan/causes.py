@@ -41,6 +41,7 @@ from scipy.linalg import cho_solve
 from scipy.special import chdtrc
 
 from core.calibrate.deviations import Deviation
+from core.findings.proof import ScanFacts
 from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
@@ -359,18 +360,33 @@ _WORDS = {
     Suspect.HAND_MOVED: Message("cause.hand_moved", "the hand moved while the camera read its rows out"),
     Suspect.SECOND_BOUNCES: Message("cause.second_bounces", "shiny sides mirror the hand-held laser's light"),
 }
-_TAKE_PROOF_AWAY = frozenset((Suspect.MOVED, Suspect.DRIFTED, Suspect.RIG_CHANGED))
-"""Causes that U need not contain."""
 
 
-def note_on_causes(causes: Causes, scan: ScanResult, names: Sequence[str]) -> tuple[Message, ...]:
-    """A note on the likeliest cause with its share, and on those that explain what is left; `names` are the frames'."""
+def note_on_causes(
+    causes: Causes, facts: ScanFacts, movements: Sequence[int], names: Sequence[str]
+) -> tuple[Message, ...]:
+    """A note on the likeliest cause with its share, and on those that explain what is left.
+
+    It is grave where the scan's `facts` say the same of the likeliest, and so take the proof away; else a caution: that
+    a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and before each of
+    the frames `movements` something moved.
+    """
     if not causes:
         return ()
-    told = [_explains(cause, number, _words_of(cause, scan, names)) for number, cause in enumerate(causes)]
-    if causes[0].suspect in _TAKE_PROOF_AWAY:
+    told = [_explains(cause, number, _words_of(cause, movements, names)) for number, cause in enumerate(causes)]
+    if _is_fact(causes[0].suspect, facts):
         return (note_of("scan.most_likely_cause", causes=told),)
     return (note_of("scan.most_likely_scatter", causes=told),)
+
+
+def _is_fact(suspect: Suspect, facts: ScanFacts) -> bool:
+    """Whether a fact by which nothing is proven says the same as a cause."""
+    said = {
+        Suspect.MOVED: facts.moved,
+        Suspect.DRIFTED: facts.drifted,
+        Suspect.RIG_CHANGED: facts.rig_changed or facts.rig_seems_changed,
+    }
+    return bool(said.get(suspect))
 
 
 def _explains(cause: Cause, number: int, what: Message) -> Message:
@@ -383,11 +399,11 @@ def _explains(cause: Cause, number: int, what: Message) -> Message:
     return Message("cause.next", "then {what} ({percent:.0f} %)", what=what, percent=percent)
 
 
-def _words_of(cause: Cause, scan: ScanResult, names: Sequence[str]) -> Message:
+def _words_of(cause: Cause, movements: Sequence[int], names: Sequence[str]) -> Message:
     if cause.suspect != Suspect.MOVED:
         return _WORDS[cause.suspect]
     when = tuple(
         Message("scan.between_frames", "between {first} and {second}", first=names[at - 1], second=names[at])
-        for at in scan.movements
+        for at in movements
     )
     return Message("cause.moved", "something moved {when:and}", when=when)

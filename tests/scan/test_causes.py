@@ -7,6 +7,9 @@ import pytest
 
 from core.calibrate.change import changes as rig_changes
 from core.calibrate.change import displaced_fan, laser_of
+from core.findings.finding import Weight
+from core.findings.proof import ScanFacts
+from core.findings.table import FINDINGS
 from core.scan.causes import Normal, choose, compare_causes, note_on_causes
 from core.scan.first_cause import Cause, Suspect
 from core.scan.reconstruct import reconstruct
@@ -42,7 +45,9 @@ def test_a_part_that_moved_is_the_first_cause_and_says_when():
     mask = ExactScan.of(Scenario(object="mask", scale=0.35), moved=(30, (0.3, 0.0, 0.0)))
     solved, causes = compared(mask)
     assert solved.asks_for_cause and causes[0].suspect == Suspect.MOVED and causes[0].share > 0.5
-    (note,) = note_on_causes(causes, solved, [f"frame{n:02d}" for n in range(60)])
+    (note,) = note_on_causes(
+        causes, ScanFacts(moved=solved.moved), solved.movements, [f"frame{n:02d}" for n in range(60)]
+    )
     assert note.code == "scan.most_likely_cause"
     assert str(note).startswith("Most likely cause: something moved between frame29 and frame30 (explains ")
 
@@ -121,6 +126,26 @@ def test_an_unsure_cause_that_explains_more_does_not_hide_a_sure_one():
 
 
 def test_a_cause_without_doubt_of_the_result_is_a_caution():
-    (note,) = note_on_causes((Cause(Suspect.SECOND_BOUNCES, 0.97, 30, 1e-12),), None, [])
+    (note,) = note_on_causes((Cause(Suspect.SECOND_BOUNCES, 0.97, 30, 1e-12),), ScanFacts(), (), [])
     assert note.code == "scan.most_likely_scatter" and "97 % of what is too large" in str(note)
-    assert note_on_causes((), None, []) == ()
+    assert note_on_causes((), ScanFacts(), (), []) == ()
+
+
+@pytest.mark.parametrize(
+    ("suspect", "fact"),
+    [
+        (Suspect.MOVED, "moved"),
+        (Suspect.DRIFTED, "drifted"),
+        (Suspect.RIG_CHANGED, "rig_changed"),
+        (Suspect.RIG_CHANGED, "rig_seems_changed"),
+    ],
+)
+def test_a_cause_is_grave_only_beside_the_fact_that_takes_the_proof_away(suspect, fact):
+    """A measurement that conforms has no red sentence beside it that says that the rig drifted."""
+
+    def weight(facts):
+        (note,) = note_on_causes((Cause(suspect, 0.6, 3, 1e-4),), facts, (), [])
+        return FINDINGS[note.code].weight
+
+    assert weight(ScanFacts(**{fact: True})) == Weight.GRAVE
+    assert weight(ScanFacts(**{fact: False}, collapsed=True)) == Weight.CAUTION

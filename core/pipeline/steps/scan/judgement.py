@@ -135,8 +135,9 @@ def judged_scan(
     deviations = (*change.deviations, *section.deviations)
     common = solve_common(solved.features, solved.scan, camera, fan, deviations, method, progress)
     causes = _causes(solved, change) if method == Method.NETWORK else ()
-    likely = note_on_causes(causes, solved.scan, [frame.name for frame in solved.features.frames])
     facts = facts_of(of_the_day, change, section, solved.features.too_fine_for_mosaic, solved.scan)
+    names = [frame.name for frame in solved.features.frames]
+    likely = note_on_causes(causes, facts, solved.scan.movements, names)
     return Judgement(change, section, common, facts, causes, likely)
 
 
