@@ -47,6 +47,7 @@ from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import huber_weights
+from core.scan.between_frames import Between, between
 from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.extraction import ScanFeatures
@@ -273,17 +274,17 @@ def _with_light(normal: Normal, candidates: Sequence[_Candidate], shifts: Array,
 
 
 def _moved(
-    equations: Adjustment, solution: Solution, movements: Sequence[int], frames: Index, seen: Index
+    equations: Adjustment, solution: Solution, movements: Sequence[Between], frames: Index, seen: Index
 ) -> Iterator[_Candidate]:
-    """Something moved before each of the frames `movements`, main plane and the rest by themselves."""
+    """Something moved in each of `movements`, main plane and the rest by themselves."""
     if not movements:
         return
     earlier, later, pattern = movements_of(equations, solution)
     columns = []
-    for first_after in movements:
+    for _, first_after in movements:
         k = np.searchsorted(frames, first_after)
         columns.append(np.where(((earlier < k) & (later >= k))[:, None], pattern, 0.0))
-    light = np.column_stack([seen >= first_after for first_after in movements]).astype(np.float64)
+    light = np.column_stack([seen >= first_after for _, first_after in movements]).astype(np.float64)
     yield _Candidate(Suspect.MOVED, np.hstack(columns), len(frames), light)
 
 
@@ -363,13 +364,13 @@ _WORDS = {
 
 
 def note_on_causes(
-    causes: Causes, facts: ScanFacts, movements: Sequence[int], names: Sequence[str]
+    causes: Causes, facts: ScanFacts, movements: Sequence[Between], names: Sequence[str]
 ) -> tuple[Message, ...]:
     """A note on the likeliest cause with its share, and on those that explain what is left.
 
     It is grave where the scan's `facts` say the same of the likeliest, and so take the proof away; else a caution: that
-    a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and before each of
-    the frames `movements` something moved.
+    a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and
+    something moved in each of `movements`.
     """
     if not causes:
         return ()
@@ -399,11 +400,7 @@ def _explains(cause: Cause, number: int, what: Message) -> Message:
     return Message("cause.next", "then {what} ({percent:.0f} %)", what=what, percent=percent)
 
 
-def _words_of(cause: Cause, movements: Sequence[int], names: Sequence[str]) -> Message:
+def _words_of(cause: Cause, movements: Sequence[Between], names: Sequence[str]) -> Message:
     if cause.suspect != Suspect.MOVED:
         return _WORDS[cause.suspect]
-    when = tuple(
-        Message("scan.between_frames", "between {first} and {second}", first=names[at - 1], second=names[at])
-        for at in movements
-    )
-    return Message("cause.moved", "something moved {when:and}", when=when)
+    return Message("cause.moved", "something moved {when:and}", when=between(names, movements))

@@ -28,6 +28,7 @@ from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import mad_sd
+from core.scan.between_frames import Between, between
 from core.scan.features.crossings import Index
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.reference import fan_stretches
@@ -65,8 +66,8 @@ class FanRest:
     ----------
     at_rest
         (F,) the frames that agree with the reference; all where nothing moved.
-    first_after
-        The first frame of each part of the scan but the first, in order.
+    movements
+        Between which frames that see the fan's light it moved, in order.
     shift_px, shift_mm, share
         Of the stretches that moved: median shift in the picture and in depth, and how many of all they are.
     drifts
@@ -77,7 +78,7 @@ class FanRest:
     """
 
     at_rest: NDArray[np.bool_]
-    first_after: tuple[int, ...] = ()
+    movements: tuple[Between, ...] = ()
     shift_px: float = 0.0
     shift_mm: float = 0.0
     share: float = 0.0
@@ -93,7 +94,7 @@ class FanRest:
     @property
     def unsteady(self) -> bool:
         """Whether anything has moved, at once or evenly."""
-        return bool(self.first_after) or self.drifts
+        return bool(self.movements) or self.drifts
 
     @property
     def what_moved(self) -> Message:
@@ -106,26 +107,19 @@ class FanRest:
             return (note_of("scan.rest_not_judged", n=self.frames, stretches=self.stretches, least=2 * LEAST_FRAMES),)
         if self.drifts:
             return (note_of("scan.drifted", shift_px=self.shift_px, shift_mm=self.shift_mm),)
-        if not self.first_after:
+        if not self.movements:
             return ()
         return (
             note_of(
                 "scan.fan_shifted",
                 what=self.what_moved,
-                when=self.when(names),
+                when=between(names, self.movements),
                 percent=100 * self.share,
                 shift_px=self.shift_px,
                 shift_mm=self.shift_mm,
                 n=frames,
             ),
         )
-
-    def when(self, names: Sequence[str]) -> list[Message]:
-        """Between which frames it moved."""
-        return [
-            Message("scan.between_frames", "between {first} and {second}", first=names[first - 1], second=names[first])
-            for first in self.first_after
-        ]
 
 
 def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan) -> FanRest:
@@ -160,7 +154,7 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
     return replace(
         at_rest,
         at_rest=resting,
-        first_after=tuple(int(known[split]) for split in splits),
+        movements=tuple(Between(int(known[split - 1]), int(known[split])) for split in splits),
         shift_px=_median(np.abs(change[moved])),
         shift_mm=_median(in_depth),
         share=float(np.mean(moved)),

@@ -19,6 +19,7 @@ from core.messages import Field, Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
+from core.scan.between_frames import Between, between, each_once
 from core.scan.exposure_blur import exposure_blurs, notes_on_blur
 from core.scan.fan_watch import LEAST_FRAMES, WARM_UP, FanRest, watch_fan
 from core.scan.features.crossings import CrossingTable
@@ -176,7 +177,7 @@ def reconstruct(
         fan_disagrees=solved.fan_disagrees,
         rig_changed=solved.explanation is not None,
         unsure_share=_unsure_share(found, cloud),
-        movements=tuple(sorted({*watched.first_after, *solved.movements})),
+        movements=each_once(watched.movements, solved.movements),
         rig_explained=None if solved.explanation is None else solved.explanation.share,
         rows_seen_to_roll=solved.read_out.moves and options.row_time_us is None,
     )
@@ -205,14 +206,14 @@ def _unrest(watched: FanRest, names: Sequence[str]) -> Iterator[Reason]:
             of_own=True,
             kind=OwnCause,
         )
-    if watched.first_after:
+    if watched.movements:
         yield Reason(
             Suspect.MOVED,
             lambda reason: Message(
                 "scan.moved_and_not_solved",
                 "by the fan's light, {what} moved {when:and}, by {shift_px:.2g} px; of the frames without it: {reason}",
                 what=watched.what_moved,
-                when=watched.when(names),
+                when=between(names, watched.movements),
                 shift_px=watched.shift_px,
                 reason=reason,
             ),
@@ -248,7 +249,7 @@ class _Solved:
     moved: bool | None = None
     fan_disagrees: bool = False
     explanation: Explanation | None = None
-    movements: tuple[int, ...] = ()
+    movements: tuple[Between, ...] = ()
 
 
 def _solve(
@@ -270,7 +271,7 @@ def _solve(
         located = np.isin(crossings.a, sweeps.frames) & crossings.with_fan
         reasons = reasons_of(crossings.with_fan, weights, kept, located)
         notes = watched.note(names, len(sweeps.frames)) + sweeps.notes
-        moved = bool(watched.first_after) if watched.known else None
+        moved = bool(watched.movements) if watched.known else None
         return _Solved(sweeps, weights, reasons, notes, moved=moved)
     among, of_among = crossings.select(kept), line[kept]
     read_out = read_out_of(among, of_among, camera, fan, options.row_time_us, progress)
@@ -302,10 +303,10 @@ def _solve(
         + (judged if explanation is None else (explanation.note,)),
         datum,
         read_out,
-        bool(watched.first_after or moved) if watched.known or part.known else None,
+        bool(watched.movements or moved) if watched.known or part.known else None,
         explanation is None and (sweeps.fan_silenced or (sweeps.off_fan and not explained)),
         explanation,
-        tuple(movement.first_after for movement in part.movements) if moved else (),
+        part.movements if moved else (),
     )
 
 

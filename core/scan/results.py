@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from core.messages import Message
 from core.model.arrays import Array
+from core.scan.between_frames import Between
 from core.scan.features.crossings import CrossingTable
 from core.scan.features.frames import FrameRecord
 from core.scan.network.datum import Datum
@@ -69,7 +70,7 @@ class ScanResult:
     unsure_share
         Share of the sweeps' points that are less sure than the σ cut, and left out.
     movements
-        The first frame after each movement that was found in light or crossings.
+        Between which frames something moved, by light or crossings, each movement once.
     rig_explained
         Share of what crossings are off too much that a single change of camera or fan explains; None if none does.
     rows_seen_to_roll
@@ -97,7 +98,7 @@ class ScanResult:
     rig_changed: bool = False
     unsure_share: float = 0.0
     second_bounces: SecondBounces = NO_BOUNCES
-    movements: tuple[int, ...] = ()
+    movements: tuple[Between, ...] = ()
     rig_explained: float | None = None
     rows_seen_to_roll: bool = False
 

@@ -35,6 +35,7 @@ from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.robust import huber_weights
 from core.progress import Progress, silent
+from core.scan.between_frames import Between, between
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.adjustment import HUBER_AT
 from core.scan.network.datum import main_plane
@@ -72,13 +73,12 @@ HOLD_STILL = Message("scan.advice_hold_still", "hold both still and scan again")
 
 @dataclass(frozen=True, slots=True)
 class Movement:
-    """Something moved between frame `last_before` and frame `first_after`, both crossed by others.
+    """Something moved, `when` being between two frames that both are crossed by others.
 
     `score` is T, about 10 where nothing moved.
     """
 
-    last_before: int
-    first_after: int
+    when: Between
     score: float
 
 
@@ -104,7 +104,7 @@ def find_movement(
     _, about = max((scores.at(k), k) for k in range(first, last + 1, stride))
     near = range(max(first, about - stride + 1), min(last, about + stride - 1) + 1)
     score, k = max((scores.at(k), k) for k in near)
-    return Movement(int(frames[k - 1]), int(frames[k]), score) if score > SCORE_LIMIT else None
+    return Movement(Between(int(frames[k - 1]), int(frames[k])), score) if score > SCORE_LIMIT else None
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -200,14 +200,14 @@ class StillPart:
     """The crossings (M,) that are kept, when something moved, and whether there are sweeps enough to tell."""
 
     kept: NDArray[np.bool_]
-    movements: tuple[Movement, ...]
+    movements: tuple[Between, ...]
     known: bool
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
         """Note for the technician if anything moved; `frames` frames are used."""
         if not self.movements:
             return ()
-        return (note_of("scan.moved", when=_when(self.movements, names), n=frames),)
+        return (note_of("scan.moved", when=between(names, self.movements), n=frames),)
 
 
 def still_part(
@@ -230,8 +230,8 @@ def still_part(
     """
     kept, movements = np.ones(len(crossings), dtype=np.bool_), []
     while movement := find_movement(crossings.select(kept), line[kept], camera, fan, read_out):
-        movements.append(movement)
-        later_a, later_b = crossings.a >= movement.first_after, crossings.b >= movement.first_after
+        movements.append(movement.when)
+        later_a, later_b = crossings.a >= movement.when.first_after, crossings.b >= movement.when.first_after
         parts = [
             kept & ~later_a & (crossings.with_fan | ~later_b),
             kept & later_a & (crossings.with_fan | later_b),
@@ -247,7 +247,7 @@ def still_part(
                 Message(
                     "scan.moved_too_much",
                     "object or camera moved {when:and}, and too few frames are left between which nothing did",
-                    when=_when(movements, names),
+                    when=between(names, movements),
                 ),
                 where="scan",
                 todo=HOLD_STILL,
@@ -260,16 +260,3 @@ def still_part(
 
 def _sweeps(crossings: CrossingTable, rows: NDArray[np.bool_]) -> int:
     return len(np.unique(np.concatenate([crossings.a[rows], crossings.b[rows & ~crossings.with_fan]])))
-
-
-def _when(movements: Sequence[Movement], names: Sequence[str]) -> list[Message]:
-    ordered = sorted(movements, key=lambda one: one.first_after)
-    return [
-        Message(
-            "scan.between_frames",
-            "between {first} and {second}",
-            first=names[one.last_before],
-            second=names[one.first_after],
-        )
-        for one in ordered
-    ]

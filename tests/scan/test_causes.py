@@ -10,9 +10,12 @@ from core.calibrate.change import displaced_fan, laser_of
 from core.findings.finding import Weight
 from core.findings.proof import ScanFacts
 from core.findings.table import FINDINGS
+from core.scan.between_frames import Between
 from core.scan.causes import Normal, choose, compare_causes, note_on_causes
+from core.scan.fan_watch import FanRest
 from core.scan.first_cause import Cause, Suspect
 from core.scan.reconstruct import reconstruct
+from core.scan.standstill import StillPart
 from core.simulate.effects.warming import Warming
 from core.simulate.scenario import Scenario
 from tests.scan.centreline_scan import ExactScan
@@ -36,7 +39,7 @@ def compared(scan, *, seed=1, fan=None, movements=None):
 
 @pytest.mark.parametrize("seed", [1, pytest.param(2, marks=pytest.mark.accuracy)])
 def test_nothing_explains_a_scan_that_is_in_order(still, seed):
-    solved, causes = compared(still, seed=seed, movements=(12,))
+    solved, causes = compared(still, seed=seed, movements=(Between(11, 12),))
     assert causes == ()
     assert not replace(solved, movements=()).asks_for_cause
 
@@ -65,7 +68,7 @@ def test_a_drift_is_no_movement_and_a_movement_no_drift(changes, suspect):
     features, rig = features_of(replace(BLOCK, **changes))
     solved = reconstruct(features, rig.camera, rig.fan)
     assert solved.asks_for_cause
-    seen = replace(solved, movements=(AT,))
+    seen = replace(solved, movements=(Between(AT - 1, AT),))
     first, *others = compare_causes(features, seen, rig.camera, rig.fan, (), rig_changes(rig.camera, rig.fan))
     assert first.suspect == suspect and first.share > 0.5
     assert sum(one.share for one in others) < first.share / 4
@@ -74,7 +77,7 @@ def test_a_drift_is_no_movement_and_a_movement_no_drift(changes, suspect):
 @pytest.mark.parametrize("axis", [0, 2])  # a turn about the other one changes no crossing
 def test_a_laser_that_turned_is_the_first_cause(still, axis):
     turned = displaced_fan(still.rig.fan, np.radians(0.2) * np.eye(3)[axis], laser_of(still.rig.fan))
-    _, causes = compared(still, fan=turned, movements=(12,))
+    _, causes = compared(still, fan=turned, movements=(Between(11, 12),))
     assert causes[0].suspect == Suspect.RIG_CHANGED and causes[0].share > 0.5
 
 
@@ -149,3 +152,14 @@ def test_a_cause_is_grave_only_beside_the_fact_that_takes_the_proof_away(suspect
 
     assert weight(ScanFacts(**{fact: True})) == Weight.GRAVE
     assert weight(ScanFacts(**{fact: False}, collapsed=True)) == Weight.CAUTION
+
+
+def test_a_movement_has_the_same_two_frames_in_every_sentence():
+    """Frames without a stripe between them tell nothing of when: crossings know it no better."""
+    names, seen = [f"frame{n:02d}" for n in range(20)], Between(9, 12)
+    (likely,) = note_on_causes((Cause(Suspect.MOVED, 0.9, 6, 1e-9),), ScanFacts(moved=True), (seen,), names)
+    (of_crossings,) = StillPart(np.ones(4, dtype=bool), (seen,), known=True).note(names, 10)
+    at_rest = np.arange(20) < 12
+    (of_light,) = FanRest(at_rest, (seen,), 0.3, 0.1, 1.0, frames=20, stretches=9).note(names, 10)
+    for note in (likely, of_crossings, of_light):
+        assert "between frame09 and frame12" in str(note)

@@ -55,7 +55,7 @@ def test_a_shift_of_three_tenths_is_found_and_so_is_its_frame(kind, frame):
     found = movement(exact(kind, (frame, ASIDE)), 1)
     assert found is not None
     assert found.score > 2 * SCORE_LIMIT
-    assert (found.last_before, found.first_after) == (frame - 1, frame)
+    assert found.when == (frame - 1, frame)
 
 
 @pytest.mark.accuracy
