@@ -11,9 +11,10 @@ ROWS = (
             "picture.",
             "{n} files in {folder} are of a kind that is not read ({names}): convert them to png, a film picture by "
             "picture."),
-    Finding("set.log_not_read", Weight.CAUTION, Effect.NONE,
+    Finding("set.log_not_read", Weight.CAUTION, Effect.WIDENS_U,
             "The log of a recording is damaged ({reason}): when and by which camera it was made, and whether frames "
-            "were lost, is not known. Remove the file if it cannot be mended; pictures do not need it."),
+            "were lost, is not known, and U may be larger by what may have changed since the calibration. Remove the "
+            "file if it cannot be mended; pictures do not need it."),
     # Camera, light and surface
     Finding("scan.no_reference", Weight.CAUTION, Effect.NONE,
             "There is no scan/reference.png: the darkest third of {n} frames stands for it, pixel by pixel."),

@@ -26,6 +26,7 @@ WIDENED = {
     "fan.bow_or_bend": Cause.BENT_LIGHT,
     "fan.lines_bent": Cause.BENT_LIGHT,
     "fan.lines_wavy": Cause.BENT_LIGHT,
+    "set.log_not_read": Cause.CHANGE_ASSUMED,
     "scan.stability_assumed": Cause.CHANGE_ASSUMED,
     "scan.stability_more_than_stated": Cause.CHANGE_CHARTED,
     "scan.warmer_than_usual": Cause.CHANGE_ASSUMED,

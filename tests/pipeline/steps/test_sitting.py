@@ -17,6 +17,8 @@ from core.files.recording.recording_log import LOG, LoggedFrame, RecordingLog
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity, read_rig, rig_to_toml
 from core.files.results.run_file import read_run
+from core.findings.finding import Effect
+from core.findings.table import FINDINGS
 from core.pipeline.steps.check_step import assumed_stability, since_calibration
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
@@ -93,6 +95,16 @@ def test_frames_of_another_sitting_leave_open_what_may_have_changed(work, at, ca
 
 def test_frames_without_a_log_are_of_no_sitting_whatever_their_files_dates_are(work):
     assert sources(change_of(work)) == {"assumed change"}
+
+
+def test_a_damaged_log_widens_what_is_assumed_and_says_so(work):
+    log(scan_folder(work), TEN)
+    with (scan_folder(work) / LOG).open("a") as damaged:
+        damaged.write("f.png,one,0,0\n")
+    change = change_of(work)
+    assert sources(change) == {"assumed change"} and not change.checked
+    (note,) = work.recording_set.log("scan").notes
+    assert FINDINGS[note.code].effect == Effect.WIDENS_U and "U may be larger" in str(note)
 
 
 def test_frames_that_show_a_change_are_of_no_sitting_whatever_their_log_says(work):
