@@ -60,6 +60,10 @@ LIKE_SIZE = 0.25
 """Pairs whose smaller face has this share of the largest one's area could as well be meant."""
 
 
+class OneFace(OwnCause):
+    """Only one face is in view: the fan's own points of the cloud lie on no other."""
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class FacePair:
     """Indices into the cloud of the points on the face nearer to the camera and on the other.
@@ -129,7 +133,7 @@ def _no_pair(cloud: Cloud, faces: list[FoundPlane], tolerance: float) -> InputEr
     if len(faces) < 2:
         own = cloud.points[cloud.sweep <= FAN]
         on = [np.abs(own @ face.normal - face.distance) < 2 * tolerance for face in faces if len(own)]
-        kind = OwnCause if on and np.mean(on) > ONE_PLANE else InputError
+        kind = OneFace if on and np.mean(on) > ONE_PLANE else InputError
         return kind(
             plural_message(
                 "gauge.too_few_faces",

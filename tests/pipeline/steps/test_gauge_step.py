@@ -8,15 +8,23 @@ import pytest
 from core.errors import InputError, OwnCause
 from core.findings.proof import ScanFacts
 from core.findings.table import note_of
+from core.inspect.faces import OneFace
 from core.messages import Message
 from core.pipeline.steps import gauge_step
 from core.scan.first_cause import Cause, Suspect, cause_first
 from core.scan.surface.cloud import FAN
 
 
+class Line(SimpleNamespace):
+    """A piece of the fan's light."""
+
+    def __len__(self):
+        return len(self.saturated)
+
+
 def scan_of(*, unsure_share=0.0, saturated=0, faults=(), sweeps=36, facts=None):
     """What is kept of a scan of which so many of 100 of the fan's points are saturated."""
-    line = SimpleNamespace(saturated=np.arange(100) < saturated)
+    line = Line(saturated=np.arange(100) < saturated)
     features = SimpleNamespace(fan=[line], frames=[], notes=(), faults=faults)
     facts = ScanFacts() if facts is None else facts
     return SimpleNamespace(
@@ -120,3 +128,17 @@ def test_lines_that_bend_are_named_before_unsure_points_though_they_explain_litt
     little = [Cause(Suspect.BENT_LINES, 0.2, 1, 1e-4)]
     refused = told_first(scan_of(unsure_share=0.8), no_faces(), bends=bends, causes=little)
     assert refused.code == "gauge.bent_and_no_faces"
+
+
+@pytest.mark.parametrize(("kept", "code"), [(10, "scan.pictures_at_fault"), (90, "gauge.too_few_faces")])
+def test_faults_of_pictures_are_named_before_a_face_that_is_only_missing(kept, code):
+    """Where the σ cut left most of the fan's own points out, those left do not show that nothing else is in view."""
+    scan = scan_of(faults=(note_of("scan.compressed", grey=2.8, noise=0.4),))
+    missing = Message("gauge.too_few_faces", "only 1 plane face is in view")
+    with (
+        pytest.raises(InputError) as refused,
+        cause_first(lambda: gauge_step.reasons_of_no_faces(scan, cloud_with(), None)),
+        gauge_step.one_face_seen(scan, SimpleNamespace(sweep=np.array([0] * 50 + [FAN] * kept))),
+    ):
+        raise OneFace(missing, where="point cloud", todo=Message("x.y", "let the fan cross both faces"))
+    assert refused.value.code == code and "only 1 plane face is in view" in str(refused.value)
