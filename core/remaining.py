@@ -181,6 +181,7 @@ class Remaining:
         self._place = -1
         self._stage, self._begun, self._shown = "", clock(), 0.0
         self._done, self._done_s, self._reports = 0.0, 0.0, 1  # of this stage: share reported last, when, of how many
+        self._step = 0.0  # the largest share that one report of this stage told; 0 before the first
         self._pace = _Pace()
         self.seconds: dict[str, float] = {}
 
@@ -190,11 +191,12 @@ class Remaining:
             self._close()
             self._stage, self._begun = stage, self._clock()
             self._place = max(self._place, self._places.get(stage, -1))
-            self._done, self._done_s = 0.0, 0.0
+            self._done, self._done_s, self._step = 0.0, 0.0, 0.0
             self._pace.begin_stage()
         self._reports = max(total, 1)
         if total and done / total != self._done:
             self._learn(done / total)
+            self._step = max(self._step, done / total - self._done)
             self._done, self._done_s = done / total, self._in_stage
 
     def finish(self) -> dict[str, float]:
@@ -224,7 +226,7 @@ class Remaining:
                 return None
             here = max(self._done_s * (1 / self._done - 1) - waited, 0.0) if told else 0.0
             return here + self._to_come(1.0)
-        expected = usual * self._pace.here * min(1 / self._reports, 1 - self._done)
+        expected = usual * self._pace.here * min(self._step or 1.0, 1 - self._done)  # a report may tell many pieces
         late = waited / expected if waited > expected > 0 else 1.0
         here = max(usual * (1 - self._done) * self._pace.here * late - waited, 0.0)
         return here + self._to_come(late)

@@ -186,6 +186,31 @@ def test_later_stages_count_as_much_slower_as_the_others_are_now():
     assert remaining.share == pytest.approx(0.25, rel=0.1)
 
 
+@pytest.mark.parametrize("slower", [0.3, 1.0, 3.0])
+def test_a_stage_that_tells_thousands_of_pieces_at_once_is_not_taken_to_be_late(slower):
+    """A cloud of a million points is written in fifty batches: a report is a fiftieth of the stage."""
+    clock, points, batches = Clock(), 1_000_000, 50
+    remaining = Remaining({"write": 10.0, "read": 10.0}, clock=clock)
+    for batch in range(batches):
+        for moment in range(4):
+            clock.now = 10.0 * slower * (batch + moment / 4) / batches
+            remaining.tell("write", batch * points // batches, points)
+            assert batch < 5 or remaining.left == pytest.approx(20.0 * slower - clock.now, rel=0.3)
+            assert batch > 0 or remaining.left == pytest.approx(20.0 - clock.now, rel=0.1), "nothing is known yet"
+
+
+def test_batches_that_stay_away_are_late():
+    clock = Clock()
+    remaining = Remaining({"write": 10.0}, clock=clock)
+    for batch in range(6):
+        clock.now = float(batch)
+        remaining.tell("write", batch * 100, 1000)
+    in_time = remaining.left
+    clock.now = 10.0
+    assert in_time == pytest.approx(5.0, rel=0.1)
+    assert remaining.left > 3 * in_time
+
+
 def test_what_the_stages_took_is_kept_for_the_next_time():
     clock = Clock()
     remaining = Remaining({}, clock=clock)
