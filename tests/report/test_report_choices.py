@@ -190,6 +190,7 @@ def test_the_view_left_in_3d_is_a_figure_and_names_what_a_cut_hid(content, quick
     for data, said in ((whole, False), (half, True)):
         assert "The surface as it was left in 3D" in words(data)
         assert ("What the cut hid is not drawn." in words(data)) is said
+    assert "as above" not in words(whole), "the section above is hidden"
     assert whole != half
     away = replace(LEFT, focal=np.array([5000.0, 0, 600]))
     for one in (replace(content, hidden=hidden, view=None), replace(content, hidden=hidden, view=away)):

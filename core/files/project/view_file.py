@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field
 
 from core.errors import InputError
-from core.files.atomic import write_text
+from core.files.atomic import remove, write_text
 from core.files.complaints import checked
 from core.files.json_text import to_json
 from core.files.reading import read_json
@@ -27,6 +27,7 @@ _Rows3 = Annotated[list[Row3], Field(min_length=3, max_length=3)]
 
 
 class _ViewFile(ResultFile):
+    recording: str
     axes: _Rows3
     focal: Row3
     half_height_mm: LengthAbove0
@@ -34,10 +35,11 @@ class _ViewFile(ResultFile):
     hidden: _Rows2 | None = None
 
 
-def view_text(view: SeenFrom) -> str:
-    """A view as its file has it."""
+def view_text(view: SeenFrom, recording: str) -> str:
+    """A view of the surface measured from a recording, as its file has it."""
     return to_json(
         {
+            "recording": recording,
             "axes": view.axes.round(DIGITS) + 0.0,
             "focal": view.focal.round(DIGITS) + 0.0,
             "half_height_mm": round(view.half_height_mm, DIGITS),
@@ -47,22 +49,41 @@ def view_text(view: SeenFrom) -> str:
     )
 
 
-def write_view(folder: Path, view: SeenFrom) -> None:
-    """Keep the view in the folder of a project; InputError if it cannot be written."""
-    write_text(folder / NAME, view_text(view), sync=False)  # what is lost with it is one look
+def write_view(folder: Path, view: SeenFrom, recording: str) -> None:
+    """Keep the view in the folder of a project; InputError if it cannot be written.
+
+    `recording` is that of the scan that is seen, as the project names it.
+    """
+    write_text(folder / NAME, view_text(view, recording), sync=False)  # what is lost with it is one look
+
+
+def drop_view(folder: Path) -> None:
+    """Keep none any more; InputError if the file cannot be removed."""
+    remove(folder / NAME)
+
+
+def drop_view_of_another(folder: Path, recording: str) -> None:
+    """Keep none that is not of the scan of this recording: another part is seen; InputError as `drop_view`."""
+    file = _read(folder)
+    if file is None or file.recording != recording:
+        drop_view(folder)
 
 
 def read_view(folder: Path) -> SeenFrom | None:
     """The view kept there; None if there is none, or none that can be shown: a report is made without it."""
-    path = folder / NAME
-    try:
-        file = checked(_ViewFile, read_json(path), path) if path.exists() else None
-    except InputError:
-        return None
+    file = _read(folder)
     if file is None:
         return None
     axes = np.array(file.axes)
-    if np.abs(axes @ axes.T - np.eye(3)).max() > SQUARE:
+    if np.abs(axes @ axes.T - np.eye(3)).max() > SQUARE or np.linalg.det(axes) < 0:
         return None
     hidden = None if file.hidden is None else np.array(file.hidden)
     return SeenFrom(axes, np.array(file.focal), file.half_height_mm, file.aspect, hidden)
+
+
+def _read(folder: Path) -> _ViewFile | None:
+    path = folder / NAME
+    try:
+        return checked(_ViewFile, read_json(path), path) if path.exists() else None
+    except InputError:
+        return None

@@ -15,6 +15,7 @@ from core.files.project.calibration_store import StoredCalibration, put_in_place
 from core.files.project.data import Project
 from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
+from core.files.project.view_file import drop_view_of_another
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.results.run_file import write_run
 from core.files.step_graph import FILES
@@ -79,6 +80,7 @@ def measure_scan(
         measured = scan_step(work, settings, progress, watch, earlier, seen=seen, beside=beside)
         found = gauge_if_possible(work, progress)
         notes, calibration_id = work.record().all_notes, work.calibration().id
+    drop_view_of_another(folder, project.sources.scan)
     return ScanSummary(
         frames=measured.scan.frames,
         points=len(measured.scan.cloud),

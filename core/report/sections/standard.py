@@ -142,19 +142,24 @@ def _surface(look: ReportLook, content: ReportContent, pictures: Pictures, limit
         what = words("Mesh of {n} triangles", n=grouped(drawn))
     else:
         what = words("Cloud of {n} points", n=grouped(len(content.cloud)))
-    above = (
-        words("height above the lower face")
-        if content.gauge
-        else words("height above the farthest points, towards the camera")
-    )
     caption = words(
         "{what}, in parallel projection, shaded; colour: {height}. Dimensions are those of the measured area. Blank: "
         "not measured.",
         what=what,
-        height=above,
+        height=_height(look, content),
     )
     body = [Picture(pictures["surface"], limits.picture_scale), look.text(caption, "caption")]
     return [section(look, "surface", "Measured surface", body)]
+
+
+def _height(look: ReportLook, content: ReportContent) -> str:
+    """What the colours of the surface are."""
+    words = look.words
+    return (
+        words("height above the lower face")
+        if content.gauge
+        else words("height above the farthest points, towards the camera")
+    )
 
 
 def _view(look: ReportLook, content: ReportContent, pictures: Pictures, limits: Limits) -> list[OnOnePage]:
@@ -162,7 +167,10 @@ def _view(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         return []
     words = look.words
     cut = "" if content.view is None or content.view.hidden is None else words("What the cut hid is not drawn.")
-    caption = words("From where the surface was looked at last, in parallel projection; colour: height as above.")
+    caption = words(
+        "From where the surface was looked at last, in parallel projection; colour: {height}.",
+        height=_height(look, content),
+    )
     body = [Picture(pictures["view"], limits.picture_scale), look.text(f"{caption} {cut}".strip(), "caption")]
     return [section(look, "view", "The surface as it was left in 3D", body)]
 

@@ -11,8 +11,10 @@ import pytest
 
 from core.errors import Cancelled, InputError
 from core.files.project.folder import results_folder
+from core.files.project.view_file import read_view, write_view
 from core.files.recording.rig import GaugeSpec
 from core.image.exclusion import Exclusion
+from core.inspect.shown.seen_from import SeenFrom
 from core.pipeline.project.measuring import measure_gauge, measure_scan
 from core.pipeline.project.report import make_report
 from core.pipeline.project.results import load_results
@@ -100,12 +102,14 @@ def test_a_new_measurement_replaces_all_old_results_but_the_report(done, tmp_pat
     (results / ".new").mkdir()
     (results / ".new" / "cloud.ply").write_bytes(b"of a run that was killed")
     before = contents(results)
+    write_view(folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5), "the scan of another part")
     left_out = frozenset({"scan/frame0000.png", "scan/frame0003.png"})
     summary = measure_scan(folder, done.with_options(excluded=left_out))
     after = contents(results)
     assert after["cloud.ply"] != before["cloud.ply"]
     assert after["gauge.json"] != before["gauge.json"]
     assert after["report.pdf"] == report
+    assert read_view(folder) is None, "it was of another part"
     assert set(after) == set(before) - {".new/cloud.ply"}
     assert {frame.name for frame in summary.frames if frame.reason == Exclusion.BY_HAND.message} == left_out
 

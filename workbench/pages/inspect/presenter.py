@@ -14,7 +14,7 @@ from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.folder import source_folder
 from core.files.project.keys import finished
-from core.files.project.view_file import write_view
+from core.files.project.view_file import drop_view, write_view
 from core.inspect.result_list import ResultList
 from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.view_frame import ViewFrame, part_frame, shown_frame
@@ -66,6 +66,8 @@ class InspectPresenter(StepPresenter):
         self.picture = RELIEF
         self.seen_from: Callable[[], SeenFrom | None] = lambda: None
         """Asked for the view in 3D when the page is left; None: the surface is seen as at first."""
+        self.is_put_back: Callable[[], bool] = lambda: False
+        """Asked then as well: whether it was seen from elsewhere before."""
         self.outlining = ""
         self._measuring: Task | None = None
         self._unmeasurable = ""
@@ -351,10 +353,13 @@ class InspectPresenter(StepPresenter):
     def _keep_view(self) -> None:
         """Keep how the surface was left, which the report shows; it is no edit, and nothing that was measured."""
         view, folder = self.seen_from(), self.model.folder
-        if view is None or folder is None or self.model.is_read_only:
+        if folder is None or self.model.is_read_only or not self.scan.is_of_project:
             return
         try:
-            write_view(folder, view)
+            if view is not None:
+                write_view(folder, view, self.scan.recording)
+            elif self.is_put_back():
+                drop_view(folder)
         except InputError as error:
             self.bench.notices.failed(error)
 

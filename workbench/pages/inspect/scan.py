@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from PySide6.QtCore import QObject, Signal
@@ -35,6 +36,8 @@ class InspectScan(QObject):
         self.serial = 0
         self.problem = ""
         self.is_new = False
+        self._folder: Path | None = None
+        """The project that the scan shown is of."""
         self._shown: Key = ()
         self._asked: Key = ()
 
@@ -42,6 +45,11 @@ class InspectScan(QObject):
     def stale(self) -> bool:
         """Whether something newer than what is shown is being read."""
         return self._shown != self._asked
+
+    @property
+    def is_of_project(self) -> bool:
+        """Whether the scan among the project's results is shown, not an earlier one or that of another project."""
+        return self.view is not None and not self.stale and self._folder == self._model.folder
 
     @property
     def gauge(self) -> GaugeResult | None:
@@ -132,6 +140,6 @@ class InspectScan(QObject):
 
     def _take(self, view: InspectionView) -> None:
         self.is_new = self._shown[:1] != self._asked[:1]
-        self._shown = self._asked
+        self._shown, self._folder = self._asked, self._model.folder
         self.view, self.serial = view, self.serial + 1
         self.changed.emit()

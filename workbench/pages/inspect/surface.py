@@ -165,7 +165,7 @@ class SurfaceTab(QWidget):
         self._nominal_tip = self.nominal.toolTip()
         self.nominal.setChecked(presenter.bench.settings.nominal_shown)
         self.nominal.triggered.connect(self._choose_nominal)
-        presenter.seen_from = self.scene.seen_from
+        presenter.seen_from, presenter.is_put_back = self.scene.seen_from, self.scene.is_put_back
         presenter.measured.connect(self._show_faces)
         presenter.comparison.made.connect(self._show_compared)
 

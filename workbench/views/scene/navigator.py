@@ -48,17 +48,26 @@ class Navigator(QObject):
         self.orientation = FROM_CAMERA
         self._name = "iso"
         self._touched = False
+        self._ever_turned = False
+        """Whether the user has chosen a view of this scene, whatever it is seen from now."""
         self._extent, self._box = 0.0, np.empty((0, 3))
         self.camera = SceneCamera.looking(*FROM_CAMERA.direction("iso"), np.zeros(3), 500.0)
 
     @property
     def is_turned_by_hand(self) -> bool:
         """Whether the user chose the view: it is not the one that a scene is first seen from."""
-        return self._touched or self._name != "iso"
+        first, _ = self.orientation.direction("iso")
+        return self._touched or self._name != "iso" or not np.allclose(self.camera.axes[2], first)
+
+    @property
+    def is_put_back(self) -> bool:
+        """Whether the user chose a view and went back to the one that a scene is first seen from."""
+        return self._ever_turned and not self.is_turned_by_hand
 
     def view(self, name: str) -> None:
         """Look from a standard direction and fit."""
         self._name, self._touched = name, False
+        self._ever_turned = self._ever_turned or name != "iso"
         points = self._scene.to_fit()
         if name == "camera":
             seen = from_origin(points, self._size(), self.pyramid)
@@ -111,6 +120,7 @@ class Navigator(QObject):
     def forget(self) -> None:
         """The scene is empty: what comes next is fitted, seen from a corner."""
         self._extent, self._touched, self._name, self.pyramid = 0.0, False, "iso", None
+        self._ever_turned = False
 
     def set_frame(self, frame: ViewFrame) -> None:
         """Another up and north; a standard view is taken again, one turned by hand turned with them."""
@@ -153,7 +163,7 @@ class Navigator(QObject):
             self.camera = replace(self.camera, distance=self.camera.distance * room)
 
     def _move(self, camera: SceneCamera) -> None:
-        self.camera, self._touched = camera, True
+        self.camera, self._touched, self._ever_turned = camera, True, True
         self.moved.emit()
 
 

@@ -468,6 +468,10 @@ class SceneView(QWidget):
         beyond = None if hidden is None else np.array([hidden.place, hidden.towards])
         return SeenFrom(camera.axes, camera.focal, camera.half_height, width / height, beyond)
 
+    def is_put_back(self) -> bool:
+        """Whether the user chose a view of what is shown, and went back to that of at first."""
+        return not self._scene.empty and self._navigator.is_put_back
+
     def save_picture(self, path: Path) -> None:
         """Write the picture as PNG; InputError if the file cannot be written."""
         buffer = QBuffer()

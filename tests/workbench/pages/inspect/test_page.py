@@ -18,8 +18,9 @@ from PySide6.QtWidgets import (
 
 from core.errors import InputError
 from core.files.project.keys import finished
-from core.files.project.view_file import read_view
+from core.files.project.view_file import read_view, write_view
 from core.inspect.results import PairCandidate
+from core.inspect.shown.seen_from import SeenFrom
 from core.inspect.shown.shown_scan import NextPair
 from core.messages import plain
 from tests.workbench.cells import shown as text_in
@@ -748,3 +749,45 @@ def test_the_view_left_in_3d_is_kept_for_the_report_and_is_no_edit(page, qtbot):
     np.testing.assert_allclose(kept.focal, camera.focal, atol=1e-6)
     assert kept.half_height_mm == pytest.approx(camera.half_height, abs=1e-5)
     assert presenter.model.undo_stack.count() == 0
+
+
+def test_a_view_that_was_given_up_is_not_kept_for_the_report(page, qtbot):
+    presenter, scene = page.presenter, page.surface.scene
+    folder = presenter.model.folder
+    scan(page, qtbot)
+    qtbot.waitUntil(lambda: scene.state().points > 0)
+    scene.orbit(40, 15)
+    presenter.left()
+    scene.fit()
+    presenter.left()
+    kept = read_view(folder)
+    assert kept is not None, "turned, and fitted"
+    np.testing.assert_allclose(kept.half_height_mm, scene._navigator.camera.half_height, atol=1e-5)
+    scene.view("iso")
+    presenter.left()
+    assert read_view(folder) is None, "it is seen as at first again"
+    presenter.left()
+
+
+def test_a_view_of_before_is_kept_where_nobody_turned_the_surface_since(page, qtbot):
+    presenter, scene = page.presenter, page.surface.scene
+    write_view(presenter.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5), presenter.scan.recording)
+    presenter.left()
+    assert read_view(presenter.model.folder) is not None, "nothing is shown"
+    presenter.entered()
+    scan(page, qtbot)
+    qtbot.waitUntil(lambda: scene.state().points > 0)
+    presenter.left()
+    assert read_view(presenter.model.folder) is not None
+
+
+def test_the_view_of_one_project_is_not_kept_in_the_next(page, qtbot, tmp_path):
+    presenter, scene = page.presenter, page.surface.scene
+    scan(page, qtbot)
+    qtbot.waitUntil(lambda: scene.state().points > 0)
+    scene.orbit(40, 15)
+    presenter.model.opened.disconnect(presenter._opened)
+    presenter.model.opened.connect(presenter.left)  # as the window does, before the presenter forgets the last one
+    presenter.model.create(tmp_path / "another", cases.project())
+    assert presenter.model.folder == tmp_path / "another"
+    assert read_view(tmp_path / "another") is None

@@ -201,7 +201,8 @@ def test_sections_with_nothing_to_print_say_why(report: ReportPresenter) -> None
     plan = InspectionPlan((nominal, profile))
     report.model.edit("features", replace(report.project, inspection=plan))
     assert report.model.folder is not None
-    write_view(report.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5))
+    write_view(report.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5), "")
+    report.entered()
     assert not any(report.empty_section(name) for name, _, _ in report.sections())
 
 
@@ -234,7 +235,7 @@ def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhi
     elif what == "view":
         assert shown.model.folder is not None
         shown.left()
-        write_view(shown.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5))
+        write_view(shown.model.folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5), "")
         shown.entered()
     elif what == "lines":
         shown.model.edit("lines", replace(shown.project, rig=replace(shown.project.rig, lines=2)))
