@@ -42,7 +42,9 @@ class ReportPresenter(StepPresenter):
         self._drawn: tuple[Any, ...] | None = None
         self._making: Task | None = None
         self._visible = False
-        self.model.results_changed.connect(self._refresh_preview)
+        self.view = ""
+        """Numbers of how the surface was left in 3D; "" where it was not turned. Read where it may be another."""
+        self.model.results_changed.connect(self._results_changed)
 
     # ---- what is in it
 
@@ -67,12 +69,6 @@ class ReportPresenter(StepPresenter):
             "budget": "" if "gauge" in self.model.results else tr("The thickness has not been measured yet."),
         }
         return nothing.get(name, "")
-
-    @property
-    def view(self) -> str:
-        """Numbers of how the surface was left in 3D; "" where it was never turned."""
-        view = None if self.model.folder is None else read_view(self.model.folder)
-        return "" if view is None else view.words
 
     def choose_section(self, name: str, shown: bool) -> None:
         """Put a section in or leave it out; undoable."""
@@ -285,6 +281,7 @@ class ReportPresenter(StepPresenter):
     def opened(self) -> None:
         self.pages, self.problem = (), ""
         self._drawing = self._drawn = None
+        self._read_view()
         self._refresh_preview()
 
     def project_changed(self, before: Project, after: Project) -> None:
@@ -292,10 +289,19 @@ class ReportPresenter(StepPresenter):
 
     def entered(self) -> None:
         self._visible = True
+        self._read_view()
         self._refresh_preview()
 
     def left(self) -> None:
         self._visible = False
+
+    def _results_changed(self) -> None:
+        self._read_view()
+        self._refresh_preview()
+
+    def _read_view(self) -> None:
+        view = None if self.model.folder is None else read_view(self.model.folder)
+        self.view = "" if view is None else view.words
 
     def _printed(self) -> tuple[Any, ...]:
         """Everything the pages say something of."""

@@ -14,7 +14,7 @@ from PySide6.QtWidgets import QApplication
 from core.errors import InputError
 from core.files.project.data import KeptStudy, Project, Repeat, new_project
 from core.files.project.keys import finished
-from core.files.project.view_file import write_view
+from core.files.project.view_file import read_view, write_view
 from core.files.results.export_list import EXPORTS
 from core.inspect.plan.feature_spec import Deviation, FeatureSpec, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
@@ -24,6 +24,7 @@ from core.translations import PSEUDO, language
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.language import choose
+from workbench.pages.report import presenter
 from workbench.pages.report.presenter import ReportPresenter
 from workbench.pages.report.stage import Stage
 from workbench.step_state import State
@@ -244,6 +245,26 @@ def test_everything_that_is_printed_is_drawn_anew_and_the_old_pages_stay_meanwhi
     state = [(shown.drawing, len(shown.pages))]
     drawing.done(PAGES * 2)
     assert [*state, (shown.drawing, len(shown.pages))] == [(True, 1), (False, 2)]
+
+
+def test_the_view_left_in_3d_is_not_read_at_each_key(shown: ReportPresenter, monkeypatch: pytest.MonkeyPatch) -> None:
+    folder, read = shown.model.folder, []
+    assert folder is not None
+
+    def reading(folder: Path) -> SeenFrom | None:
+        read.append(folder)
+        return read_view(folder)
+
+    write_view(folder, SeenFrom(np.eye(3), np.zeros(3), 50.0, 1.5), "")
+    monkeypatch.setattr(presenter, "read_view", reading)
+    with_info(shown, notes="A remark")
+    with_info(shown, notes="A remark of more words")
+    assert shown.empty_section("view") and len(read) == 0
+    measured(shown, "scan")  # another part may have been measured
+    assert (shown.empty_section("view"), len(read)) == ("", 1)
+    shown.left()
+    shown.entered()
+    assert len(read) == 2
 
 
 def test_what_is_not_printed_is_not_drawn(shown: ReportPresenter) -> None:
