@@ -27,6 +27,7 @@ class CameraPage(CalibrationPage):
 
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(presenter, parent)
+        self._counted: tuple[int, int] | None = None
         self.picture, self.coverage = ViewTab(presenter, self._next_action), CoverageTab(presenter)
         self.residuals, self.expected = ResidualTab(presenter), ExpectedTab(presenter)
         self.history = CameraHistoryTab(presenter)
@@ -53,6 +54,9 @@ class CameraPage(CalibrationPage):
 
     def refresh(self) -> None:
         self.model.refresh()
+        counted, self._counted = self._counted, self.presenter.counted
+        if self._counted not in (None, counted):
+            self.tabs.setCurrentWidget(self.picture)  # the right count is offered there
         super().refresh()
 
     def _error(self, view: Any) -> float:

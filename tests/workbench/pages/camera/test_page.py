@@ -343,6 +343,20 @@ def test_a_wrong_count_is_taken_over_from_the_pictures_of_a_folder(page, camera_
     qtbot.waitUntil(lambda: not offered.isHidden())
 
 
+def test_the_offer_of_the_right_count_is_in_sight_whatever_was_looked_at(solved, camera_bench, qtbot):
+    page, p, offered = solved, solved.presenter, solved.picture.image.offered
+    cast(HandLane, camera_bench.measuring).answers[jobs.FIND_VIEWS] = shown_other_board
+    p.target.set_target("columns", 18)
+    page.tabs.setCurrentIndex(2)
+    page.refreshing.at_once()
+    assert page.tabs.currentIndex() == 2, "nothing is offered before the pictures are searched"
+    qtbot.mouseClick(page.card.buttons["run"], LEFT)
+    qtbot.waitUntil(offered.isVisible)
+    page.tabs.setCurrentIndex(2)
+    page.refreshing.at_once()
+    assert page.tabs.currentIndex() == 2, "who wants to look elsewhere may"
+
+
 def test_a_wrong_count_is_taken_over_while_live_and_looked_for_at_once(page, lane, qtbot):
     p, offered = page.presenter, page.picture.image.offered
     p.target.set_target("columns", 18)
