@@ -59,10 +59,15 @@ def compare_stored(
 
 
 def _shows(calibration: CameraCalibration, target: Target) -> bool:
-    """Whether the views are of this target: every point seen is one of its points."""
-    points = {tuple(point) for point in np.round(target.points, 4).tolist()}
-    seen = (tuple(point) for view in calibration.views for point in np.round(view.view.points, 4).tolist())
-    return all(point in points for point in seen)
+    """Whether the views are of this target: every point seen is one of its points, and they reach all its ends.
+
+    A larger board has the points of a smaller one, too.
+    """
+    points = np.round(target.points, 4)
+    seen = np.concatenate([np.round(view.view.points, 4) for view in calibration.views])
+    if not {*map(tuple, seen.tolist())} <= {*map(tuple, points.tolist())}:
+        return False
+    return bool((seen.min(axis=0) == points.min(axis=0)).all() and (seen.max(axis=0) == points.max(axis=0)).all())
 
 
 def _plain(settings: object) -> object:

@@ -11,6 +11,7 @@ from core.image.exclusion import Exclusion
 from core.image.stripes.stripe import StripeSettings
 from core.messages import plain
 from core.pipeline.project.calibration import accept_planes, find_poses, found_poses, solve_poses, solve_views
+from core.pipeline.project.camera_history import recall_camera
 from core.pipeline.project.details import show_pose
 from core.pipeline.project.measuring import measure_scan
 from tests.simulated import contents, copy_of
@@ -100,3 +101,12 @@ def test_a_fan_of_a_minority_of_poses_is_kept_only_by_a_decision(done, tmp_path)
     with pytest.raises(InputError, match="only 2 of"):
         accept_planes(folder, done.project, few, done.poses)
     assert accept_planes(folder, done.project, few, done.poses, accept_few_poses=True)
+
+
+@pytest.mark.parametrize(("columns", "rows", "is_of"), [(0, 0, True), (1, 0, False), (0, 1, False), (-1, 0, False)])
+def test_an_accepted_camera_is_of_a_board_of_its_own_size_only(done, columns, rows, is_of):
+    """The corners of a board are among those of every larger one."""
+    board = done.project.rig.camera_target
+    target = replace(board, columns=board.columns + columns, rows=board.rows + rows)
+    recalled = recall_camera(done.folder, replace(done.project, rig=replace(done.project.rig, camera_target=target)))
+    assert (recalled.seen is not None) is is_of
