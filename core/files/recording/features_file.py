@@ -115,8 +115,8 @@ def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> No
     write_arrays(path, arrays)
 
 
-def read_poses(path: Path, planes_id: str) -> tuple[PoseFeatures, ...]:
-    """Read planes.npz; nothing if it is not there or belongs to another fan than `planes_id`.
+def read_poses(path: Path, *planes_ids: str) -> tuple[PoseFeatures, ...]:
+    """Read planes.npz; nothing if it is not there or belongs to another fan than those of `planes_ids`.
 
     Raises
     ------
@@ -126,7 +126,7 @@ def read_poses(path: Path, planes_id: str) -> tuple[PoseFeatures, ...]:
     if not path.exists():
         return ()
     arrays = read_arrays(path, _POSES, todo=_PLANES_TODO)
-    if str(arrays["fan_id"]) != planes_id:
+    if str(arrays["fan_id"]) not in planes_ids:
         return ()
     with unpacking(path, todo=_PLANES_TODO):
         return _unpacked(arrays)

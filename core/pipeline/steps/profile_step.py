@@ -28,7 +28,7 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.messages import Message, as_json
 from core.pipeline.steps.check_step import assumed_stability, check_of_the_day, since_calibration
 from core.pipeline.steps.gauge_step import PART, of_part
-from core.pipeline.steps.scan.judgement import SectionChange, facts_of, section_change
+from core.pipeline.steps.scan.judgement import SectionChange, facts_of, kept_poses_of, section_since
 from core.pipeline.steps.scan.pictures import feature_options, taken_frames
 from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check_size
@@ -101,7 +101,7 @@ def profile_step(
         check = check_of_the_day(log.pictures, calibration, settings.check_stripe, progress)
         logged = found.log("scan")
         change = since_calibration(found, calibration, check, logged.taken(found.frames))
-        section = SectionChange(surely=None)
+        section, kept = SectionChange(surely=None), kept_poses_of(work, calibration)
         seen: list[Profiles] = []
         steps, pictures = [], []
         stream = log.pictures.stream(paths)
@@ -117,7 +117,7 @@ def profile_step(
                 pictures.append(PictureStep.none(index, name, error.what))
                 continue
             if not seen:  # pictures of one place have one speckle: together they tell no more than the first
-                section = section_change(work, calibration, profiles.pieces)
+                section = section_since(calibration, kept.stripes, profiles.pieces)
                 common = CommonErrors.of_fan(camera, fan, (*change.deviations, *section.deviations))
                 finer = is_too_fine_for_mosaic(profiles.pieces, picture)
                 facts = facts_of(facts_of_the_day(work, calibration), change, section, finer)
@@ -143,6 +143,7 @@ def profile_step(
             *channel.notes("scan"),
             *change.notes,
             *section.notes,
+            *kept.notes,
             *gauge.notes,
             *_assumed(fan.lines, tilt, shown),
             *assumed_stability(found, change, calibration.fan),

@@ -11,7 +11,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
-from core.pipeline.steps.scan.judgement import judged_scan, section_change, solved_scan
+from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
@@ -72,13 +72,16 @@ def scan_step(
         )
         logged = recording_set.log("scan")
         change_by = partial(since_calibration, recording_set, calibration, checked, logged.taken(recording_set.frames))
-        section = section_change(work, calibration, features.fan)
-        facts = facts_of_the_day(work, calibration)
-        judgement = judged_scan(solved, change_by, facts, section, settings.method, progress)
+        kept = kept_poses_of(work, calibration)
+        section, of_the_day = (
+            section_since(calibration, kept.stripes, features.fan),
+            facts_of_the_day(work, calibration),
+        )
+        judgement = judged_scan(solved, change_by, of_the_day, section, settings.method, progress)
         cloud, mesh = shaped()
         cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
-        light = part_light(solved, plates_of(work, calibration))
-        notes = notes_on_scan(work, calibration, solved, judgement, light, logged)
+        light = part_light(solved, plates_of(kept, calibration))
+        notes = notes_on_scan(work, calibration, solved, judgement, kept, light, logged)
         scan = replace(solved.scan, cloud=cloud, notes=notes)
         log.frames.extend(scan.frames)
         log.notes.extend(notes)

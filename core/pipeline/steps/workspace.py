@@ -55,6 +55,11 @@ class Calibration:
         return f"{camera_id(self.camera.camera)}-{planes_id(self.fan.fan)}"
 
 
+def planes_of(calibration_id: str) -> str:
+    """The id of the fan within that of a calibration."""
+    return calibration_id.rpartition("-")[2]
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class StepLog:
     """What a step leaves for run.json, and where it puts its results until all of them are there."""

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 
 from core.calibrate.change import P_TOLD, Change, Evidence, changes
 from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviations
+from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
 from core.files.results.planes_file import planes_id
 from core.findings.proof import ScanFacts, notes_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
-from core.pipeline.steps.workspace import Calibration, Workspace
+from core.pipeline.steps.workspace import Calibration, Workspace, planes_of
 from core.progress import Progress, silent
 from core.scan.bend_correction import reconstruct_twice
 from core.scan.causes import compare_causes, note_on_causes
@@ -182,13 +183,34 @@ def facts_of(
     )
 
 
-def section_change(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> SectionChange:
-    """How the stripes of the `fan` are skewed otherwise than in the poses of its calibration that are kept."""
+@dataclass(frozen=True, eq=False, slots=True)
+class KeptPoses:
+    """What the poses of a fan's calibration showed, none where that is not kept, and a note if its file is damaged."""
+
+    poses: tuple[PoseFeatures, ...] = ()
+    notes: tuple[Message, ...] = ()
+
+    @property
+    def stripes(self) -> list[Sequence[Centreline]]:
+        """Those on the plate of each pose."""
+        return [pose.centrelines for pose in self.poses]
+
+
+def kept_poses_of(work: Workspace, calibration: Calibration) -> KeptPoses:
+    """What is kept of the poses of the fan's calibration; those of a re-adjusted fan are from before that."""
     try:
-        poses = read_poses(work.path("poses"), planes_id(calibration.fan.fan))
-    except InputError:  # the notes on focus tell
-        poses = ()
-    return section_since(calibration, [pose.centrelines for pose in poses], fan)
+        return KeptPoses(read_poses(work.path("poses"), *_planes_of(calibration)))
+    except InputError as error:  # a scan needs nothing of them
+        return KeptPoses(notes=(error.message,))
+
+
+def _planes_of(calibration: Calibration) -> Iterator[str]:
+    """The id of the fan, and of each that it was re-adjusted from: a folder of results keeps the poses of the first."""
+    yield planes_id(calibration.fan.fan)
+    known = calibration.fan.readjusted
+    while known is not None:
+        yield planes_of(known.of)
+        known = known.before
 
 
 def section_since(

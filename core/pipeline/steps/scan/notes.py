@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from core.errors import InputError
-from core.files.recording.features_file import read_poses
 from core.files.recording.recording_log import FolderLog
-from core.files.results.planes_file import planes_id
 from core.findings.table import gravest_first, note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Field, Message
 from core.pipeline.steps.check_step import assumed_stability
-from core.pipeline.steps.scan.judgement import Judgement, Solved
+from core.pipeline.steps.scan.judgement import Judgement, KeptPoses, Solved
 from core.pipeline.steps.scan.part_light import notes_on_part_light
 from core.pipeline.steps.workspace import Calibration, Workspace
 from core.scan.features.frames import left_out_notes
@@ -26,16 +23,21 @@ def notes_on_scan(
     calibration: Calibration,
     solved: Solved,
     judgement: Judgement,
+    kept: KeptPoses,
     light: PartLight | None,
     log: FolderLog,
 ) -> tuple[Message, ...]:
-    """All that is told of a scan, the gravest first; `light` is that on its part, `log` that of its recording."""
+    """All that is told of a scan, the gravest first.
+
+    `kept` are the poses of its calibration, `light` is that on its part, `log` that of its recording.
+    """
     recording_set, readjusted, scan = work.recording_set, calibration.fan.readjusted, solved.scan
     return gravest_first(
         (
             *judgement.notes,
             *left_out_notes(scan.frames),
-            *notes_on_focus(work, calibration, solved.features.fan),
+            *kept.notes,
+            *notes_on_focus(kept, solved.features.fan),
             *notes_on_part_light(light),
             *(() if readjusted is None else (readjusted.note,)),
             *scan.notes,
@@ -48,14 +50,9 @@ def notes_on_scan(
     )
 
 
-def notes_on_focus(work: Workspace, calibration: Calibration, fan: Sequence[Centreline]) -> tuple[Message, ...]:
+def notes_on_focus(kept: KeptPoses, fan: Sequence[Centreline]) -> tuple[Message, ...]:
     """A note if the fan's stripes are much wider than in its calibration; none where its poses are not kept."""
-    of = calibration.fan
-    try:
-        poses = read_poses(work.path("poses"), planes_id(of.fan) if of.readjusted is None else of.readjusted.of)
-    except InputError as error:  # the scan needs nothing of them
-        return (error.message,)
-    then, now = stripe_width(line for pose in poses for line in pose.centrelines), stripe_width(fan)
+    then, now = stripe_width(line for lines in kept.stripes for line in lines), stripe_width(fan)
     note = None if then is None or now is None else other_focus(now, then)
     return () if note is None else (note,)
 

@@ -6,15 +6,12 @@ from collections.abc import Iterator, Sequence
 
 import numpy as np
 
-from core.errors import InputError
-from core.files.recording.features_file import read_poses
-from core.files.results.planes_file import planes_id
 from core.findings.table import note_of
 from core.image.stripes.centreline import Centreline
 from core.messages import Message
 from core.model import Pose
-from core.pipeline.steps.scan.judgement import Solved
-from core.pipeline.steps.workspace import Calibration, Workspace
+from core.pipeline.steps.scan.judgement import KeptPoses, Solved
+from core.pipeline.steps.workspace import Calibration
 from core.scan.network.read_out import row_planes
 from core.scan.part_light import PartLight, blur_of, light_on_part
 
@@ -31,13 +28,12 @@ def part_light(solved: Solved, plates: Plates) -> PartLight | None:
     return light_on_part(_stripes(solved), scan.cloud, camera, blur)
 
 
-def plates_of(work: Workspace, calibration: Calibration) -> Plates:
-    """The plates of a calibration whose pictures' features are kept; none where they cannot be known any more."""
-    try:
-        kept = read_poses(work.path("poses"), planes_id(calibration.fan.fan))
-    except InputError:  # the notes on focus tell
-        return ()
-    stripes = {pose.name: pose.centrelines for pose in kept}
+def plates_of(kept: KeptPoses, calibration: Calibration) -> Plates:
+    """The plates of a calibration whose pictures' features are `kept`.
+
+    A re-adjustment moves the fan by tenths of a mm: how wide a lens at half a metre blurs stripes is as before.
+    """
+    stripes = {pose.name: pose.centrelines for pose in kept.poses}
     return [(pose.pose, stripes[pose.name]) for pose in calibration.fan.poses if pose.used and pose.name in stripes]
 
 
