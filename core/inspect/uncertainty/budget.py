@@ -122,7 +122,7 @@ def effects(
         mine = np.array([one == source for one in calibrations])
         found.append(_effect(source, gains, sources.common[:, mine], shared=True))
     if sources.behind.any():
-        found.append(_effect(Cause.SKEWED_LIGHT, gains, sources.behind[:, None] / 2, shared=True))
+        found.append(_effect(Cause.SKEWED_LIGHT, gains, sources.behind / 2, shared=True))
     if sources.below.any():
         found.append(_effect(sources.cause_below, gains, sources.below, shared=False))
     return tuple(found)

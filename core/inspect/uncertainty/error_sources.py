@@ -53,7 +53,7 @@ class Sources:
     sweeps: Array  # (J, 3S)
     common: Array  # (J, K)
     form: Array  # (J, patches)
-    behind: Array  # (J,) what skewed light may do at most to the misfits, in mm; 0 where none is seen
+    behind: Array  # (J, 2) what skewed light, and what wider stripes, may do at most, in mm; 0 where none is seen
     below: Array  # (J, faces) what light from below each face does that nothing excludes
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
     assumed: NDArray[np.bool_]  # (K,) common errors whose size nothing has measured
@@ -137,7 +137,7 @@ class Sources:
             sweeps,
             _of_common(cloud, direction, mean, errors, count),
             form,
-            mean(of_noise * seen.farthest_mm[part]),
+            np.column_stack([mean(of_noise * mm[part]) for mm in (seen.skewed_mm, seen.wider_mm)]),
             (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
             np.array([source in LAWLESS for source in errors.sources], dtype=np.bool_),
             np.array([source in UNMEASURED for source in errors.sources], dtype=np.bool_),

@@ -153,10 +153,14 @@ NOTHING_SEEN = MeanSkewness(0.0, math.inf, 0.0)
 class LightBelow:
     """How far behind each face its light comes from on the mean, in mm of depth.
 
-    `farthest_mm` at most, where that is surely so; `unseen_mm` its standard uncertainty where it is not.
+    `skewed_mm` at most where sections are surely skewed, `wider_mm` at most where they are surely wider than on the
+    table; `unseen_mm` its standard uncertainty where they are neither. Faces that are skewed alike may be skewed by the
+    laser's beam, and differ in what width says all the same: so each counts by itself, as if independent. What both of
+    them say is contained, up to 1.4 times.
     """
 
-    farthest_mm: Array
+    skewed_mm: Array
+    wider_mm: Array
     unseen_mm: Array
 
 
@@ -169,23 +173,24 @@ def light_below(
     sections are on it than on the table: a face off the table is behind by what that may do, unless an offset that was
     measured holds it.
     """
-    farthest = farthest_mean_mm(cloud, part, direction)
+    skewed = farthest_mean_mm(cloud, part, direction)
+    wider = np.zeros(len(skewed))
     if light is not None and light.behind_mm and (stated is None or stated.offset_mm is None):
         off_table = np.abs(cloud.points @ light.table - 1) > ON_PART_MM * np.linalg.norm(light.table)
-        for number in np.flatnonzero(farthest == 0):
-            mine = part == number
-            if mine.any() and np.median(off_table[mine]) > 0:
-                farthest[number] = light.behind_mm
-    unseen = np.zeros(len(farthest))
+        for face in range(len(wider)):
+            on_it = part == face
+            if on_it.any() and np.median(off_table[on_it]) > 0:
+                wider[face] = light.behind_mm
+    unseen = np.zeros(len(skewed))
     chance = 0.0 if stated is None else stated.lets_light_in
     if chance:
-        for number in np.flatnonzero(farthest == 0):
+        for number in np.flatnonzero((skewed == 0) & (wider == 0)):
             mine = np.flatnonzero((part == number) & (cloud.sweep >= 0))
             flat = len(mine) and np.ptp(direction[mine], axis=0).max() == 0
             seen = mean_skewness(cloud.skewness[mine], cloud.sweep[mine]) if flat else NOTHING_SEEN
             spread = float(np.median(cloud.spread_mm[mine])) if flat else 1.0
             unseen[number] = unseen_mean_mm(seen, spread, chance)
-    return LightBelow(farthest, unseen)
+    return LightBelow(skewed, wider, unseen)
 
 
 def doubts_of_light(budget: Sequence[Contribution]) -> Doubts:

@@ -12,6 +12,7 @@ from core.inspect.gauge import measure_gauge
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.part import Part
 from core.inspect.uncertainty.skewed_light import (
+    MEAN_OF_CUMULANT,
     MeanSkewness,
     doubts_of_light,
     farthest_mean_mm,
@@ -88,6 +89,27 @@ def test_stripes_that_are_wider_on_the_part_are_in_the_uncertainty_and_prove_not
     assert Cause.SKEWED_LIGHT not in {row.source for row in of_master.budget}
     matt = measured(light=replace(wide, behind_mm=0.0))
     assert (matt.thickness_mm, matt.u_mm) == (plain.thickness_mm, plain.u_mm)
+
+
+@pytest.mark.parametrize(("upper", "lower"), [(0.05, 0.0), (-0.05, 0.0), (0.05, 0.05)], ids=["up", "down", "alike"])
+def test_sections_that_are_skewed_a_little_hide_nothing_of_their_width(scan, upper, lower):
+    """Surely skewed by 0.05 mm of depth and wider by 0.3 mm: U holds the larger, whatever the sign."""
+    cloud = scan.measure(np.random.default_rng(3))
+    noise = np.random.default_rng(4).normal(0, 1e-4, int(cloud.sweep.max()) + 2)
+    skewness = np.where(scan.upper, upper, lower) + noise[np.maximum(cloud.sweep, -1)]
+    spread = 0.05 / (MEAN_OF_CUMULANT * np.cbrt(0.05))
+    cloud = replace(cloud, skewness=skewness, spread_mm=np.full(len(cloud), spread))
+    wide = PartLight(0.2, 0.01, 0.3, table_of(cloud, scan))
+
+    def row_of(light):
+        errors = replace(scan.errors(common=scan.common_errors(camera=1.0004, fan=1.0002)), light=light)
+        regions = FacePair(np.flatnonzero(scan.upper), np.flatnonzero(~scan.upper))
+        gauge = measure_gauge(cloud, errors=errors, regions=regions, nominal_mm=50.0, tolerance_mm=5.0)
+        return max((2 * row.u_mm for row in gauge.budget if row.source == Cause.SKEWED_LIGHT), default=0.0)
+
+    by_skewness, by_both = row_of(None), row_of(wide)
+    assert by_skewness == pytest.approx(0.05 if upper != lower else 0.0, abs=0.015)
+    assert 0.95 * 0.3 < by_both < 1.2 * 0.3
 
 
 def table_of(cloud, scan):
