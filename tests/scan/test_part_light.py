@@ -6,7 +6,7 @@ import pytest
 from core.image.stripes.centreline import Centreline
 from core.model import Fan, Pose
 from core.scan.footprint import footprint
-from core.scan.part_light import Blur, blur_of, light_on_part
+from core.scan.part_light import ENOUGH_POINTS, Blur, blur_of, light_on_part
 from core.scan.surface.cloud import Cloud
 from core.simulate.effects.setup import Setup
 from core.simulate.rig import paper_rig
@@ -86,6 +86,15 @@ def test_a_part_that_fills_the_picture_is_not_taken_for_the_table():
     light = light_on_part(seen, few, CAMERA, BLUR)
     assert np.allclose(light.table, TABLE, atol=1e-7)
     assert light.surely
+
+
+def test_of_very_many_points_some_tell_where_table_and_part_lie():
+    seen, cloud = scan(0.15)
+    many = cloud.select(np.arange(5 * len(cloud)) % len(cloud))
+    assert len(many) > 2 * ENOUGH_POINTS
+    few, all_ = (light_on_part(seen, one, CAMERA, BLUR) for one in (cloud, many))
+    assert all_.behind_mm == pytest.approx(few.behind_mm, rel=1e-6)
+    assert np.allclose(all_.table, TABLE, atol=1e-7)
 
 
 def test_nothing_is_said_of_a_table_alone_nor_by_few_frames():
