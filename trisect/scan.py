@@ -30,7 +30,7 @@ from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
 from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_features, read_reference
 from core.scan.features.overexposure import notes_on_shine
-from core.scan.features.picture_faults import faults_of, is_too_fine_for_mosaic
+from core.scan.features.picture_faults import faults_of, mosaic_of
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.scan.part_light import PartLight
 from core.scan.reconstruct import ReconstructOptions
@@ -220,9 +220,9 @@ def solve_scan(
     named = ((_name(number), picture) for number, picture in enumerate(pictures))
     features = extract_features(seen, named, len(pictures), looking, progress)
     sweeps = [piece for frame in features.frames for piece in frame.centrelines]
-    faults = (*faults_of(seen), *notes_on_shine(features.fan, sweeps, seen.full_scale))
-    finer = is_too_fine_for_mosaic(seen.fan, seen.base)
-    features = replace(features, faults=(*faults, *features.faults), too_fine_for_mosaic=finer)
+    mosaic = mosaic_of(seen.fan, seen.base)
+    faults = (*faults_of(seen, mosaic), *notes_on_shine(features.fan, sweeps, seen.full_scale), *features.faults)
+    features = replace(features, faults=faults, too_fine_for_mosaic=mosaic.too_fine)
     calibration = Calibration(camera, fan)
     solved = solved_scan(features, calibration, solving, progress)
     change_by = partial(_change_by_scan, calibration, stability)

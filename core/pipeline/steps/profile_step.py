@@ -35,7 +35,7 @@ from core.pipeline.steps.workspace import Calibration, StepLog, Workspace, check
 from core.progress import Progress, silent
 from core.scan.common_errors import CommonErrors
 from core.scan.features.frames import FrameRecord
-from core.scan.features.picture_faults import is_too_fine_for_mosaic
+from core.scan.features.picture_faults import mosaic_of
 from core.scan.profiles import Profiles, read_profiles
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangulate import join
@@ -119,7 +119,7 @@ def profile_step(
             if not seen:  # pictures of one place have one speckle: together they tell no more than the first
                 section = section_since(calibration, kept.stripes, profiles.pieces)
                 common = CommonErrors.of_fan(camera, fan, (*change.deviations, *section.deviations))
-                finer = is_too_fine_for_mosaic(profiles.pieces, picture)
+                finer = mosaic_of(profiles.pieces, picture).too_fine
                 facts = facts_of(facts_of_the_day(work, calibration), change, section, finer)
             seen.append(profiles)
             errors = replace(PointErrors.of_fan(profiles.pieces, common), part=part, facts=facts)

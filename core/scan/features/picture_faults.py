@@ -7,6 +7,7 @@ moved. So a scan that is refused is told first what its pictures show.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
@@ -37,17 +38,31 @@ _CLEAR = 10.0
 """Heights of a stripe's points over their noise from which on they count."""
 
 
-def faults_of(reference: ReferenceFeatures) -> tuple[Message, ...]:
-    """Notes on the faults that the picture with the fan alone shows."""
-    return (*notes_on_compression(reference.noise), *_notes_on_mosaic(reference), *_notes_on_speckle(reference))
+class Mosaic(NamedTuple):
+    """How a colour mosaic behind a picture shows in the fan's stripes.
 
-
-def is_too_fine_for_mosaic(fan: Sequence[Centreline], base: Picture) -> bool:
-    """Whether the fan's stripes in the picture `base` (H, W) are too fine for the tiles of a colour mosaic behind it.
-
-    Raw, or interpolated to stripes below FINEST_PX.
+    `width_px` is their width if they are below FINEST_PX and it is interpolated, `uneven` the least and most light of
+    the fan by its sites' place in the tiles if it is raw; None if not.
     """
-    return _width_if_interpolated(fan, base) is not None or _unevenness(fan, base) is not None
+
+    width_px: float | None
+    uneven: tuple[float, float] | None
+
+    @property
+    def too_fine(self) -> bool:
+        """Whether the stripes are too fine for its tiles."""
+        return self.width_px is not None or self.uneven is not None
+
+
+def mosaic_of(fan: Sequence[Centreline], base: Picture) -> Mosaic:
+    """How the mosaic behind the picture `base` (H, W) shows in the fan's stripes."""
+    return Mosaic(_width_if_interpolated(fan, base), _unevenness(fan, base))
+
+
+def faults_of(reference: ReferenceFeatures, mosaic: Mosaic) -> tuple[Message, ...]:
+    """Notes on the faults that the picture with the fan alone shows, of which one is its `mosaic`."""
+    noise = reference.noise
+    return (*notes_on_compression(noise), *_notes_on_mosaic(mosaic, noise), *_notes_on_speckle(reference))
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
@@ -57,15 +72,13 @@ def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
     return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)
 
 
-def _notes_on_mosaic(reference: ReferenceFeatures) -> Iterator[Message]:
+def _notes_on_mosaic(mosaic: Mosaic, noise: NoiseModel) -> Iterator[Message]:
     """Notes on pictures interpolated from a colour mosaic that is too coarse for the stripes, and on raw ones."""
-    width = _width_if_interpolated(reference.fan, reference.base)
-    uneven = _unevenness(reference.fan, reference.base)
-    if width is not None:
-        yield note_of("scan.colour_mosaic", width_px=width, least_px=FINEST_PX)
-    if uneven is not None:
-        least, most = uneven
-        yield note_of("scan.raw_mosaic", times=most / max(least, reference.noise.read_grey))
+    if mosaic.width_px is not None:
+        yield note_of("scan.colour_mosaic", width_px=mosaic.width_px, least_px=FINEST_PX)
+    if mosaic.uneven is not None:
+        least, most = mosaic.uneven
+        yield note_of("scan.raw_mosaic", times=most / max(least, noise.read_grey))
 
 
 def _width_if_interpolated(fan: Sequence[Centreline], base: Picture) -> float | None:

@@ -15,7 +15,7 @@ from core.pipeline.steps.scan import judgement
 from core.scan.features.picture_faults import (
     at_fault,
     faults_of,
-    is_too_fine_for_mosaic,
+    mosaic_of,
     notes_on_compression,
 )
 from core.scan.features.reference import read_reference
@@ -29,9 +29,13 @@ RIG = Scenario(scale=0.25, frames=4, seed=1)
 MOVED = Message("scan.moved_too_much", "object or camera moved")
 
 
+def faults_in(seen):
+    return faults_of(seen, mosaic_of(seen.fan, seen.base))
+
+
 def told_of(scenario):
     picture = to_grey(scan_of(scenario)[0].reference(), "red")
-    return [note.code for note in faults_of(read_reference(picture))]
+    return [note.code for note in faults_in(read_reference(picture))]
 
 
 @pytest.mark.parametrize(
@@ -54,13 +58,13 @@ def test_strong_speckle_is_told_and_no_other(scenario, codes):
 def test_lines_without_light_have_no_speckle():
     seen = read_reference(to_grey(scan_of(RIG)[0].reference(), "red"))
     dark = tuple(replace(piece, strength=np.zeros(len(piece))) for piece in seen.fan)
-    assert faults_of(replace(seen, fan=dark)) == ()
-    assert faults_of(replace(seen, fan=(seen.fan[0].select(slice(0, 1)),))) == ()
+    assert faults_in(replace(seen, fan=dark)) == ()
+    assert faults_in(replace(seen, fan=(seen.fan[0].select(slice(0, 1)),))) == ()
 
 
 def is_too_fine(scenario):
     seen = read_reference(to_grey(scan_of(scenario)[0].reference(), "red"))
-    return is_too_fine_for_mosaic(seen.fan, seen.base)
+    return mosaic_of(seen.fan, seen.base).too_fine
 
 
 @pytest.mark.parametrize("seed", [1, *(pytest.param(seed, marks=pytest.mark.accuracy) for seed in (2, 3))])
@@ -71,7 +75,7 @@ def test_a_raw_mosaic_of_which_nobody_told_is_told(scale, seed):
     assert not is_too_fine(replace(raw, sensor=SensorEffects()))
     assert RAW not in told_of(replace(raw, sensor=SensorEffects()))
     picture = scan_of(raw)[0].reference()
-    assert RAW not in [note.code for note in faults_of(read_reference(sites_of("RGGB", "red").of(picture)))]
+    assert RAW not in [note.code for note in faults_in(read_reference(sites_of("RGGB", "red").of(picture)))]
 
 
 @pytest.mark.accuracy

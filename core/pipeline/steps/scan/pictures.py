@@ -39,7 +39,7 @@ from core.scan.features.extraction import (
     saturated_pixels,
 )
 from core.scan.features.overexposure import notes_on_shine
-from core.scan.features.picture_faults import faults_of, is_too_fine_for_mosaic
+from core.scan.features.picture_faults import faults_of, mosaic_of
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.second_process import SecondProcess
 from core.stage_times import StageTimes
@@ -120,10 +120,10 @@ def look_at_scan(
     of_width = told_width_notes(settings.stripe, lines.stripes)
     sweeps = [piece for frame in lines.frames for piece in frame.centrelines]
     shine = notes_on_shine(lines.fan, sweeps, factor * reference.full_scale)
-    notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference), *shine)
+    mosaic = mosaic_of(reference.fan, reference.base)
+    notes, faults = (*channel.notes("scan"), *note, *of_width), (*faults_of(reference, mosaic), *shine)
     path = found.reference or taken_frames(found, settings)[0]
-    finer = is_too_fine_for_mosaic(reference.fan, reference.base)
-    return SeenScan(lines, averaged, notes, faults, finer, path, pictures.hashes, pictures.channels)
+    return SeenScan(lines, averaged, notes, faults, mosaic.too_fine, path, pictures.hashes, pictures.channels)
 
 
 def begin_looking(
