@@ -13,7 +13,7 @@ up to a fifth where the fan is faint; their product stays. What a gain other tha
 
 A fan that lies aside, as that of a rig that warms, is darker where it was brightest, too: by (shift / σ)² / 2 of its
 light. But the light of its whole width stays. So a gain counts only where the sums over tiles of the picture have
-changed, too.
+changed, too; the background's change is taken off there as well.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ class FanLight:
     strong
         (S,) which of those tell the gain; none where too few do.
     under
-        (S,) level of the background there over its median in the picture.
+        (K,) level of the background at all of them over its median in the picture.
     least
         Smallest gain − 1 that matters: it leaves of the strong light what matters to no stripe.
     tile, sums
@@ -84,21 +84,21 @@ class FanLight:
         sums[sums < np.median(sums[sums > 0])] = 0.0
         least = LEAST_CHANGE * full_scale / float(np.median(light[strong]))
         strong = strong[:: -(-len(strong) // MOST)]
-        under = bare.ravel()[pixels[strong]] / max(float(np.median(bare[::SPARSE, ::SPARSE])), 1.0)
-        return cls(pixels, light, strong, under.astype(np.float32), least, tile, sums)
+        under = bare.ravel()[pixels] / np.float32(max(float(np.median(bare[::SPARSE, ::SPARSE])), 1.0))
+        return cls(pixels, light, strong, under, least, tile, sums)
 
     def gain(self, difference: Difference) -> float:
         """Factor of a frame's light over the reference's, given frame − reference (H, W); 1: as good as the same."""
         if not len(self.strong):
             return 1.0
         of_room = _middle_mean(difference[::SPARSE, ::SPARSE].ravel())
-        of_fan = difference.ravel()[self.pixels[self.strong]] - of_room * self.under
-        change = _middle_mean(of_fan / self.light[self.strong])
+        of_fan = difference.ravel()[self.pixels] - np.float32(of_room) * self.under
+        change = _middle_mean(of_fan[self.strong] / self.light[self.strong])
         gain = 1 + change
         if abs(change) < self.least or not 1 / LARGEST_GAIN < gain < LARGEST_GAIN:
             return 1.0
         bright = self.sums > 0
-        summed = np.bincount(self.tile, difference.ravel()[self.pixels] - of_room, len(self.sums))
+        summed = np.bincount(self.tile, of_fan, len(self.sums))
         return gain if _middle_mean(summed[bright] / self.sums[bright]) / change >= AS_WELL else 1.0
 
     def take_off(self, difference: Difference, gain: float) -> None:

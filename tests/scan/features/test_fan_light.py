@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from core.scan.features.extraction import extract_features
+from core.scan.features.fan_light import FanLight
 from core.scan.features.reference import read_reference
 from core.simulate.effects.warming import Warming
 from core.simulate.recording import scan_of
@@ -40,6 +41,17 @@ def test_the_gain_of_each_picture_is_found_by_the_fan(scan):
     for (_, picture), gain in zip(frames, GAINS, strict=True):
         found = seen.of_lasers(exposed(picture, gain)).gain
         assert found - 1 == pytest.approx(gain - 1, abs=0.01 + 0.2 * abs(gain - 1))
+
+
+@pytest.mark.parametrize("at", [60.0, 320.0, 580.0])
+@pytest.mark.parametrize("gain", [0.8, 1.0, 1.2])
+def test_a_gain_is_found_however_the_background_rises_across_the_picture(at, gain):
+    """From 12 to 24 grey levels, under a faint fan: the background's change is no light of the fan, nor lacks it."""
+    u = np.broadcast_to(np.arange(640.0), (400, 640))
+    bare = (12 * (1 + u / 639)).astype(np.float32)
+    base = bare + np.where(np.abs(u - at) < 8, 15 * np.exp(-(((u - at) / 2) ** 2) / 2), 0).astype(np.float32)
+    found = FanLight.of(base, bare, 255.0).gain(np.float32(gain - 1) * base)
+    assert found == pytest.approx(gain, abs=0.02)
 
 
 @pytest.mark.parametrize("shift_px", [0.3, 0.8])
