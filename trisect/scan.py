@@ -23,7 +23,7 @@ from core.messages import Message
 from core.model import Camera, LightPlane
 from core.pipeline.steps.scan.judgement import judged_scan, section_since, solved_scan
 from core.pipeline.steps.scan.notes import assumed_shutter
-from core.pipeline.steps.scan.part_light import notes_on_part_light, part_light
+from core.pipeline.steps.scan.part_light import Plates, notes_on_part_light, part_light
 from core.pipeline.steps.validity import facts_of_calibration
 from core.pipeline.steps.workspace import Calibration
 from core.progress import Progress, silent
@@ -232,9 +232,15 @@ def solve_scan(
     cloud = replace(cloud, sigma_common=judgement.common.sigma(cloud))
     notes = (*solved.scan.notes, *assumed_shutter(solving.row_time_us, solved.scan))
     scan = replace(solved.scan, cloud=cloud, notes=notes)
-    light = part_light(solved, [(p.pose, lines) for p, lines in zip(fan.poses, fan.stripes, strict=False) if p.used])
+    light = part_light(solved, _plates(fan))
     notes = gravest_first((*judgement.notes, *notes, *notes_on_part_light(light)))
     return SolvedScan(cloud, scan, solved.features, judgement.common, judgement.facts, notes, light)
+
+
+def _plates(fan: FanCalibration) -> Plates:
+    """The plates of a calibration with the stripes on them; none of one read from a file, which holds no stripes."""
+    seen = zip(fan.poses, fan.stripes, strict=bool(fan.stripes))
+    return [(pose.pose, stripes) for pose, stripes in seen if pose.used]
 
 
 def _change_by_scan(

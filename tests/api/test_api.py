@@ -18,6 +18,7 @@ from core.model import Camera
 from core.scan.method import Method
 from tests.simulated import CUT
 from trisect import promised
+from trisect.scan import _plates
 
 PROMISED = {
     "read_picture", "extract_stripes", "find_crossings", "find_target", "calibrate_camera", "calibrate_fan",
@@ -135,6 +136,14 @@ def test_a_scan_is_judged_by_the_method_it_is_solved_by(calibrated, monkeypatch)
     with pytest.raises(trisect.Cancelled):
         trisect.solve_scan(frames, camera, fan, reference=reference, options=options)
     assert judged_by == [Method.THREE_CROSSINGS]
+
+
+def test_plates_whose_stripes_do_not_fit_them_are_no_plates(calibrated):
+    fan = calibrated[2]
+    assert len(_plates(fan)) == sum(pose.used for pose in fan.poses) > 0
+    assert _plates(replace(fan, stripes=())) == [], "of a file, which holds no stripes"
+    with pytest.raises(ValueError, match="shorter"):
+        _plates(replace(fan, stripes=fan.stripes[:-1]))
 
 
 def test_a_target_whose_size_nobody_states_proves_nothing(calibrated):
