@@ -62,6 +62,32 @@ def scan(below_mm2=0.0, setup=None, seed=1):
     return seen, Cloud(at, CAMERA.project(at), nothing, nothing, index, index, np.zeros((count, 3)))
 
 
+def traced(uv, sheet, surface, thick_mm=0.01):
+    """Px between the two edges of a sheet so thick where they meet the surface, square to the stripe, for each mm."""
+    away, found = 1 / np.linalg.norm(sheet), []
+    normal = sheet * away
+    along = np.cross(normal, surface)
+    along /= np.linalg.norm(along)
+    for ray in CAMERA.rays(uv):
+        middle = ray / (ray @ sheet)
+        of_planes = np.stack([normal, surface, along])
+        edges = [np.linalg.solve(of_planes, [away + s * thick_mm / 2, 1.0, along @ middle]) for s in (-1, 1)]
+        first, second, back, on = CAMERA.project(np.stack([*edges, middle - 0.05 * along, middle + 0.05 * along]))
+        stripe_u, stripe_v = (on - back) / np.linalg.norm(on - back)
+        found.append(abs((second - first) @ [-stripe_v, stripe_u]) / thick_mm)
+    return np.array(found)
+
+
+@pytest.mark.parametrize("setup", [Setup(), Setup(hand_aside=1.7)], ids=["as usual", "oblique sheets"])
+@pytest.mark.parametrize("surface", [TABLE, TOP, plane(TOP_MM, (0.9, 0.4))], ids=["table", "part", "steep"])
+def test_a_sheet_is_as_wide_as_rays_traced_to_its_two_edges_say(setup, surface):
+    rng = np.random.default_rng(2)
+    for sheet in hand_sweeps(RIG, SweepRange((0.0, 0.0, TOP_MM), 50.0), 6, rng, setup):
+        pi = sheet.plane.pi
+        uv = stripe(pi, surface, rng=rng)[0].uv[::10]
+        assert footprint(uv, pi, surface, CAMERA) == pytest.approx(traced(uv, pi, surface), rel=1e-3)
+
+
 @pytest.mark.parametrize("setup", [Setup(), Setup(hand_aside=1.7)], ids=["as usual", "oblique sheets"])
 @pytest.mark.parametrize("seed", range(1, 6))
 def test_of_a_matt_part_nothing_is_said_however_the_sheets_meet_it(setup, seed):
