@@ -96,10 +96,10 @@ ROWS = (
             "nothing is proved: spray the part matt, or compare it with a master of its material.",
             fact="light_skewed"),
     Finding("scan.stripes_wider_on_part", Weight.CAUTION, Effect.WIDENS_U,
-            "Stripes on the part are ({percent:.1f} ± {error:.1f}) % wider than on the table, besides what distance, "
-            "slant and focus do: light from below the surface? It may come from {behind_mm:.2f} mm behind it. U "
-            "of what is measured on the part contains that, unless an offset measured on a master is stated, which "
-            "does. Spray the part matt, or compare it with a master of its material."),
+            "Stripes on the part are ({percent:.1f} ± {U:.1f}) % wider than on the table, besides what distance, "
+            "slant and focus do: light from below the surface? It may come from {behind_mm:.2f} mm behind it. U of "
+            "what is measured on the part contains that; where it is stated how far below its surface the part is "
+            "seen, that does instead. Spray the part matt, or compare it with a master of its material."),
     Finding("inspection.rig_not_checked", Weight.CAUTION, Effect.WIDENS_U,
             "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
             "Take 3 pictures of the plane target in the fan (1 min)."),

@@ -5,8 +5,9 @@ import pytest
 
 from core.image.stripes.centreline import Centreline
 from core.model import Fan, Pose
+from core.pipeline.steps.scan.part_light import notes_on_part_light
 from core.scan.footprint import footprint
-from core.scan.part_light import ENOUGH_POINTS, Blur, blur_of, light_on_part
+from core.scan.part_light import ENOUGH_POINTS, Blur, PartLight, blur_of, light_on_part
 from core.scan.surface.cloud import Cloud
 from core.simulate.effects.setup import Setup
 from core.simulate.rig import paper_rig
@@ -151,3 +152,9 @@ def test_the_calibration_s_plates_tell_the_blur_and_how_it_changes_with_depth():
     assert found.at(depths) == pytest.approx(BLUR.at(depths), abs=0.1)
     assert found.per_mm == pytest.approx(BLUR.per_mm, abs=0.002)
     assert blur_of(plates[:2], CAMERA, fan) is None
+
+
+def test_the_note_tells_twice_the_standard_error_as_u():
+    (note,) = notes_on_part_light(PartLight(0.2, 0.01, 0.3, TABLE))
+    assert note.values["U"] == pytest.approx(2.0)
+    assert "(20.0 ± 2.0) % wider" in str(note)

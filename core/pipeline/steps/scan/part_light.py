@@ -45,7 +45,7 @@ def notes_on_part_light(light: PartLight | None) -> tuple[Message, ...]:
         note_of(
             "scan.stripes_wider_on_part",
             percent=100 * light.wider,
-            error=200 * light.error,
+            U=200 * light.error,
             behind_mm=light.behind_mm,
         ),
     )
