@@ -54,9 +54,10 @@ OTHERS = (
             "is stated.", fact="size_unconfirmed"),
     Finding("validity.scan_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the scan, of another program or an earlier version, does not say whether anything moved or "
-            "changed, its frames are too few to tell, or the stripes of the laser planes' calibration are not kept or "
-            "too short to show it: nothing measured proves conformity. Measure the scan again, with more frames, or "
-            "first calibrate the laser planes again.", fact="scan_unknown"),
+            "changed, or whether the stripes are too fine for a colour mosaic, its frames are too few to tell, or the "
+            "stripes of the laser planes' calibration are not kept or too short to show it: nothing measured proves "
+            "conformity. Measure the scan again, with more frames, or first calibrate the laser planes again.",
+            fact="scan_unknown"),
     Finding("validity.planes_unknown", Weight.GRAVE, Effect.NO_PROOF,
             "The file of the camera's or the laser planes' calibration, of another program or an earlier version, does "
             "not say whether it had settled and fitted its target, or not all that U is made of, or the planes' poses "
@@ -81,7 +82,10 @@ REASONS: Mapping[str, Message] = {
     "too_fine_for_mosaic": Message(
         "doubt.too_fine_for_mosaic", "the stripes are too fine for the camera's colour mosaic"
     ),
-    "scan_unknown": Message("doubt.scan_unknown", "it is not known whether anything moved or changed"),
+    "scan_unknown": Message(
+        "doubt.scan_unknown",
+        "it is not known whether anything moved or changed, or the stripes are too fine for a colour mosaic",
+    ),
     DAY: Message("doubt.of_the_day", "calibration or check did not hold on the day"),
     "calibration_undated": Message("doubt.calibration_undated", "it is not known when the rig was calibrated"),
     "calibration_lapsed": Message("doubt.calibration_lapsed", "the calibration was too old"),
