@@ -6,7 +6,7 @@ from tests.accuracy.tour import ends_well, is_enough, tour, tour_row
 
 
 @pytest.mark.accuracy
-@pytest.mark.parametrize("seed", [1, 2, 3])
+@pytest.mark.parametrize("seed", [1])
 def test_the_tour_ends_right_sure_and_conforming(seed, tmp_path):
     """Of 20 seeds with `python -m tests.accuracy tour`."""
     one = tour(seed, tmp_path)
