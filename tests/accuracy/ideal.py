@@ -37,8 +37,6 @@ KINDS: Mapping[str, Mapping[str, Any]] = {
     "stated": {"stated": True},
     "as path-traced, nothing stated": {"transport": Transport(window_deg=20.0, hand_mm=80.0, bounced=True)},
 }
-MOST_MEAN_MM, MOST_OVER_PLAIN = 0.003, 1.3
-"""Largest mean error over the calibrations, and largest RMS error over that of the plain fit."""
 
 
 def scenario_of(kind: str, seed: int, scale: float = 0.5) -> Scenario:

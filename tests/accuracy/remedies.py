@@ -109,12 +109,25 @@ def helps(first: Figures, then: Figures) -> bool:
     """Whether a part conforms that did not, or error or U is better by a tenth of U and the other no worse."""
     if _conforms(then) and not _conforms(first) and first.get("verdict") != Verdict.NOT_CONFORMING:
         return True
-    if "error" not in first or "error" not in then:
+    if "error" not in first or harms(first, then):
         return False
     grown, times = abs(then["error"]) - abs(first["error"]), then["U"] / first["U"]
-    if grown > CHANCE * first["U"] or times > 1 + CHANCE / 2:
-        return False
     return bool(grown < -CHANCE * first["U"] or times < 1 - CHANCE)
+
+
+def harms(first: Figures, then: Figures) -> bool:
+    """Whether a thickness is not measured any more, or conforms no more, or error or U is worse by more than chance."""
+    if "error" not in first:
+        return False
+    if "error" not in then or (_conforms(first) and not _conforms(then)):
+        return True
+    grown, times = abs(then["error"]) - abs(first["error"]), then["U"] / first["U"]
+    return bool(grown > CHANCE * first["U"] or times > 1 + CHANCE / 2)
+
+
+def suffices(first: Figures, then: Figures) -> bool:
+    """Whether a remedy helps, or does no harm to a part that conforms without it, as with most lamps that flicker."""
+    return helps(first, then) or (_conforms(first) and not harms(first, then))
 
 
 def _conforms(figures: Figures) -> bool:

@@ -4,7 +4,7 @@ import pytest
 
 from tests.accuracy.hostile import figures_of
 from tests.accuracy.hostile_cases import EFFECTS
-from tests.accuracy.remedies import REMEDIES, after, before, helps, remedies_table
+from tests.accuracy.remedies import REMEDIES, after, before, helps, remedies_table, suffices
 
 WRONG = {"error": 0.05, "U": 0.2, "verdict": "not proven"}
 RIGHT = {"error": -0.01, "U": 0.15, "verdict": "conforming"}
@@ -18,6 +18,12 @@ def test_a_remedy_helps_if_nothing_is_worse_and_error_or_u_clearly_better():
     assert not helps(RIGHT, {**RIGHT, "error": 0.009, "U": 0.149})  # by chance
     assert not helps(RIGHT, {**RIGHT, "error": 0.0, "U": 0.16})
     assert not helps(RIGHT, {**RIGHT, "error": 0.03, "U": 0.1})
+
+
+def test_where_a_part_conforms_already_a_remedy_need_only_do_no_harm():
+    assert suffices(RIGHT, RIGHT) and not suffices(WRONG, WRONG)
+    assert not suffices(RIGHT, {**RIGHT, "verdict": "not proven"}) and not suffices(RIGHT, REFUSED)
+    assert not suffices(RIGHT, {**RIGHT, "error": 0.03})
 
 
 def test_a_remedy_helps_if_conformity_is_proven_that_was_not():
@@ -41,4 +47,4 @@ def test_the_table_has_a_line_for_each_remedy_that_was_tried():
 @pytest.mark.accuracy
 @pytest.mark.parametrize("remedy", REMEDIES, ids=lambda one: one.of)
 def test_what_is_asked_for_helps(remedy, tmp_path):
-    assert helps(figures_of(before(remedy), tmp_path), figures_of(after(remedy), tmp_path))
+    assert suffices(figures_of(before(remedy), tmp_path), figures_of(after(remedy), tmp_path))
