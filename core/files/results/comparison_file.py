@@ -158,7 +158,13 @@ def write_comparison_csv(path: Path, comparison: Comparison) -> None:
 
 
 def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Write the comparison.ply in `source` with places and normals in `frame`; InputError if either file cannot be."""
+    """Write the comparison.ply in `source` with places and normals in `frame`.
+
+    Raises
+    ------
+    InputError
+        If it cannot be read, or `path` not be written.
+    """
     rows, comments = _read_points(source)
     rows = rows.copy()
     for names, turned in ((("x", "y", "z"), frame.coordinates), (("nx", "ny", "nz"), frame.directions)):
@@ -171,14 +177,14 @@ def write_comparison_ply_in(path: Path, source: Path, frame: ViewFrame) -> None:
 
 
 def write_comparison_csv_in(path: Path, source: Path, frame: ViewFrame) -> None:
-    """Write the comparison.csv in `source` with places and normals in `frame`; InputError if either file cannot be."""
+    """Write the comparison.csv in `source` with places and normals in `frame`; InputError as the one above."""
     try:
         head, *rows = [line.split(",") for line in read_bytes(source).decode().splitlines()]
         values = np.array(rows, dtype=np.float64).reshape(-1, len(head))
-        if len(head) != len(_POINT):
-            raise ValueError(f"{len(head)} columns")  # told below
     except ValueError as error:
-        raise _damaged(source, error) from error
+        raise _damaged(source, words_of(error)) from error
+    if len(head) != len(_POINT):
+        raise _damaged(source, f"{len(head)} columns")
     moved = [frame.coordinates(values[:, :3]), frame.directions(values[:, 3:6]), values[:, 6:]]
     _write_table(path, np.hstack(moved), frame)
 
@@ -189,12 +195,12 @@ def _read_points(path: Path) -> tuple[NDArray[Any], Sequence[str]]:
         data = parse_ply(read_bytes(path))
         return data.elements["vertex"][[name for name, _ in _POINT]], data.comments
     except (ValueError, KeyError) as error:
-        raise _damaged(path, error) from error
+        raise _damaged(path, words_of(error)) from error
 
 
-def _damaged(path: Path, error: Exception) -> InputError:
+def _damaged(path: Path, reason: str | Message) -> InputError:
     return InputError(
-        Message("file.no_comparison", "this is no table of a comparison ({reason})", reason=words_of(error)),
+        Message("file.no_comparison", "this is no table of a comparison ({reason})", reason=reason),
         where=path,
         todo=_TODO,
     )

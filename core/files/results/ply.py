@@ -61,6 +61,14 @@ class CloudFile:
     calibration_id: str
 
 
+@dataclass(frozen=True, eq=False, slots=True)
+class MeshFile:
+    """What mesh.ply holds: the surface, and the id of its calibration as in `CloudFile`."""
+
+    mesh: Mesh
+    calibration_id: str
+
+
 def write_cloud(path: Path, cloud: Cloud, calibration_id: str, frame: ViewFrame = CAMERA_FRAME) -> None:
     """Write cloud.ply: x y z nx ny nz sigma intensity frame; behind them what the comments in its head say.
 
@@ -141,11 +149,6 @@ def read_cloud(path: Path) -> CloudFile:
     return CloudFile(cloud, _calibration(data))
 
 
-def calibration_of(path: Path) -> str:
-    """Id of the calibration that a cloud.ply or mesh.ply names, "" if it names none; InputError if it is damaged."""
-    return _calibration(_read(path, _TODO))
-
-
 def _calibration(data: Ply) -> str:
     ids = [line.removeprefix(_CALIBRATION) for line in data.comments if line.startswith(_CALIBRATION)]
     return ids[0] if ids else ""
@@ -193,6 +196,11 @@ def write_mesh(path: Path, mesh: Mesh, calibration_id: str, frame: ViewFrame = C
 
 
 def read_mesh(path: Path) -> Mesh:
+    """Read the surface in mesh.ply; InputError as `read_mesh_file`."""
+    return read_mesh_file(path).mesh
+
+
+def read_mesh_file(path: Path) -> MeshFile:
     """Read mesh.ply; whatever frame it is written in, the mesh is in the camera frame.
 
     Raises
@@ -213,7 +221,7 @@ def read_mesh(path: Path) -> Mesh:
             Message("file.triangle_without_vertex", "a triangle names a vertex that is not there"), where=path
         )
     pose = told_pose(data.comments, path)
-    return Mesh(
+    mesh = Mesh(
         vertices=pose.apply(_columns(vertices, ("x", "y", "z"))),
         normals=_columns(vertices, ("nx", "ny", "nz")) @ pose.rotation.T,
         sigma=np.asarray(vertices["sigma"], dtype=np.float64),
@@ -222,6 +230,7 @@ def read_mesh(path: Path) -> Mesh:
         if _FILLED in (faces.dtype.names or ())
         else np.zeros(0, bool),
     )
+    return MeshFile(mesh, _calibration(data))
 
 
 def _check_finite(vertices: NDArray[Any], names: Sequence[str], path: Path) -> None:

@@ -26,7 +26,7 @@ from core.files.results.export_list import EXPORTS, ExportKind
 from core.files.results.gauge_file import read_lower_face
 from core.files.results.geometry_file import read_geometry, read_part_frame
 from core.files.results.mesh_export import write_3mf, write_obj, write_stl
-from core.files.results.ply import calibration_of, read_cloud, read_mesh, write_cloud, write_mesh
+from core.files.results.ply import read_cloud, read_mesh, read_mesh_file, write_cloud, write_mesh
 from core.files.results.run_file import read_run
 from core.files.step_graph import FILES
 from core.inspect.shown.view_frame import CAMERA_FRAME, FrameKind, ViewFrame, part_frame
@@ -138,7 +138,8 @@ def _write_cloud(path: Path, source: Path, frame: ViewFrame) -> None:
 
 
 def _write_mesh(path: Path, source: Path, frame: ViewFrame) -> None:
-    write_mesh(path, read_mesh(source), calibration_of(source), frame)
+    file = read_mesh_file(source)
+    write_mesh(path, file.mesh, file.calibration_id, frame)
 
 
 def _of_content(write: Callable[[Path, ReportContent], None]) -> Write:
