@@ -1,7 +1,9 @@
 """Small inputs that others filed, each a `make.sh`: what the program says of them is right."""
 
+import os
 import re
 import subprocess
+import sysconfig
 
 import pytest
 
@@ -24,7 +26,15 @@ def work(tmp_path_factory):
 def made(case, work):
     """What the program says when the case is made, as one line."""
     (folder,) = CASES.glob(f"{case}-*")
-    done = subprocess.run(["sh", folder / "make.sh", work], capture_output=True, text=True, check=False, timeout=1800)
+    paths = os.pathsep.join([sysconfig.get_path("scripts"), os.environ["PATH"]])  # the case calls `trisect` by its name
+    done = subprocess.run(
+        ["sh", folder / "make.sh", work],
+        capture_output=True,
+        text=True,
+        check=False,
+        timeout=1800,
+        env={**os.environ, "PATH": paths},
+    )
     return " ".join((done.stdout + done.stderr).split())
 
 

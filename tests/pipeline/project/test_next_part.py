@@ -18,9 +18,9 @@ from core.pipeline.project.whole import measure_all
 
 @pytest.mark.accuracy
 def test_the_same_scan_gives_the_same_thickness_and_nothing_is_calibrated_anew(
-    finished_project_folder: Path, simulated: Path, tmp_path: Path
+    finished_small_project_folder: Path, simulated: Path, tmp_path: Path
 ) -> None:
-    first = Path(shutil.copytree(finished_project_folder, tmp_path / "Block 1"))
+    first = Path(shutil.copytree(finished_small_project_folder, tmp_path / "Block 1"))
     to = next_part(first, tmp_path / "Block 2", "2", "Ada")
     file = read_project(to)
     project = replace(file.project, sources=replace(file.project.sources, scan=str(simulated / "scan")))

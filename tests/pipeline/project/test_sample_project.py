@@ -29,7 +29,7 @@ def until(step):
     return progress
 
 
-@pytest.mark.parametrize("stage", ["camera views", pytest.param("frames", marks=pytest.mark.accuracy)])
+@pytest.mark.parametrize("stage", ["camera views", pytest.param("crossings", marks=pytest.mark.accuracy)])
 def test_cancelled_in_the_middle_it_leaves_nothing(small, stage):
     with pytest.raises(Cancelled):
         sample_project(small / "Sample", progress=until(stage))
