@@ -110,7 +110,7 @@ def pack() -> None:
         build_deb(FOLDER, BUILD, __version__)
         packed = BUILD / f"{name}.tar.xz"
         packed.unlink(missing_ok=True)
-        tar = ("tar", "--owner=0", "--group=0", "--sort=name", "-C", str(FOLDER.parent), "-I", "xz -T0 -9", "-cf")
+        tar = ("tar", "--owner=0", "--group=0", "--sort=name", "-C", str(FOLDER.parent), "-I", "xz -T0 -6", "-cf")
         run(*tar, str(packed), FOLDER.name)
     else:
         shutil.make_archive(
