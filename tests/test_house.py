@@ -108,6 +108,16 @@ def first_sentences(path: Path) -> Iterator[tuple[int, str]]:
                 yield line.lineno, re.split(r"(?<=\.)\s|\n\n", said.strip())[0]
 
 
+def test_the_scan_step_is_read_at_a_glance():
+    """What it does is a list of calls: at most 25 statements, and 15 modules of ours."""
+    tree = syntax_tree(ROOT / "core" / "pipeline" / "steps" / "scan_step.py")
+    ours = [node for node in tree.body if isinstance(node, ast.ImportFrom) and str(node.module).startswith("core.")]
+    (step,) = (node for node in tree.body if isinstance(node, ast.FunctionDef))
+    (_, *statements) = (node for statement in step.body for node in ast.walk(statement) if isinstance(node, ast.stmt))
+    assert len(statements) <= 25, "the docstring is none"
+    assert len(ours) <= 15
+
+
 def test_the_first_sentence_of_a_docstring_names_who_and_what_is_meant():
     found = [
         f"{path.relative_to(ROOT)}:{line} {sentence}"

@@ -11,7 +11,7 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
-from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan
+from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan, solving_of
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
@@ -21,7 +21,6 @@ from core.pipeline.steps.validity import facts_of_the_day, with_size_by_artefact
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
-from core.scan.reconstruct import ReconstructOptions
 from core.second_process import SecondProcess
 
 
@@ -64,8 +63,7 @@ def scan_step(
     with work.step("scan") as log:
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
         log.settings.update({**settings.told, **log.pictures.laser_channel("scan").settings})
-        solving = ReconstructOptions(settings.method, settings.sigma_cut_mm, recording_set.rig.row_time_us)
-        solved = solved_scan(features, calibration, solving, progress)
+        solved = solved_scan(features, calibration, solving_of(settings, recording_set.rig), progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (
             check_of_the_day(log.pictures, calibration, settings.check_stripe, progress) if check is None else check
