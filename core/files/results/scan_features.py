@@ -73,17 +73,21 @@ def write_features(path: Path, features: ScanFeatures, key: str) -> None:
     write_arrays(path, pack_features(features, key))
 
 
-def read_features(path: Path) -> tuple[ScanFeatures, str]:
-    """Read features.npz: the features, and the key of what they rest on.
+def read_features(path: Path, key: str) -> ScanFeatures | None:
+    """Read features.npz, or a scan.npz, which holds the same; None if it is not there, or rests on other than `key`.
 
     Raises
     ------
     InputError
-        If it is missing, damaged, lacks an array, or holds values that are not finite or of a wrong shape.
+        If it is damaged, lacks an array, or holds values that are not finite or of a wrong shape.
     """
+    if not path.exists():
+        return None
     arrays = read_arrays(path, FEATURES_MEMBERS, todo=_TODO)
+    if str(arrays.get("features_key", "")) != key:
+        return None
     with unpacking(path, todo=_TODO):
-        return unpack_features(arrays), str(arrays.get("features_key", ""))
+        return unpack_features(arrays)
 
 
 def pack_features(features: ScanFeatures, key: str) -> dict[str, NDArray[Any]]:

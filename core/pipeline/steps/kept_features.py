@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -26,7 +26,6 @@ from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import as_calibrated_with, rig_tables
 from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_features import FEATURES, read_features, write_features
-from core.files.results.scan_file import read_scan
 from core.model import Camera
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
@@ -47,12 +46,20 @@ def kept_features(
 
     Takes the hashes of the pictures, as reading them would, if features were kept.
     """
-    kept = [*_features_of_scan(earlier), *_features_of_recording(pictures.recording_set)]
-    if not kept:
+    recorded = pictures.recording_set.folders.get("scan")
+    places = [path for path in (earlier, recorded and recorded / FEATURES) if path and path.exists()]
+    if not places:
         return None
     pictures.take_hashes(_pictures(pictures.recording_set, settings), progress)
     key = features_key(pictures, settings, camera)
-    return next((features for features, known in kept if known == key), None)
+    return next(filter(None, (_features_in(path, key) for path in places)), None)
+
+
+def _features_in(path: Path, key: str) -> ScanFeatures | None:
+    try:
+        return read_features(path, key)
+    except InputError:
+        return None  # damaged: the pictures are still there
 
 
 def keep_features(pictures: PictureReader, settings: ScanSettings, camera: Camera, features: ScanFeatures) -> None:
@@ -65,20 +72,6 @@ def keep_features(pictures: PictureReader, settings: ScanSettings, camera: Camer
     """
     folder = pictures.recording_set.folders["scan"]
     write_features(folder / FEATURES, features, features_key(pictures, settings, camera))
-
-
-def _features_of_scan(path: Path | None) -> Iterator[tuple[ScanFeatures, str]]:
-    if path is not None and path.exists():
-        with suppress(InputError):  # damaged: it will be replaced
-            scan = read_scan(path)
-            yield scan.features, scan.features_key
-
-
-def _features_of_recording(recording_set: RecordingSet) -> Iterator[tuple[ScanFeatures, str]]:
-    path = recording_set.folders["scan"] / FEATURES if "scan" in recording_set.folders else None
-    if path is not None and path.exists():
-        with suppress(InputError):  # damaged: the pictures are still there
-            yield read_features(path)
 
 
 def features_key(pictures: PictureReader, settings: ScanSettings, camera: Camera) -> str:
