@@ -9,11 +9,10 @@ import sys
 
 import numpy as np
 import pytest
-import typer
 from pypdf import PdfReader
 
 from core import __version__
-from core.cli.app import app
+from core.cli.app import whole_command
 from core.files.results.ply_format import parse_ply
 from core.report.wording import with_uncertainty
 from tests.simulated import CUT, SMALL, copy_of, trisect
@@ -289,7 +288,7 @@ def test_a_width_without_a_contrast_is_refused(simulated, tmp_path):
 
 def test_no_word_of_a_help_is_taken_for_markup():
     """What stands in brackets would be missing on the screen."""
-    commands = {"": typer.main.get_command(app), **typer.main.get_command(app).commands}
+    commands = {"": whole_command()[0], **whole_command()[0].commands}
     helps = [p.help for command in commands.values() for p in command.params if getattr(p, "help", None)]
     helps += [command.help for command in commands.values() if command.help]
     assert len(helps) > 100

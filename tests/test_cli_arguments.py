@@ -5,11 +5,10 @@ import sys
 from pathlib import Path
 
 import pytest
-from typer.main import get_command
 
 from core import second_process
 from core.cli import measuring
-from core.cli.app import app
+from core.cli.app import whole_command
 from core.cli.simulating import as_typed
 from core.pipeline.project import calibration as project_calibration
 from core.pipeline.project import measuring as project_measuring
@@ -65,7 +64,7 @@ def nothing_begun(monkeypatch):
 
 
 def test_no_command_is_missing_here():
-    assert set(get_command(app).commands) - {"study", "sources"} == set(WITH_A_FOLDER)
+    assert set(whole_command()[0].commands) - {"study", "sources"} == set(WITH_A_FOLDER)
 
 
 @pytest.mark.parametrize("command", WITH_A_FOLDER)

@@ -6,10 +6,9 @@ import shutil
 
 import numpy as np
 import pytest
-from typer.main import get_command
 
 from core.cli import language
-from core.cli.app import app
+from core.cli.app import whole_command
 from core.cli.simulating import HELP_VALUES
 from core.files.project.audit import append, read_trail
 from core.files.project.data import ProjectFile, new_project
@@ -120,7 +119,7 @@ def cells(shape):
 
 def test_all_help_is_in_the_catalogues():
     language.choose([language.OPTION, PSEUDO])
-    command = language.speak(get_command(app), HELP_VALUES)
+    command = language.speak(whole_command()[0], HELP_VALUES)
     texts = [
         text for one in language._all_of(command) for text in (one.help, one.epilog, *(p.help for p in one.params))
     ]
@@ -146,7 +145,7 @@ def typed_alike(command):
 
 
 @pytest.mark.parametrize(
-    ("path", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands(get_command(app))]
+    ("path", "command"), [pytest.param(*one, id=" ".join(one[0])) for one in commands(whole_command()[0])]
 )
 def test_no_help_has_an_untranslated_word(monkeypatch, path, command):
     monkeypatch.setenv("COLUMNS", "300")  # in narrow columns a word is broken in two
@@ -191,7 +190,7 @@ def test_a_wrong_command_line_is_told_to_programs_too():
 
 
 def test_every_command_stands_under_a_heading_that_says_what_it_is_for():
-    assert [path for path, one in commands(get_command(app)) if len(path) == 1 and not one.rich_help_panel] == []
+    assert [path for path, one in commands(whole_command()[0]) if len(path) == 1 and not one.rich_help_panel] == []
     said = trisect("--help", "--language", "de")
     headings = ["Ein Teil messen", "Den Aufbau kalibrieren und prüfen", "Berichte, Studien, andere Programme"]
     assert [heading for heading in headings if f"─ {heading} ─" not in said.out] == []

@@ -7,13 +7,12 @@ from itertools import product
 
 import platformdirs
 import pytest
-import typer
 
-from core.cli.app import app
+from core.cli.app import whole_command
 from core.pipeline.executors import THREADS, executor_of
 from tests.simulated import trisect
 
-GROUP = typer.main.get_command(app)
+GROUP = whole_command()[0]
 
 
 def commands(group, words=()):

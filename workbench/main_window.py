@@ -70,6 +70,7 @@ from workbench.views.lists.step_rail import StepRail
 from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import StatusBar, TaskBar, time_left
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
+from workbench.wing import opened_by_entries
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
@@ -134,7 +135,15 @@ class MainWindow(QMainWindow):
         report = self.pages["report"]
         assert isinstance(report, ReportPage)
         undo_stack, commands = self.model.undo_stack, self._commands()
-        self.menus = Menus(self, bench.settings, undo_stack, commands, self.projects.open_project, report.export_menu())
+        self.menus = Menus(
+            self,
+            bench.settings,
+            undo_stack,
+            commands,
+            self.projects.open_project,
+            report.export_menu(),
+            opened_by_entries(bench, self),
+        )
         self._connect()
         self.back.setIcon(icon("mdi6.chevron-left"))
         restore_layout(self, self.pages, bench.settings)

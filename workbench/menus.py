@@ -19,6 +19,7 @@ from workbench.settings import THEMES, AppSettings
 from workbench.steps import STEPS
 from workbench.views.layouts import enable
 from workbench.views.lists.shortcut_list import ShortcutList
+from workbench.wing import MenuEntry
 
 SHORTCUTS: tuple[tuple[str, str, str], ...] = (
     ("new", "Ctrl+N", label("New project")),
@@ -100,13 +101,16 @@ class MenuFacts(NamedTuple):
     """What the Python console needs is not installed."""
 
 
-def why_not(name: str, facts: MenuFacts) -> str:
-    """Why an entry, by its name, cannot be chosen now: a sentence, or ""."""
+def why_not(name: str, facts: MenuFacts, *, needs_project: bool = False) -> str:
+    """Why an entry, by its name, cannot be chosen now: a sentence, or "".
+
+    `needs_project`: also where it is none of NEED_A_PROJECT.
+    """
     if facts.operator and name not in OPERATOR_MAY:
         return tr("Leave operator mode first.")
     if name == "cancel":
         return "" if facts.job else tr("No job is running.")
-    if name not in NEED_A_PROJECT and not name.startswith("step "):
+    if name not in NEED_A_PROJECT and not name.startswith("step ") and not needs_project:
         return ""
     if not facts.page:
         return tr("Open a project first.")
@@ -132,6 +136,8 @@ class Menus(QObject):
         Opens one of the recent projects.
     exports
         What the open project has to hand over.
+    brought
+        What the entries of the wings do.
     """
 
     def __init__(
@@ -142,8 +148,10 @@ class Menus(QObject):
         commands: Mapping[str, Callable[[], object]],
         open_project: Callable[[Path], object],
         exports: QMenu,
+        brought: Mapping[MenuEntry, Callable[[], object]],
     ) -> None:
         super().__init__(window)
+        self._brought = brought
         self._window, self._settings, self._commands, self._open_project = window, settings, commands, open_project
         self.actions: dict[str, QAction] = {}
         self._tips = {name: tr(meaning) for name, _, meaning in SHORTCUTS}
@@ -157,11 +165,12 @@ class Menus(QObject):
 
     def refresh(self, facts: MenuFacts) -> None:
         """Grey what makes no sense now; its tip says why."""
+        needing = {entry.name for entry in self._brought if entry.needs_project}
         for name, action in self.actions.items():
             if name in UNDOING:  # greyed by the stack; hidden, its key means nothing
                 action.setVisible(not facts.operator)
             else:
-                enable(action, why_not(name, facts), self._tips.get(name, ""))
+                enable(action, why_not(name, facts, needs_project=name in needing), self._tips.get(name, ""))
         self._recent.setEnabled(not facts.operator and not self._recent.isEmpty())
         self._window.menuBar().setVisible(not facts.operator)
 
@@ -242,6 +251,9 @@ class Menus(QObject):
         action.triggered.connect(lambda: do())
         menu.addAction(action)
         self.actions[name] = action
+        for entry, opens in self._brought.items():
+            if entry.after == name and entry.name not in self.actions:
+                self._add(menu, entry.name, tr(entry.text), opens)
         return action
 
     def _languages(self) -> QMenu:

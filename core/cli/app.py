@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
 from typing import Annotated, Any
 
 import typer
-from typer.main import get_command
+from typer.main import get_command, get_group
 
 from core import __version__
 from core.cli import language, talk
@@ -29,9 +29,11 @@ from core.cli.simulating import HELP_VALUES
 from core.cli.simulating import commands as simulating
 from core.cli.study_commands import studies
 from core.cli.usage import Commands, NoArgsIsHelpError, UsageError, usage_error
+from core.door import Brought, found_at
 from core.errors import Cancelled, InputError, NoThickness
 from core.messages import Message
 from core.messages import as_json as as_json_message
+from core.wing import Wing, wings
 
 app = typer.Typer(
     name="trisect",
@@ -114,7 +116,46 @@ def _run(words: list[str]) -> None:
 @cache
 def _commands(_spoken: str) -> Any:
     """Every command in the language that is spoken: Typer reads all functions for it, which takes 0.1 s."""
-    return language.speak(get_command(app), HELP_VALUES)
+    command, unusable = whole_command()
+    _say_unusable(unusable)
+    return language.speak(command, HELP_VALUES)
+
+
+def whole_command() -> tuple[Any, list[Brought]]:
+    """The group of all commands, those of the wings among them, and the wings that cannot be used."""
+    command: Any = get_command(app)
+    unusable = list(wings().unusable)
+    for wing, origin in wings().wings:
+        try:
+            command.commands = with_commands(command.commands, wing)
+        except Exception as error:  # noqa: BLE001  (whatever a stranger's module raises: all other commands stand)
+            unusable.append(Brought(wing.name, None, f"{type(error).__name__}: {error}", origin))
+    return command, unusable
+
+
+def with_commands(commands: Mapping[str, Any], wing: Wing) -> dict[str, Any]:
+    """All commands in the order of the help, those of a wing among them.
+
+    Raises
+    ------
+    ValueError
+        If the wing has a command of a name that is taken.
+    """
+    brought = get_group(found_at(wing.commands)).commands if wing.commands else {}
+    if taken := sorted(brought.keys() & commands.keys()):
+        raise ValueError(f"there is a command {taken[0]} already")
+    names = list(commands)
+    place = names.index(wing.after) + 1 if wing.after in commands else len(names)
+    return {**{name: commands[name] for name in names[:place]}, **brought, **{n: commands[n] for n in names[place:]}}
+
+
+def _say_unusable(unusable: Sequence[Brought]) -> None:
+    """Say which wings cannot be used, and why."""
+    if unusable:
+        from core.findings.brought import note_on_unusable
+
+        for one in unusable:
+            talk.say(language.told(note_on_unusable(one)))
 
 
 def _fault(words: Sequence[str], error: Exception) -> InputError:

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.errors import InputError
+from core.findings.brought import failure, unusable
 from core.findings.proof import SIZE_UNCONFIRMED, Doubt, notes_of
 from core.findings.table import note_of
 from core.inspect.characteristic import Characteristic
@@ -23,7 +24,7 @@ from core.inspect.plan.conditions import Master
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.plan.kinds import brought_kinds, kind_of
-from core.inspect.plan.plugins import NAME_TAKEN, failure, plugins, unusable
+from core.inspect.plan.plugins import NAME_TAKEN, plugins
 from core.inspect.plan.temperature import at_reference, compared, temperature_of, with_scale
 from core.inspect.result_list import ResultList
 from core.inspect.uncertainty.part import Part

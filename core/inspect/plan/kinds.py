@@ -12,7 +12,7 @@ from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
 
 if TYPE_CHECKING:
-    from core.inspect.plan.plugins import Origin
+    from core.door import Origin
 
 MOST_FACES = 8
 """Plane faces found by their number, and levels of steps: `core.inspect.fit.plane_search` looks for as many."""

@@ -1,0 +1,89 @@
+"""The door by which packages bring what the program does not import: their entry points, and folders of our own.
+
+A package names what it brings under a group of entry points in its pyproject.toml. Our own wings are the folders of a
+package of wings: found without being installed anew, in the packed program as well, and gone with their folder. Light
+to import.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import EntryPoint, entry_points
+from importlib.util import find_spec
+from pkgutil import iter_modules
+from typing import Any
+
+from core.messages import Message
+
+WITHOUT = "TRISECT_WITHOUT_WINGS"
+"""The environment variable that names wings to be left out, with commas between them."""
+
+
+@dataclass(frozen=True, slots=True)
+class Origin:
+    """The package that something comes from, and its version."""
+
+    package: str
+    version: str
+
+
+@dataclass(frozen=True, slots=True)
+class Brought:
+    """What one entry point, or one folder of ours, brings.
+
+    Parameters
+    ----------
+    name
+        Of the entry point, or of the folder.
+    what
+        What was loaded; None where it could not be.
+    why
+        Why it could not be loaded; "" where it was.
+    origin
+        The package it comes from; None: the program itself.
+    """
+
+    name: str
+    what: Any
+    why: Message | str = ""
+    origin: Origin | None = None
+
+
+def by_entry_points(group: str) -> Iterator[Brought]:
+    """Load what installed packages declare under a group of entry points."""
+    for point in entry_points(group=group):
+        yield _loaded(point, _origin(point))
+
+
+def by_folders(package: str, constant: str) -> Iterator[Brought]:
+    """Load a constant of the module `wing` in each folder of a package of ours; nothing where the package is gone."""
+    if find_spec(package) is None:
+        return
+    for found in iter_modules(import_module(package).__path__):
+        if found.ispkg:
+            yield _loaded(EntryPoint(found.name, f"{package}.{found.name}.wing:{constant}", ""), None)
+
+
+def left_out() -> frozenset[str]:
+    """The names of the wings that WITHOUT names."""
+    return frozenset(filter(None, map(str.strip, os.environ.get(WITHOUT, "").split(","))))
+
+
+def found_at(place: str) -> Any:
+    """What stands at "module:name"; imports the module."""
+    module, _, name = place.partition(":")
+    return getattr(import_module(module), name)
+
+
+def _loaded(point: EntryPoint, origin: Origin | None) -> Brought:
+    try:
+        return Brought(point.name, point.load(), "", origin)
+    except Exception as error:  # noqa: BLE001  (whatever a stranger's package raises when it is loaded)
+        return Brought(point.name, None, f"{type(error).__name__}: {error}", origin)
+
+
+def _origin(point: EntryPoint) -> Origin:
+    return Origin("?", "?") if point.dist is None else Origin(point.dist.name, point.dist.version)

@@ -1,0 +1,87 @@
+"""Wings: what is beside the mission, each as one whole that the house does not import and works without.
+
+The house asks `wings` for them where it makes its list of commands; it knows a wing by its names alone. One of our own
+is a folder of `core.wings` whose module `wing` has the constant WING. Another package names its `Wing` under
+`trisect.wings` among its entry points; its code runs in this program with all rights of the user. TRISECT_WITHOUT_WINGS
+leaves wings out by their names.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+from functools import cache
+from itertools import chain
+from typing import Generic, Protocol, TypeVar
+
+from core.door import Brought, Origin, by_entry_points, by_folders, left_out
+from core.messages import Message
+
+OURS, GROUP = "core.wings", "trisect.wings"
+
+_NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
+
+
+@dataclass(frozen=True, slots=True)
+class Wing:
+    """What a wing adds to the command line and the results. What it names is imported when it is asked for.
+
+    Parameters
+    ----------
+    name
+        Of the wing; no two have the same.
+    commands
+        Its commands of `trisect`, as "module:name" of a `typer.Typer` that is light to import; "": it has none.
+    after
+        The command behind which they stand in `trisect --help`; "": at the end.
+    """
+
+    name: str
+    commands: str = ""
+    after: str = ""
+
+
+class Named(Protocol):
+    """What has the name of a wing."""
+
+    @property
+    def name(self) -> str:
+        """Of the wing."""
+        ...
+
+
+AWing = TypeVar("AWing", bound=Named)
+
+
+@dataclass(frozen=True, slots=True)
+class Found(Generic[AWing]):
+    """The wings of one kind, ours first, each with the package it comes from, and what cannot be used.
+
+    The origin of one of ours is None.
+    """
+
+    wings: tuple[tuple[AWing, Origin | None], ...]
+    unusable: tuple[Brought, ...]
+
+    def __iter__(self) -> Iterator[AWing]:
+        return (wing for wing, _ in self.wings)
+
+
+@cache
+def wings() -> Found[Wing]:
+    """All wings there are, loaded once."""
+    return found_wings(Wing, chain(by_folders(OURS, "WING"), by_entry_points(GROUP)))
+
+
+def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
+    """The wings among what is brought, without those that are left out; of one name the first counts."""
+    found, unusable = dict[str, tuple[AWing, Origin | None]](), list[Brought]()
+    for one in brought:
+        if one.name in left_out():
+            continue
+        wing = one.what
+        if one.why or not isinstance(wing, kind) or wing.name in found:
+            unusable.append(one if one.why else replace(one, why=_NO_WING))
+        elif wing.name not in left_out():
+            found[wing.name] = wing, one.origin
+    return Found(tuple(found.values()), tuple(unusable))

@@ -1,0 +1,87 @@
+"""What a wing adds is there; one that is left out, or cannot be used, takes nothing else with it."""
+
+import pytest
+
+from core.door import WITHOUT
+from core.wing import wings
+from tests.simulated import trisect
+from tests.wings.strangers import install, look_again
+from workbench.wing import window_wings
+
+__all__ = ["install"]
+
+GREETING = """
+import typer
+from core.wing import Wing
+
+commands = typer.Typer()
+
+@commands.command(rich_help_panel="Before a measurement")
+def greet() -> None:
+    '''Greet.'''
+    typer.echo("hello")
+
+WING = Wing("greeting", "lab_greeting:commands", after="card")
+TAKEN = Wing("taken", "lab_taken:commands")
+NOWHERE = Wing("nowhere", "lab_greeting:nothing")
+LAST = Wing("last", "lab_greeting:commands", after="no such command")
+NO_WING = 7
+"""
+TAKEN = GREETING.replace("def greet", "def card")
+
+
+def listed(said):
+    """The commands of `trisect --help`, in its order."""
+    return [line.split()[1] for line in said.out.splitlines() if line.startswith("│ ") and line[2] not in " -"]
+
+
+def installed(install, *names):
+    points = {name.lower(): f"lab_greeting:{name}" for name in names}
+    install("lab-greeting", {"lab_greeting": GREETING, "lab_taken": TAKEN}, {"trisect.wings": points})
+
+
+def test_our_own_wings_can_be_used():
+    assert not wings().unusable and not window_wings().unusable
+    assert [origin for _, origin in (*wings().wings, *window_wings().wings) if origin is not None] == []
+
+
+def test_a_command_of_a_wing_is_run_and_stands_in_the_help_where_it_says(install):
+    before = listed(trisect("--help"))
+    installed(install, "WING")
+    assert trisect("greet").out == "hello\n"
+    place = before.index("card") + 1
+    assert listed(trisect("--help")) == [*before[:place], "greet", *before[place:]]
+
+
+def test_a_command_behind_none_stands_last_of_its_kind(install):
+    before = listed(trisect("--help"))
+    installed(install, "LAST")
+    after = listed(trisect("--help"))
+    assert [name for name in after if name != "greet"] == before
+    assert after[after.index("greet") - 1] == "sources"
+
+
+@pytest.mark.parametrize(
+    ("name", "why"),
+    [
+        ("NO_WING", "it is no Wing"),
+        ("MISSING", "AttributeError"),
+        ("NOWHERE", "AttributeError"),
+        ("TAKEN", "there is a command card already"),
+    ],
+)
+def test_a_wing_that_cannot_be_used_is_told_and_every_command_stays(install, name, why):
+    before = listed(trisect("--help"))
+    installed(install, name)
+    said = trisect("--help")
+    assert listed(said) == before
+    assert f"{name.lower()} of the package lab-greeting 1.2 cannot be used: " in said.err and why in said.err
+
+
+def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
+    installed(install, "WING")
+    monkeypatch.setenv(WITHOUT, "another, greeting")
+    look_again()
+    said = trisect("greet")
+    assert said.code == 2 and 'there is no command "greet"' in said.err
+    assert "cannot be used" not in trisect("--help").err
