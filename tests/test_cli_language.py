@@ -14,10 +14,10 @@ from core.files.project.audit import append, read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import create_project
 from core.translations import PSEUDO
-from tests.plan.small import CUT_MM, TOML
 from tests.report.test_report_pseudo import outside_brackets
 from tests.simulated import CUT, trisect
 from tests.study.grr_tables import AIAG
+from tests.wings.rig_planning.small import CUT_MM, TOML
 
 SAME_EVERYWHERE = re.compile(
     r"(/[\w.\-/…]+)+|[\w.\-]+\.(png|json|toml|pdf|csv|ply|stl|trisectz)\b|[0-9a-f]{6,}|E_n|ndc|Cgk?|ANOVA|RMS|RMSE|trisect|"

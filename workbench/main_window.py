@@ -44,7 +44,6 @@ from workbench.pages.project.many_sets import ManySets
 from workbench.pages.project.operator import OperatorMode
 from workbench.pages.project.operator_page import OperatorPage
 from workbench.pages.project.presenter import ProjectPresenter
-from workbench.pages.project.rig_plan import RigPlans
 from workbench.pages.project.welcome_page import WelcomePage
 from workbench.pages.report.page import ReportPage
 from workbench.pages.scan.presenter import ScanPresenter
@@ -71,6 +70,7 @@ from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import StatusBar, TaskBar, time_left
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
 from workbench.wing import opened_by_entries
+from workbench.wings.rig_planning.rig_plan import RigPlans
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task

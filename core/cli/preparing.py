@@ -16,13 +16,13 @@ from core.files.recording.rig import read_rig, require_tables
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, Target
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
-from core.pipeline.steps.plan_step import plan, plan_values, write_plan
-from core.pipeline.steps.plan_words import plan_rows
 from core.pipeline.steps.prints import write_quick_card
 from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
 from core.report.wording import Words, target_in_words
+from core.wings.rig_planning.plan_step import plan, plan_values, write_plan
+from core.wings.rig_planning.plan_words import plan_rows
 
 
 def target_of_words(

@@ -2,7 +2,7 @@
 
     python -m tests.accuracy.bounds
 
-prints two tables: the bounds of `core.plan.bounds` at full and at half resolution, and each goal beside the least that
+prints two tables: the bounds of rig planning at full and at half resolution, and each goal beside the least that
 a program at the bound would leave. A goal below that cannot be met by any program; one above it can, unless something
 that is no noise forbids it (of a ball `tests.accuracy.sphere_bound`: light that lies unevenly on round flanks).
 """
@@ -16,8 +16,8 @@ import numpy as np
 from scipy.integrate import quad
 from scipy.stats import norm
 
-from core.plan.bounds import BALL_MM, FREE_FORM_MM, Bound, bounds_of
-from core.plan.design import Design
+from core.wings.rig_planning.prediction.bounds import BALL_MM, FREE_FORM_MM, Bound, bounds_of
+from core.wings.rig_planning.prediction.design import Design
 
 HEIGHTS_MM = (40.0, 50.0, 60.0, 70.0)
 RIGS = {"full": Design(), "half": Design(pixels=(1920, 1374), pixel_um=3.34)}

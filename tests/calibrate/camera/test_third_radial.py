@@ -13,8 +13,8 @@ from core.calibrate.camera.third_radial import K3, left_out_misfits, third_radia
 from core.image.targets.target_view import TargetView
 from core.model import Camera
 from core.pipeline.steps.camera_step import solved_for
-from core.plan.calibrating import view_poses
-from core.plan.design import Design
+from core.wings.rig_planning.prediction.calibrating import view_poses
+from core.wings.rig_planning.prediction.design import Design
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
 DESIGN = Design()

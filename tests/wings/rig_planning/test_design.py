@@ -4,10 +4,10 @@ import numpy as np
 import pytest
 
 from core.errors import InputError
-from core.plan.design import Design
 from core.simulate.rig import paper_rig
 from core.simulate.scenario import Scenario
 from core.simulate.scene.stage import build_scene
+from core.wings.rig_planning.prediction.design import Design
 
 
 @pytest.mark.parametrize("scale", [1.0, 0.5])

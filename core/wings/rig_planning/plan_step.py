@@ -14,13 +14,13 @@ from core.calibrate.change import DEFAULT_STABILITY
 from core.files.atomic import make_folder, write_bytes, write_text
 from core.files.json_text import rounded, to_json
 from core.messages import Message, as_json
-from core.plan.bounds import Bound, bounds_of
-from core.plan.changes import Effect, advice, compare
-from core.plan.design import Design
-from core.plan.from_rig import read_design, read_stated
-from core.plan.predict import Planner, Prediction, light_not_foretold
 from core.progress import Progress, silent
-from core.report.plots.plan_map import plan_map_png
+from core.wings.rig_planning.plan_map import plan_map_png
+from core.wings.rig_planning.prediction.bounds import Bound, bounds_of
+from core.wings.rig_planning.prediction.changes import Effect, advice, compare
+from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.from_rig import read_design, read_stated
+from core.wings.rig_planning.prediction.predict import Planner, Prediction, light_not_foretold
 
 PLAN_FILE, MAP_FILE = "plan.json", "sigma.png"
 

@@ -8,12 +8,12 @@ from core.calibrate.change import DEFAULT_STABILITY
 from core.cli import preparing
 from core.errors import InputError
 from core.files.pictures import read_picture
-from core.pipeline.project import rig_plan
-from core.pipeline.steps.plan_step import plan, write_plan
-from core.plan.bounds import bounds_of
-from core.report.plots.plan_map import plan_map_png
-from tests.plan.small import CUT_MM, SMALL, TOML
+from core.wings.rig_planning import rig_plan
+from core.wings.rig_planning.plan_map import plan_map_png
+from core.wings.rig_planning.plan_step import plan, write_plan
+from core.wings.rig_planning.prediction.bounds import bounds_of
 from tests.simulated import trisect
+from tests.wings.rig_planning.small import CUT_MM, SMALL, TOML
 
 
 @pytest.fixture(scope="module")

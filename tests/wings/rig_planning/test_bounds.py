@@ -12,16 +12,23 @@ from core.image.stripes.noise import NoiseModel
 from core.image.stripes.speckle import NO_SPECKLE, Speckle
 from core.image.targets import Checkerboard, CircleGrid
 from core.model import Fan, LightPlane
-from core.plan.bounds import bounds_of
-from core.plan.information import Sensing, change_covariance, covariance, eliminated, flat_stripe, round_stripe
-from core.plan.light_bounds import crossing_bound, edge_density, point_bound, stripe_density
-from core.plan.light_lines import LitLine, lit_ball
-from core.plan.scanning import Stage
-from core.plan.seen_stripes import SeenStripes
 from core.simulate.scene.scene import Sphere
+from core.wings.rig_planning.prediction.bounds import bounds_of
+from core.wings.rig_planning.prediction.information import (
+    Sensing,
+    change_covariance,
+    covariance,
+    eliminated,
+    flat_stripe,
+    round_stripe,
+)
+from core.wings.rig_planning.prediction.light_bounds import crossing_bound, edge_density, point_bound, stripe_density
+from core.wings.rig_planning.prediction.light_lines import LitLine, lit_ball
+from core.wings.rig_planning.prediction.scanning import Stage
+from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 from tests.image import bound
 from tests.image import crossing_bound as other
-from tests.plan.small import SMALL
+from tests.wings.rig_planning.small import SMALL
 
 NOISE = NoiseModel(0.9, 1 / 16)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from core.pipeline.steps.plan_step import PlanResult
-from core.plan.bounds import Bound
-from core.plan.predict import Prediction
 from core.report.wording import Words, grouped
+from core.wings.rig_planning.plan_step import PlanResult
+from core.wings.rig_planning.prediction.bounds import Bound
+from core.wings.rig_planning.prediction.predict import Prediction
 
 
 def plan_rows(result: PlanResult, words: Words) -> list[tuple[str, str]]:

@@ -22,11 +22,11 @@ from core.image.stripes.noise import ROUNDING_VARIANCE, NoiseModel
 from core.image.stripes.stripe import WIDTH_IN_SIGMA, StripeSettings, filter_for
 from core.messages import Message
 from core.model.arrays import Array
-from core.plan.design import Design, PlanError
-from core.plan.light_lines import LitLine
 from core.simulate.rig import Beam, Optics, Rig
 from core.simulate.scene.image import Sensor, generator
 from core.simulate.scene.speckle import Speckle
+from core.wings.rig_planning.prediction.design import Design, PlanError
+from core.wings.rig_planning.prediction.light_lines import LitLine
 
 _WHITE_GREY = 255.0  # largest grey level of 8 bits
 _TAILS = (0.02, 0.98)  # quantiles of the brightness along all stripes between which trials are made

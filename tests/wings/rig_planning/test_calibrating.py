@@ -6,8 +6,8 @@ import pytest
 from core.calibrate.results import CAMERA_PARAMETERS
 from core.errors import InputError
 from core.image.targets import Charuco, Checkerboard, CircleGrid
-from core.plan.calibrating import EDGE_PX, plan_camera, plan_fan, square_covariance
-from tests.plan.small import SMALL
+from core.wings.rig_planning.prediction.calibrating import EDGE_PX, plan_camera, plan_fan, square_covariance
+from tests.wings.rig_planning.small import SMALL
 
 
 @pytest.fixture(scope="module")

@@ -1,6 +1,6 @@
 """Fisher information of a planned measurement: what all its pictures together can tell of camera, fan and part.
 
-Every pixel of every stripe tells, to N0 of `core.plan.light_bounds`, where a light plane π cuts a surface in the
+Every pixel of every stripe tells, to N0 of `light_bounds`, where a light plane π cuts a surface in the
 picture. On a flat surface τ (τ·X = 1 on it) that is where (π − τ)·r = 0, on a sphere where |r/(π·r) − c| = R. With D =
 ∂/∂(u, v) of the left side, a pixel's length of stripe adds J Jᵀ/(N0² |D|²), J being the derivatives by all unknowns.
 Poses and sweeps are unknowns of a few pictures each and eliminated one by one; camera and fan stay, and what is
@@ -28,17 +28,17 @@ from core.image.targets import BlackSquare, Target
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan, LightPlane, Pose
 from core.model.arrays import Array
-from core.plan.calibrating import plates_under_fan, square_covariance, view_poses
-from core.plan.design import Design
-from core.plan.light_bounds import edge_density, point_bound, stripe_density
-from core.plan.light_lines import LitLine, lit_ball
-from core.plan.scanning import Stage
-from core.plan.seen_stripes import SeenStripes
 from core.simulate.calibration import CAMERA_GREY, PLANE_GREY
 from core.simulate.scene.boards import BLACK, WHITE
 from core.simulate.scene.laser import Sheet, fan_sheets
 from core.simulate.scene.scene import Sphere
 from core.simulate.scene.targets import room_shade
+from core.wings.rig_planning.prediction.calibrating import plates_under_fan, square_covariance, view_poses
+from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.light_bounds import edge_density, point_bound, stripe_density
+from core.wings.rig_planning.prediction.light_lines import LitLine, lit_ball
+from core.wings.rig_planning.prediction.scanning import Stage
+from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 
 CAMERA = 9
 """Unknowns of the camera: `core.calibrate.results.CAMERA_PARAMETERS` without k3."""

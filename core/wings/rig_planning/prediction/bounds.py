@@ -19,8 +19,9 @@ from core.calibrate.camera.reprojection import ray_changes
 from core.calibrate.change import STABLE, Stability
 from core.messages import Message, plural_message
 from core.model.arrays import Array
-from core.plan.design import USUAL_CHECK, Design
-from core.plan.information import (
+from core.progress import Progress, silent
+from core.wings.rig_planning.prediction.design import USUAL_CHECK, Design
+from core.wings.rig_planning.prediction.information import (
     CAMERA,
     PlannedScan,
     Seen,
@@ -32,8 +33,7 @@ from core.plan.information import (
     check_information,
     covariance,
 )
-from core.plan.light_bounds import crossing_bound
-from core.progress import Progress, silent
+from core.wings.rig_planning.prediction.light_bounds import crossing_bound
 
 STRETCH_PX = 100
 """Length of stripe over which a mean is stated."""

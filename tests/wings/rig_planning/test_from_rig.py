@@ -6,10 +6,10 @@ from core.calibrate.change import DEFAULT_STABILITY
 from core.errors import InputError
 from core.files.recording.rig import read_rig
 from core.image.targets import Charuco
-from core.plan.design import Design
-from core.plan.from_rig import read_design, read_stated
 from core.simulate.calibration import rig_toml
 from core.simulate.scenario import Scenario
+from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.from_rig import read_design, read_stated
 
 
 @pytest.fixture

@@ -1,6 +1,6 @@
 """A small plan that is predicted in a second or two."""
 
-from core.plan.design import Design
+from core.wings.rig_planning.prediction.design import Design
 
 SMALL = Design(pixels=(960, 687), pixel_um=6.68, views=8, poses=6, sweeps=16)
 CUT_MM = 0.2

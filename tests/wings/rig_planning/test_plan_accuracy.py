@@ -12,10 +12,10 @@ from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
-from core.plan.design import Design
-from core.plan.predict import Planner
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
+from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.predict import Planner
 
 HEIGHT, CUT_MM = 50.0, 0.2
 PAPER = Design(pixels=(960, 687), pixel_um=6.68, sweeps=40)

@@ -11,13 +11,13 @@ import pytest
 
 from core.files.project.data import Project, new_project
 from core.files.project.folder import read_project
-from core.pipeline.project import rig_plan
 from core.pipeline.project.details import accepted_calibration
-from core.pipeline.project.rig_plan import ForetoldRig, foretell_project, write_foretold
 from core.pipeline.project.workspace import project_set
-from core.plan.design import Design
-from core.plan.from_rig import read_design
 from core.simulate.rig import pencil_fan
+from core.wings.rig_planning import rig_plan
+from core.wings.rig_planning.prediction.design import Design
+from core.wings.rig_planning.prediction.from_rig import read_design
+from core.wings.rig_planning.rig_plan import ForetoldRig, foretell_project, write_foretold
 
 CUT_MM = 0.123
 

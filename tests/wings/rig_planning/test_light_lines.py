@@ -8,12 +8,12 @@ from core.image.stripes.extraction import extract_centrelines
 from core.image.stripes.noise import NoiseModel
 from core.image.stripes.stripe import StripeSettings
 from core.model.arrays import runs_of
-from core.plan.light_lines import faces_of, lit_lines
-from core.plan.seen_stripes import SeenStripes
 from core.simulate.blur import blurred
 from core.simulate.scene.laser import laser_light
 from core.simulate.scene.scene import surface_maps
-from tests.plan.small import SMALL
+from core.wings.rig_planning.prediction.light_lines import faces_of, lit_lines
+from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
+from tests.wings.rig_planning.small import SMALL
 
 HEIGHT = 50.0
 

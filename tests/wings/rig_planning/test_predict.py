@@ -6,10 +6,10 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.inspect.causes import Cause
 from core.messages import plain
-from core.plan.bounds import bounds_of
-from core.plan.changes import CHANGES, Change, Effect, advice, compare
-from core.plan.predict import Planner
-from tests.plan.small import CUT_MM, SMALL
+from core.wings.rig_planning.prediction.bounds import bounds_of
+from core.wings.rig_planning.prediction.changes import CHANGES, Change, Effect, advice, compare
+from core.wings.rig_planning.prediction.predict import Planner
+from tests.wings.rig_planning.small import CUT_MM, SMALL
 
 HEIGHT = 50.0
 

@@ -22,11 +22,11 @@ from core.model.arrays import Array
 from core.pipeline.project.details import accepted_calibration
 from core.pipeline.project.results import load_results
 from core.pipeline.project.workspace import project_set, rig_in_its_air
-from core.pipeline.steps.plan_step import PlanResult, plan, write_plan
-from core.pipeline.steps.plan_words import plan_rows
-from core.plan.design import RANGES
 from core.progress import Progress, silent
 from core.report.wording import Words
+from core.wings.rig_planning.plan_step import PlanResult, plan, write_plan
+from core.wings.rig_planning.plan_words import plan_rows
+from core.wings.rig_planning.prediction.design import RANGES
 
 PLANNED_RIG = "planned-rig.toml"
 """The rig that was planned, with what was known of it, beside its plan: to be changed and planned again."""

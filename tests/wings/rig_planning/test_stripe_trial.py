@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from core.plan.seen_stripes import Light, try_stripes
 from core.simulate.rig import Optics
+from core.wings.rig_planning.prediction.seen_stripes import Light, try_stripes
 
 LIGHT = Light(width_px=1.5, background_grey=25.0, single=False)
 

@@ -12,11 +12,11 @@ from PySide6.QtWidgets import QMainWindow
 from core.errors import InputError
 from core.files.project.data import new_project
 from core.messages import Message
-from core.pipeline.project.rig_plan import ForetoldRig
+from core.wings.rig_planning.rig_plan import ForetoldRig
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
-from workbench.pages.project.rig_plan import RigPlans
 from workbench.views import ask
+from workbench.wings.rig_planning.rig_plan import RigPlans
 from workbench.work import jobs
 
 ROWS = [

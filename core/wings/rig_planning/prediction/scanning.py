@@ -11,9 +11,6 @@ from core.image.stripes.centreline import Centreline
 from core.image.stripes.stripe import CONTRAST_QUANTILE, WIDTH_IN_SIGMA, StripeSettings
 from core.messages import Message
 from core.model import Camera
-from core.plan.design import Design, PlanError
-from core.plan.light_lines import FlatFace, LitLine, faces_of, lit_lines
-from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent, steps
 from core.scan.features.extraction import FrameFeatures, ScanFeatures, gather
 from core.simulate.rig import Rig
@@ -21,6 +18,9 @@ from core.simulate.scan import LAMP
 from core.simulate.scene.image import generator
 from core.simulate.scene.laser import Sheet, fan_sheets
 from core.simulate.scene.scene import Scene
+from core.wings.rig_planning.prediction.design import Design, PlanError
+from core.wings.rig_planning.prediction.light_lines import FlatFace, LitLine, faces_of, lit_lines
+from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 
 
 def plan_scan(design: Design, height_mm: float, seed: int, progress: Progress = silent) -> ScanFeatures:

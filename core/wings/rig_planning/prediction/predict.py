@@ -27,9 +27,6 @@ from core.inspect.uncertainty.point_errors import PointErrors
 from core.inspect.uncertainty.skewed_light import NOTHING_SEEN, unseen_mean_mm
 from core.messages import Message
 from core.model.arrays import Array
-from core.plan.calibrating import plan_camera, plan_check, plan_fan
-from core.plan.design import Design, PlanError
-from core.plan.scanning import plan_scan
 from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
 from core.scan.features.extraction import ScanFeatures
@@ -37,6 +34,9 @@ from core.scan.reconstruct import ReconstructOptions, reconstruct
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 from core.scan.surface.cloud import Cloud
+from core.wings.rig_planning.prediction.calibrating import plan_camera, plan_check, plan_fan
+from core.wings.rig_planning.prediction.design import Design, PlanError
+from core.wings.rig_planning.prediction.scanning import plan_scan
 
 MAP_COLUMNS = 48
 """Cells of the σ map across the picture."""

@@ -12,7 +12,7 @@ from core.files.recording.rig import RigTables, TargetTable, read_rig_tables, st
 from core.image.targets import Target
 from core.inspect.uncertainty.part import Part
 from core.messages import Message
-from core.plan.design import PAPER_PIXEL_UM, Design
+from core.wings.rig_planning.prediction.design import PAPER_PIXEL_UM, Design
 
 
 def read_design(path: Path) -> Design:

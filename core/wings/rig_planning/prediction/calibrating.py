@@ -16,9 +16,6 @@ from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera, Pose
 from core.model.arrays import Array, runs_of
-from core.plan.design import Design, PlanError
-from core.plan.light_lines import FlatFace, LitLine, lit_lines
-from core.plan.seen_stripes import SeenStripes
 from core.progress import Progress, silent
 from core.simulate.calibration import PLANE_GREY
 from core.simulate.poses import camera_poses, plane_poses
@@ -28,6 +25,9 @@ from core.simulate.scene.laser import fan_sheets
 from core.simulate.scene.patterns import Pattern
 from core.simulate.scene.stage import TABLE_DEPTH_MM
 from core.simulate.scene.targets import fan_centres, room_shade
+from core.wings.rig_planning.prediction.design import Design, PlanError
+from core.wings.rig_planning.prediction.light_lines import FlatFace, LitLine, lit_lines
+from core.wings.rig_planning.prediction.seen_stripes import SeenStripes
 
 CORNER_PX = 0.020
 """Error in pixels per coordinate of a target's points: what the detectors leave on the twin's pictures, whatever their

@@ -8,9 +8,9 @@ from typing import Any
 
 from core.errors import InputError
 from core.messages import Message
-from core.plan.design import USUAL_CHECK, Design
-from core.plan.predict import Planner, Prediction
 from core.progress import Progress, silent, steps
+from core.wings.rig_planning.prediction.design import USUAL_CHECK, Design
+from core.wings.rig_planning.prediction.predict import Planner, Prediction
 
 WORTHWHILE_SHARE = 0.97
 """A change that leaves more than this share of U is not proposed."""

@@ -20,7 +20,7 @@ from workbench.work import jobs
 from workbench.work.tasks import Task
 
 if TYPE_CHECKING:
-    from core.pipeline.project.rig_plan import ForetoldRig
+    from core.wings.rig_planning.rig_plan import ForetoldRig
 
 SIZE = (1000, 640)
 """Width and height of the window at first, in pixels."""

@@ -1,0 +1,1 @@
+"""What a rig will measure, foretold before it is built."""

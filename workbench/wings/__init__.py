@@ -1,0 +1,1 @@
+"""Pages of the wings. The window imports none of them; `workbench.wing` brings them in."""

@@ -1,0 +1,1 @@
+"""Tools, Plan a rig."""
