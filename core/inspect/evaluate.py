@@ -180,9 +180,9 @@ def _measured(plan: InspectionPlan, spec: FeatureSpec, scene: Scene, *, frame_is
     if spec.kind in brought_kinds():
         rows = tuple(replace(row, notes=(*row.notes, _brought(spec.kind))) for row in rows)
     if scene.temperature is not None:
-        rows = tuple(at_reference(row, scene.temperature) for row in rows)
+        rows = tuple(at_reference(row, scene.temperature, plan.k) for row in rows)
     if plan.master is not None and spec.name in plan.master.features:
-        rows = tuple(_by_master(row, plan.master) for row in rows)
+        rows = tuple(_by_master(row, plan.master, plan.k) for row in rows)
     return replace(result, characteristics=rows)
 
 
@@ -206,12 +206,12 @@ def _of_plugins(inspection: Inspection) -> tuple[Message, ...]:
     return tuple(said)
 
 
-def _by_master(length: Characteristic, master: Master) -> Characteristic:
+def _by_master(length: Characteristic, master: Master, k: float) -> Characteristic:
     """A length by comparison with a master: with one calibration a doubt of the plane target's size cancels in it.
 
     Doubts of the master's own results count, and skewed light may make up much of the uncertainty that is left.
     """
-    found = compared(length, master)
+    found = compared(length, master, k)
     if not found.by_master:
         return found
     added = doubts_of_light(found.budget)

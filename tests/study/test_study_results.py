@@ -55,7 +55,8 @@ def test_a_name_that_is_not_there_is_told_with_those_that_are(tmp_path):
 def test_temperature_enters_the_budget_with_its_value_and_its_sensitivity():
     hot = Temperature(part_celsius=30.0, u_part_celsius=0.5, alpha=11.5e-6, u_alpha=1e-6)
     rows = {
-        one.source: one for one in at_reference(Characteristic("bar", "thickness", 100.0, 0.001, doubts=()), hot).budget
+        one.source: one
+        for one in at_reference(Characteristic("bar", "thickness", 100.0, 0.001, doubts=()), hot, 2.0).budget
     }
     expansion = rows[Cause.PART_EXPANSION]
     assert (expansion.value, expansion.point_mm, expansion.unit) == (11.5e-6, 1e-6, "1/K")

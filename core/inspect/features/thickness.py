@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from core.errors import InputError
+from core.inspect.characteristic import thickness_characteristic
 from core.inspect.faces import FacePair, find_faces
 from core.inspect.features.measured import FeatureResult, Scene
 from core.inspect.features.regions import face_in
@@ -21,8 +22,8 @@ def measure_thickness(spec: FeatureSpec, scene: Scene) -> FeatureResult:
     gauge = measure_gauge(
         scene.cloud, errors=scene.errors, regions=_faces(spec, scene), k=scene.k, progress=scene.progress
     )
-    row = scene.characteristic(spec, "thickness", gauge.thickness_mm, gauge.budget, rule=gauge.rule)
-    row = replace(row, notes=gauge.notes, doubts=gauge.doubts)
+    row = thickness_characteristic(gauge)
+    row = replace(row, name=f"{spec.name} thickness", limits=spec.limits_of("thickness"))
     faces = (gauge.upper, gauge.lower)
     indices = np.concatenate([face.indices for face in faces])
     part = np.repeat([0, 1], [len(face.indices) for face in faces])

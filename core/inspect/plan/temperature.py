@@ -29,6 +29,7 @@ from core.inspect.plan.conditions import REFERENCE_C, Master, Temperature
 from core.inspect.plan.kinds import expands
 from core.inspect.results import Contribution
 from core.inspect.uncertainty.budget import combined
+from core.inspect.uncertainty.coverage import student_factor
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message
 
@@ -36,15 +37,16 @@ ALIKE = 0.2
 """A master is of use to lengths that differ from its own by no more than this share of it."""
 
 
-def at_reference(length: Characteristic, temperature: Temperature) -> Characteristic:
+def at_reference(length: Characteristic, temperature: Temperature, k: float) -> Characteristic:
     """A length at 20 °C, what temperatures and coefficients add to its uncertainty, and a note that says so.
 
-    Form, angles and everything else that does not grow with the part is returned as it is.
+    Form, angles and everything else that does not grow with the part is returned as it is. `k` is the coverage factor
+    where u is known.
 
     Examples
     --------
     >>> hot = Temperature(part_celsius=30.0, u_part_celsius=0.5, alpha=11.5e-6, u_alpha=1e-6)
-    >>> cold = at_reference(Characteristic("bar", "thickness", 100.0, 0.001, doubts=()), hot)
+    >>> cold = at_reference(Characteristic("bar", "thickness", 100.0, 0.001, doubts=()), hot, 2.0)
     >>> round(cold.value, 6), [round(row.u_mm, 6) for row in cold.budget]
     (99.9885, [0.000575, 0.001])
     """
@@ -55,6 +57,7 @@ def at_reference(length: Characteristic, temperature: Temperature) -> Characteri
         length,
         value=length.value + change,
         u=math.hypot(length.u, combined(rows)),
+        k=student_factor(k, (*length.budget, *rows)),
         budget=(*length.budget, *rows),
         notes=(*length.notes, *notes),
         at_20=not temperature.celsius_assumed,
@@ -135,12 +138,12 @@ def temperature_contributions(length_mm: float, temperature: Temperature) -> tup
     )
 
 
-def compared(length: Characteristic, master: Master) -> Characteristic:
+def compared(length: Characteristic, master: Master, k: float) -> Characteristic:
     """A length by comparison with a master: certified + (measured − master measured).
 
     What camera and fan get wrong is the same for both if one calibration measured both, so of each such cause only the
     difference stays; everything else of both measurements and the certificate adds up. A length that differs from the
-    master's by more than a fifth is returned as it is, with a note.
+    master's by more than a fifth is returned as it is, with a note. `k` is the coverage factor where u is known.
     """
     if not expands(length):
         return length
@@ -154,6 +157,7 @@ def compared(length: Characteristic, master: Master) -> Characteristic:
         length,
         value=length.value + correction,
         u=combined(rows),
+        k=student_factor(k, rows),
         budget=rows,
         notes=(*length.notes, note),
     )
