@@ -18,7 +18,7 @@ import re
 import string
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from datetime import datetime
+from datetime import date, datetime
 from pathlib import PurePath
 from types import MappingProxyType
 from typing import Any
@@ -182,6 +182,8 @@ class Language:
         What stands between several: of a list, and of parts that are sentences themselves.
     times
         How date and time of day are written, with seconds or without.
+    days
+        How a date alone is written.
     fields
         What this reader calls the field of a file, by its key; others are called as in the file.
     commands
@@ -196,6 +198,7 @@ class Language:
     conjunction: str = "{0} and {1}"
     separators: tuple[str, str] = (", ", "; ")
     times: Callable[[datetime, bool], str] = iso_time
+    days: Callable[[date], str] = date.isoformat
     fields: Mapping[str, str] = field(default_factory=dict)
     commands: bool = True
 
@@ -223,6 +226,10 @@ class Language:
     def time(self, at: datetime, *, seconds: bool = False) -> str:
         """Date and time of day, in the time zone that `at` is in."""
         return self.times(at, seconds)
+
+    def day(self, on: date) -> str:
+        """A date without time of day."""
+        return self.days(on)
 
     def joined(self, texts: Sequence[str], how: str = "") -> str:
         """Several texts in a row: see the module."""

@@ -12,7 +12,7 @@ import gettext
 import re
 import string
 from collections.abc import Iterable, Sequence
-from datetime import datetime
+from datetime import date, datetime
 from functools import cache, partial
 from importlib.resources import files
 from typing import TYPE_CHECKING
@@ -90,6 +90,7 @@ def language(name: str) -> Language:
         conjunction=locale.list_patterns["standard"]["end"],
         separators=_separators(locale.list_patterns["standard"]["middle"].format("", "")),
         times=partial(_local_time, locale),
+        days=partial(_local_day, locale),
     )
 
 
@@ -100,10 +101,16 @@ def _separators(comma: str) -> tuple[str, str]:
 
 def _local_time(locale: Locale, at: datetime, seconds: bool) -> str:
     """Date and time of day as they are written where a language is spoken: '24.11.2026, 11:32'."""
-    from babel.dates import format_date, format_time
+    from babel.dates import format_time
 
     time = format_time(at, "medium" if seconds else "short", locale=locale)
-    return str(locale.datetime_formats["medium"]).format(time, format_date(at, "medium", locale=locale))
+    return str(locale.datetime_formats["medium"]).format(time, _local_day(locale, at))
+
+
+def _local_day(locale: Locale, on: date) -> str:
+    from babel.dates import format_date
+
+    return format_date(on, "medium", locale=locale)
 
 
 def _forms(texts: str | Sequence[str] | None) -> str | tuple[str, ...]:

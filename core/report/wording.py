@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from datetime import datetime
+from datetime import date, datetime
 from decimal import ROUND_HALF_EVEN, Decimal
 
 from core import messages
@@ -67,6 +67,10 @@ class Words:
     def time(self, at: datetime, *, seconds: bool = False) -> str:
         """Date and time of day, in the time zone that `at` is in."""
         return self.language.time(at, seconds=seconds)
+
+    def day(self, on: date) -> str:
+        """A date without time of day."""
+        return self.language.day(on)
 
     def numeral(self, digits: str) -> str:
         """Digits with the language's decimal sign and a true minus sign."""

@@ -128,6 +128,13 @@ def test_the_day_of_the_report_stands_beside_that_of_the_measurement(quick):
     assert "Measured 2026-03-14 15:09:26" in text and "Report made 2026-03-20" in text
 
 
+def test_days_of_a_report_are_written_as_in_its_language(quick):
+    due = {"camera_target": Certificate("D-K 7", "Labor Nord", date(2026, 1, 31))}
+    german = replace(quick, reported=date(2026, 3, 20), certificates=due, language="de")
+    text = words(build_report(german))
+    assert "20.03.2026" in text and "31.01.2026" in text and "2026-0" not in text
+
+
 def test_page_one_has_one_hash_and_files_are_named_by_short_ones(data, content):
     first = " ".join(reader(data).pages[0].extract_text().split())
     assert first.count("SHA-256") == 1 and f"Inputs, SHA-256 {content.inputs_digest[:12]}…" in first

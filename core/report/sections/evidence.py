@@ -129,7 +129,7 @@ def traceability(look: ReportLook, content: ReportContent) -> list[Flowable]:
     }
     rows: list[list[Flowable]] = [heads(look, "Standard", "certificate", "laboratory", "due")]
     for title, one in traced.items():
-        due = words("not stated") if one.due is None else f"{one.due}"
+        due = words("not stated") if one.due is None else words.day(one.due)
         until = words("{day}, lapsed", day=due) if one.lapsed(day) else due
         said = (one.number, one.laboratory, until) if one.stated else (words("none stated"), "–", "–")
         rows.append([look.text(title, "small"), *(look.text(text or words("not stated"), "small") for text in said)])

@@ -71,7 +71,7 @@ def _evidence(look: ReportLook, content: ReportContent) -> dict[str, str]:
     return {
         words("Report"): content.report_id,
         words("Measured"): f"{words.time(content.timestamp, seconds=True)} {content.timestamp:%Z}".strip(),
-        words("Report made"): "" if content.reported is None else f"{content.reported}",
+        words("Report made"): "" if content.reported is None else words.day(content.reported),
         words("Rig"): content.rig_id,
         words("Camera calibration"): marks.get("camera", ""),
         words("Laser planes"): marks.get("planes", ""),
