@@ -1,5 +1,7 @@
 """Pictures of every page for people to look at: python -m tests.workbench.screenshots FOLDER [--language de].
 
+With --switched the window starts in English and the other theme, shows every page, and is switched while it runs, to
+one language after the other.
 With --readme only those that README and manual show, small (make pictures). QT_SCALE_FACTOR=2 makes them at twice the
 size, on a screen of 3840 x 2160.
 """
@@ -12,6 +14,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, cast
 
@@ -30,7 +33,7 @@ from core.simulate.scene.objects import gauge_block
 from core.translations import PSEUDO, language, languages
 from tests.study.grr_tables import AIAG
 from tests.study.spc_tables import PISTON_RINGS
-from workbench.app import Application, build_window
+from workbench.app import Application, build_window, speak
 from workbench.bench import Bench, make_bench
 from workbench.language import choose
 from workbench.main_window import MainWindow
@@ -71,19 +74,36 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m tests.workbench.screenshots", description=__doc__)
     parser.add_argument("folder", nargs="?", type=Path, default=Path("screenshots"))
     parser.add_argument("--readme", action="store_true", help="only those that README and manual show")
-    parser.add_argument("--language", choices=(*languages(), PSEUDO), default="en")
+    parser.add_argument("--language", nargs="+", choices=(*languages(), PSEUDO), default=["en"])
+    parser.add_argument("--theme", choices=THEMES, help="only this one, and the window starts so")
+    parser.add_argument("--switched", action="store_true", help="language and theme change when every page was shown")
+    parser.add_argument("--sizes", nargs="+", type=_size, default=SIZES, metavar="WIDTHxHEIGHT")
     given = parser.parse_args()
-    folder: Path = given.folder
-    folder.mkdir(parents=True, exist_ok=True)
+    wanted = _Wanted(given.folder, (given.theme,) if given.theme else THEMES, tuple(given.sizes))
+    if len(given.language) > 1 and not given.switched:
+        parser.error("several languages want --switched")
+    wanted.folder.mkdir(parents=True, exist_ok=True)
     app = Application(sys.argv[:1])
-    choose(language(given.language), app)
+    choose(language("en" if given.switched else given.language[0]), app)
+    before = wanted.themes[-1] if len(wanted.themes) > 1 else next(one for one in THEMES if one != wanted.themes[0])
     with tempfile.TemporaryDirectory() as home:
         bench = make_bench(AppSettings(Path(home) / "settings.ini"))
         bench.settings.projects_folder = Path(home) / "projects"
-        window = build_window(app, bench, "light")
+        bench.settings.theme = before if given.switched else wanted.themes[0]
+        window = build_window(app, bench)
         window.show()
         try:
-            (_readme if given.readme else _all)(app, bench, window, folder)
+            if given.readme:
+                _readme(app, bench, window, wanted.folder)
+            elif given.switched:
+                _open_sample(app, bench, window)
+                for name in given.language:
+                    window = _switched(app, bench, window, name)
+                    _all(app, bench, window, replace(wanted, prefix=f"{name}-"))
+            else:
+                _each(app, bench, window, wanted, "0-welcome")
+                _open_sample(app, bench, window)
+                _all(app, bench, window, wanted)
         finally:
             bench.close()
             window.leave()
@@ -91,9 +111,39 @@ def main() -> int:
     return 0
 
 
-def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> None:
-    _each(app, bench, window, folder, "0-welcome")
-    _open_sample(app, bench, window)
+@dataclass(frozen=True)
+class _Wanted:
+    """Where the pictures go, and which."""
+
+    folder: Path
+    themes: tuple[str, ...]
+    sizes: tuple[QSize, ...]
+    prefix: str = ""
+    """Of the names of the files."""
+
+
+def _size(text: str) -> QSize:
+    return QSize(*map(int, text.split("x")))
+
+
+def _switched(app: QApplication, bench: Bench, window: MainWindow, name: str) -> MainWindow:
+    """The window that takes this one's place for another language, once every page of this one was shown."""
+    for step in STEPS:
+        window.go_to(step.name)
+        _settle(app, bench, 1.0)
+    new: list[MainWindow] = []
+
+    def put() -> MainWindow:
+        new.append(build_window(app, bench))
+        new[0].show()
+        return new[0]
+
+    speak(app, window, name, put)
+    _wait(app, lambda: bool(new) and bool(new[0].current), PATIENCE_S)
+    return new[0]
+
+
+def _all(app: QApplication, bench: Bench, window: MainWindow, wanted: _Wanted) -> None:
     for number, step in enumerate(STEPS, start=1):
         window.go_to(step.name)
         if step.name == "report":
@@ -102,12 +152,12 @@ def _all(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -> N
         _drawn(app, bench, window, step.name)
         if step.name == "inspect":
             for name in _inspect_tabs(app, bench, window):
-                _each(app, bench, window, folder, f"{number}-inspect-{name}")
+                _each(app, bench, window, wanted, f"{number}-inspect-{name}")
         else:
-            _each(app, bench, window, folder, f"{number}-{step.name}")
+            _each(app, bench, window, wanted, f"{number}-{step.name}")
     window.enter_operator_mode()
     _settle(app, bench, 1.0)
-    _each(app, bench, window, folder, "9-operator")
+    _each(app, bench, window, wanted, "9-operator")
     window.leave_operator_mode()
 
 
@@ -252,14 +302,14 @@ def _readme(app: QApplication, bench: Bench, window: MainWindow, folder: Path) -
         flat.save(path, optimize=True)
 
 
-def _each(app: QApplication, bench: Bench, window: MainWindow, folder: Path, name: str) -> None:
-    for theme in THEMES:
+def _each(app: QApplication, bench: Bench, window: MainWindow, wanted: _Wanted, name: str) -> None:
+    for theme in wanted.themes:
         bench.settings.theme = theme
-        for size in SIZES:
+        for size in wanted.sizes:
             window.resize(size)
             window.move(0, 0)  # one as large as the screen would lie partly beside it
             _settle(app, bench, 0.7)
-            path = folder / f"{name}-{theme}-{size.width()}x{size.height()}.png"
+            path = wanted.folder / f"{wanted.prefix}{name}-{theme}-{size.width()}x{size.height()}.png"
             grab(window).save(str(path))
 
 
