@@ -11,7 +11,7 @@ from PySide6.QtWidgets import QFrame, QLabel, QProgressBar, QPushButton, QSizePo
 from core.files.project.folder import results_folder
 from core.messages import capital
 from core.report.tolerance_scale import ToleranceScale
-from core.report.wording import headed_name, value_line, verdict_title
+from core.report.wording import headed_name, unbroken, value_parts, verdict_title
 from core.states import STEP_STATES
 from workbench.language import tr
 from workbench.pages.project.operator import OperatorMode, Stage
@@ -180,7 +180,8 @@ class OperatorPage(QWidget):
         verdict = verdict_title(found.verdict, wording())
         line, worst = "", self._mode.worst
         if worst is not None:
-            line = tr("{name}: {value}", name=headed_name(worst, wording()), value=value_line(worst, wording()))
+            value, coverage = value_parts(worst, wording())
+            line = tr("{name}: {value}", name=headed_name(worst, wording()), value=f"{unbroken(value)} {coverage}")
         return symbol, "text" if colour == "muted" else colour, verdict, line
 
     def _measure(self) -> None:
