@@ -59,11 +59,14 @@ def by_entry_points(group: str) -> Iterator[Brought]:
 
 
 def by_folders(package: str, constant: str) -> Iterator[Brought]:
-    """Load a constant of the module `wing` in each folder of a package of ours; nothing where the package is gone."""
+    """Load a constant of the module `wing` in each folder of a package of ours, but for those that are left out.
+
+    Nothing where the package itself is gone.
+    """
     if find_spec(package) is None:
         return
     for found in iter_modules(import_module(package).__path__):
-        if found.ispkg:
+        if found.ispkg and found.name not in left_out():
             yield _loaded(EntryPoint(found.name, f"{package}.{found.name}.wing:{constant}", ""), None)
 
 

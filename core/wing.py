@@ -77,11 +77,11 @@ def found_wings(kind: type[AWing], brought: Iterable[Brought]) -> Found[AWing]:
     """The wings among what is brought, without those that are left out; of one name the first counts."""
     found, unusable = dict[str, tuple[AWing, Origin | None]](), list[Brought]()
     for one in brought:
-        if one.name in left_out():
-            continue
         wing = one.what
-        if one.why or not isinstance(wing, kind) or wing.name in found:
-            unusable.append(one if one.why else replace(one, why=_NO_WING))
-        elif wing.name not in left_out():
+        if one.name in left_out() or (isinstance(wing, kind) and wing.name in left_out()):
+            continue
+        if isinstance(wing, kind) and wing.name not in found:
             found[wing.name] = wing, one.origin
+        else:
+            unusable.append(one if one.why else replace(one, why=_NO_WING))
     return Found(tuple(found.values()), tuple(unusable))

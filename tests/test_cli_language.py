@@ -17,7 +17,6 @@ from core.translations import PSEUDO
 from tests.report.test_report_pseudo import outside_brackets
 from tests.simulated import CUT, trisect
 from tests.study.grr_tables import AIAG
-from tests.wings.rig_planning.small import CUT_MM, TOML
 
 SAME_EVERYWHERE = re.compile(
     r"(/[\w.\-/…]+)+|[\w.\-]+\.(png|json|toml|pdf|csv|ply|stl|trisectz)\b|[0-9a-f]{6,}|E_n|ndc|Cgk?|ANOVA|RMS|RMSE|trisect|"
@@ -61,7 +60,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
     out = shutil.copytree(measured, tmp_path / "out")
     project = tmp_path / "project"
     create_project(project, ProjectFile(new_project("2026")))
-    (tmp_path / "rig.toml").write_text(TOML)
     (tmp_path / "grr.csv").write_text(
         "part;operator;value\n" + "".join(f"{p};{o};{AIAG[p, o, r]}\n" for p, o, r in cells(AIAG.shape))
     )
@@ -73,7 +71,6 @@ def test_no_other_command_prints_an_untranslated_word(simulated, measured, tmp_p
         ("mesh", out, "--format", "stl", "--fill-holes", 2, "--triangles", 900),
         ("export", out, "--format", "csv,json"),
         ("target", "--out", tmp_path / "target.pdf", "charuco"),
-        ("plan", tmp_path / "rig.toml", "--no-changes", "--scans", 1, "--bounds", "--sigma-cut", CUT_MM),
         ("import", tmp_path / "new", "--camera", simulated / "camera", "--dry-run"),
         ("import", tmp_path / "new", "--camera", simulated / "camera"),
         ("check", simulated, "--out", out, "--history"),

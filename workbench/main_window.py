@@ -70,7 +70,6 @@ from workbench.views.manual import ManualWindow
 from workbench.views.task_bar import StatusBar, TaskBar, time_left
 from workbench.window_layout import LayoutOfScreen, keep_layout, restore_layout
 from workbench.wing import opened_by_entries
-from workbench.wings.rig_planning.rig_plan import RigPlans
 from workbench.work import jobs
 from workbench.work.jobs import name_of
 from workbench.work.tasks import Task
@@ -127,7 +126,7 @@ class MainWindow(QMainWindow):
         self.log_file: Path | None = None
         self.messages = self._messages_dock()
         self.manual = ManualWindow(self)
-        self.rig_plans, self.many_sets = RigPlans(bench, self), ManySets(bench, self)
+        self.many_sets = ManySets(bench, self)
         self.console, self._no_console = ProjectConsole(self.model, self), console_missing()
         self.operator_mode = OperatorMode(bench, self._project_presenter().whole)
         self.operator = OperatorPage(self.operator_mode, self.model)
@@ -339,7 +338,6 @@ class MainWindow(QMainWindow):
             "first measurement": projects.begin_first_measurement,
             "quick card": self._print_quick_card,
             "console": self.console.open,
-            "plan rig": self.rig_plans.open,
             "many sets": self.many_sets.open,
             "script": projects.copies.save_script,
             "operator mode": self.enter_operator_mode,

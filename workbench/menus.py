@@ -230,7 +230,6 @@ class Menus(QObject):
         tools = bar.addMenu(tr("&Tools"))
         tools.setToolTipsVisible(True)
         self._add(tools, "console", tr("Python &console"))
-        self._add(tools, "plan rig", tr("&Plan a rig …"))
         self._add(tools, "many sets", tr("&Measure many sets …"))
         self._add(tools, "script", tr("Save what was done as a &script …"))
 

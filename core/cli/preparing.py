@@ -1,14 +1,12 @@
-"""What is done before anything is measured: targets are printed, a rig is foretold."""
+"""What is done before anything is measured: targets and the quick card are printed."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from pathlib import Path
 from typing import cast
 
 from core.cli import output
-from core.cli.language import spoken, tr
-from core.cli.measuring import Shown
+from core.cli.language import tr
 from core.cli.options import one_of
 from core.errors import InputError, WrongValue
 from core.files.atomic import write_bytes
@@ -17,12 +15,9 @@ from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid, T
 from core.image.targets.kinds import USUAL, USUAL_MARKER
 from core.messages import Message
 from core.pipeline.steps.prints import write_quick_card
-from core.progress import Progress
 from core.report.target_sheet import PAPER_MM, RULER_MM, SheetPaper, sheet_layout, target_sheet
 from core.report.template import PAPERS, Paper
-from core.report.wording import Words, target_in_words
-from core.wings.rig_planning.plan_step import plan, plan_values, write_plan
-from core.wings.rig_planning.plan_words import plan_rows
+from core.report.wording import target_in_words
 
 
 def target_of_words(
@@ -131,31 +126,3 @@ def _paper(name: str) -> SheetPaper:
         where="--paper",
         todo=Message("advice.choose_paper", "choose one of {paper_mm}", paper_mm=tuple(PAPER_MM)),
     )
-
-
-def run_plan(
-    rig: Path,
-    out: Path | None,
-    *,
-    scans: int,
-    changes: bool,
-    sigma_cut: float,
-    bounds: bool = False,
-    progress: Progress,
-) -> Shown:
-    """Predict, write what is asked for, and return what to say."""
-    if scans < 1:
-        raise InputError(
-            Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=scans),
-            where="--scans",
-            todo=Message("advice.give_one_or_more", "give 1 or more"),
-        )
-    if not sigma_cut > 0:
-        raise InputError(
-            Message("design.cut_too_small", "{sigma_cut:g} mm cuts every point", sigma_cut=sigma_cut),
-            where="--sigma-cut",
-            todo=Message("advice.give_length_above_zero", "give a length above 0"),
-        )
-    result = plan(rig, scans=scans, changes=changes, sigma_cut_mm=sigma_cut, bounds=bounds, progress=progress)
-    files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
-    return Shown(plan_rows(result, Words(spoken())), plan_values(result), files=files)

@@ -1,4 +1,4 @@
-"""What comes before a measurement: targets to print, what a rig would measure, pictures to import. Light to import."""
+"""What comes before a measurement: targets to print, pictures to import. Light to import."""
 
 from __future__ import annotations
 
@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from core.cli.bar import bar
 from core.cli.interrupts import interruptible
-from core.cli.options import Json, OrderBy, Panel, RecordedPart, SigmaCut, WhichTarget
+from core.cli.options import Json, OrderBy, Panel, RecordedPart, WhichTarget
 
 commands = typer.Typer()
 
@@ -65,32 +64,6 @@ def card(
 
     preparing.write_card(paper, out)
     preparing.show_card(out, as_json=json)
-
-
-@commands.command(rich_help_panel=Panel.PREPARE)
-def plan(
-    rig: Annotated[Path, typer.Argument(metavar="RIG", help="A rig.toml, or the recording set that holds it.")],
-    out: Annotated[
-        Path | None, typer.Option("--out", "-o", metavar="DIR", help="Write plan.json and sigma.png there.")
-    ] = None,
-    scans: Annotated[int, typer.Option(metavar="N", help="Scans drawn for the prediction.")] = 2,
-    no_changes: Annotated[
-        bool, typer.Option("--no-changes", help="Do not try which change of the rig helps most: sooner done.")
-    ] = False,
-    sigma_cut: SigmaCut = 0.05,
-    bounds: Annotated[
-        bool, typer.Option("--bounds", help="Also say what no program could do better (Cramér–Rao), as a table.")
-    ] = False,
-    json: Json = False,
-) -> None:
-    """Predict what a rig will measure, before anything is bolted down: U of a thickness, σ, what helps most."""
-    from core.cli import preparing
-
-    with bar() as progress:
-        shown = preparing.run_plan(
-            rig, out, scans=scans, changes=not no_changes, sigma_cut=sigma_cut, bounds=bounds, progress=progress
-        )
-    shown.show(as_json=json)
 
 
 @commands.command("import", rich_help_panel=Panel.PREPARE)

@@ -2,7 +2,7 @@
 
 import pytest
 
-from core.door import WITHOUT
+from core.door import WITHOUT, by_folders
 from core.wing import wings
 from tests.simulated import trisect
 from tests.wings.strangers import install, look_again
@@ -85,3 +85,7 @@ def test_a_wing_is_left_out_by_its_name(install, monkeypatch):
     said = trisect("greet")
     assert said.code == 2 and 'there is no command "greet"' in said.err
     assert "cannot be used" not in trisect("--help").err
+
+
+def test_where_the_folder_of_wings_is_gone_there_are_none():
+    assert list(by_folders("core.no_such_folder", "WING")) == []

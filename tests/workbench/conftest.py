@@ -11,7 +11,7 @@ import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 if not os.environ.get("DISPLAY"):
     os.environ.setdefault("QT_QPA_PLATFORM", "offscreen")
@@ -23,6 +23,7 @@ from PySide6.QtWidgets import QApplication, QWidget
 
 from tests.shared import SAID_ALOUD
 from tests.workbench import screen
+from tests.workbench.hand_lane import HandLane
 from tests.workbench.technician import Technician
 from workbench.app import build_window
 from workbench.bench import Bench
@@ -138,6 +139,20 @@ def bench(qapp: QApplication, lanes: dict[str, SharedLane], tmp_path: Path) -> I
     made.close()
     made.model.blockSignals(True)  # whoever listened may be gone
     made.model.close()  # else what was changed is still to be autosaved, in the midst of the next test
+
+
+@pytest.fixture
+def hand_bench(qapp: QApplication, tmp_path: Path) -> Iterator[Bench]:
+    """Jobs run in this process, a moment later; those of the live lane wait for the test."""
+    settings = AppSettings(tmp_path / "settings.ini")
+    settings.projects_folder = tmp_path / "projects"
+    lanes = [HandLane(name) for name in ("measuring", "quick", "live")]
+    lanes[2].held = {jobs.RUN_LIVE}
+    measuring, quick, live = (cast(Lane, lane) for lane in lanes)
+    bench = Bench(ProjectModel(), Notices(), settings, measuring, quick, live)
+    yield bench
+    bench.model.blockSignals(True)  # whoever listened may be gone
+    bench.model.close()
 
 
 @pytest.fixture

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import importlib
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -10,6 +11,7 @@ import pytest
 
 import workbench
 from workbench.work import jobs
+from workbench.work.jobs import Job
 
 ROOT = Path(workbench.__file__).parent
 STEPS = ("project", "camera", "planes", "scan", "inspect", "report")
@@ -68,9 +70,16 @@ def test_a_button_is_greyed_together_with_its_reason(path: Path) -> None:
             assert not by_hand, f"{node.name}: use enable() of views/layouts.py"
 
 
-@pytest.mark.parametrize("name", [name for name in vars(jobs) if name.isupper() and name[0] != "_"])
-def test_every_job_is_a_function_that_exists(name: str) -> None:
-    assert callable(jobs.resolve(getattr(jobs, name)))
+def every_job() -> Iterator[Job]:
+    """The jobs of the house, and those of the wings."""
+    for path in (ROOT / "work" / "jobs.py", *sorted(ROOT.glob("wings/*/jobs.py"))):
+        module = importlib.import_module(".".join(("workbench", *path.relative_to(ROOT).with_suffix("").parts)))
+        yield from (value for name, value in vars(module).items() if name.isupper() and name[0] != "_")
+
+
+@pytest.mark.parametrize("job", list(every_job()))
+def test_every_job_is_a_function_that_exists(job: Job) -> None:
+    assert callable(jobs.resolve(job))
 
 
 def test_the_window_can_be_imported_without_the_large_libraries() -> None:

@@ -10,15 +10,20 @@ from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.skew import FEWEST_VIEWS
 from core.calibrate.camera.third_radial import K3, left_out_misfits, third_radial
+from core.image.targets import Checkerboard
 from core.image.targets.target_view import TargetView
 from core.model import Camera
 from core.pipeline.steps.camera_step import solved_for
-from core.wings.rig_planning.prediction.calibrating import view_poses
-from core.wings.rig_planning.prediction.design import Design
+from core.simulate.poses import camera_poses
+from core.simulate.rig import DISTORTION, FULL_MATRIX, FULL_SIZE
+from core.simulate.scene.boards import printed
+from core.simulate.scene.image import generator
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 
-DESIGN = Design()
-POINTS = DESIGN.camera_target.points
+PAPER = Camera(FULL_SIZE, np.array(FULL_MATRIX), np.array(DISTORTION))
+TARGET = Checkerboard(17, 12, 10.0)
+POINTS = TARGET.points
+VIEWS, NEAREST_MM = 14, 450.0
 NOISE_PX = 0.02
 FREE = np.array([0, 1, 3, 4, 5, 6, 7, 8])
 
@@ -30,10 +35,11 @@ def with_k3(camera, k3):
 
 
 def seen(seed, k3, scale=0.25):
-    """The plan's views of a lens with this k3, all over the picture, and the camera; at quarter size."""
-    camera = with_k3(DESIGN.camera().scaled(scale), k3)
+    """Views of a lens with this k3, all over the picture, and the camera; at quarter size."""
+    camera = with_k3(PAPER.scaled(scale), k3)
     rng, points = np.random.default_rng(seed), POINTS
-    poses = tuple(view_poses(DESIGN, seed))
+    drawn = generator(seed, "camera poses")
+    poses = tuple(camera_poses(PAPER, printed(TARGET).outline, VIEWS, drawn, nearest_mm=NEAREST_MM))
     views = [
         Observed(
             points, camera.project_pose(pose, points) + rng.normal(0, NOISE_PX, (len(points), 2)), np.ones(len(points))
@@ -75,7 +81,7 @@ def test_a_lens_with_k3_gets_it_and_is_told_what_it_does(k3):
     assert found is not None
     assert found.gain > 2 * found.gain_error > 0
     assert found.px == pytest.approx(0.2 * k3, rel=0.3)
-    assert found.mm == pytest.approx(found.px * found.depth_mm / (DESIGN.camera().focal / 4), rel=0.01)
+    assert found.mm == pytest.approx(found.px * found.depth_mm / (PAPER.focal / 4), rel=0.01)
 
 
 def test_a_lens_without_k3_keeps_the_simpler_model():

@@ -5,15 +5,18 @@ import numpy as np
 import pytest
 
 from core.calibrate.change import DEFAULT_STABILITY
-from core.cli import preparing
 from core.errors import InputError
 from core.files.pictures import read_picture
-from core.wings.rig_planning import rig_plan
+from core.wings.rig_planning import planning, rig_plan
 from core.wings.rig_planning.plan_map import plan_map_png
 from core.wings.rig_planning.plan_step import plan, write_plan
 from core.wings.rig_planning.prediction.bounds import bounds_of
 from tests.simulated import trisect
+from tests.test_cli_arguments import nothing_begun
+from tests.test_cli_language import left_in_english, no_language_of_this_computer
 from tests.wings.rig_planning.small import CUT_MM, SMALL, TOML
+
+__all__ = ["no_language_of_this_computer", "nothing_begun"]
 
 
 @pytest.fixture(scope="module")
@@ -99,7 +102,7 @@ def test_the_same_plan_writes_the_same_bytes(rig, told, result):
 def test_people_are_told_in_lines(rig, result, monkeypatch):
     asked = []
     told = replace(result, bounds=bounds_of(result.design, stability=DEFAULT_STABILITY))
-    monkeypatch.setattr(preparing, "plan", lambda _, **how: asked.append(how) or told)
+    monkeypatch.setattr(planning, "plan", lambda _, **how: asked.append(how) or told)
     said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM, "--bounds")
 
     assert said.code == 0
@@ -133,6 +136,18 @@ def test_a_wrong_plan_is_refused_in_one_sentence(tmp_path):
 
     assert said.code == 2
     assert "did you mean poses" in said.sentence
+
+
+def test_a_folder_that_is_not_there_is_refused_before_anything_is_begun(nothing_begun, tmp_path):
+    said = trisect("plan", tmp_path / "none", cores=2)
+
+    assert (said.code, bool(said.sentence)) == (2, True)
+
+
+@pytest.mark.accuracy
+def test_it_prints_no_untranslated_word(rig):
+    words = ("--no-changes", "--scans", 1, "--bounds", "--sigma-cut", CUT_MM)
+    assert left_in_english("plan", rig, *words) == set()
 
 
 def test_an_out_that_is_a_file_is_told(rig, result):

@@ -1,8 +1,8 @@
-"""A bench whose jobs run in this process, and a project with views that need not be looked for."""
+"""A project with views that need not be looked for, and one with a scan."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
@@ -10,7 +10,6 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from PySide6.QtWidgets import QApplication
 
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera.views import SeenView, SeenViews, ViewsJudgement, judge_views
@@ -25,29 +24,11 @@ from tests.calibrate.camera_views import TRUTH, synthetic_views
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases
 from workbench.bench import Bench
-from workbench.notices import Notices
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.presenter import ScanPresenter
-from workbench.project_model import ProjectModel
-from workbench.settings import AppSettings
 from workbench.work import jobs
-from workbench.work.tasks import Lane
 
 VIEWS = 9
-
-
-@pytest.fixture
-def hand_bench(qapp: QApplication, tmp_path: Path) -> Iterator[Bench]:
-    """Jobs run in this process, a moment later; those of the live lane wait for the test."""
-    settings = AppSettings(tmp_path / "settings.ini")
-    settings.projects_folder = tmp_path / "projects"
-    lanes = [HandLane(name) for name in ("measuring", "quick", "live")]
-    lanes[2].held = {jobs.RUN_LIVE}
-    measuring, quick, live = (cast(Lane, lane) for lane in lanes)
-    bench = Bench(ProjectModel(), Notices(), settings, measuring, quick, live)
-    yield bench
-    bench.model.blockSignals(True)  # whoever listened may be gone
-    bench.model.close()
 
 
 @pytest.fixture(scope="session")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -16,7 +17,8 @@ from workbench.views import ask
 from workbench.views.layouts import enable, in_column, in_row, muted, resize_on_screen
 from workbench.views.lists.data_table import DataTable
 from workbench.views.plots.map import HeatMap
-from workbench.work import jobs
+from workbench.wings.rig_planning import jobs
+from workbench.work.jobs import Job
 from workbench.work.tasks import Task
 
 if TYPE_CHECKING:
@@ -24,6 +26,11 @@ if TYPE_CHECKING:
 
 SIZE = (1000, 640)
 """Width and height of the window at first, in pixels."""
+
+
+def planning_of(bench: Bench, window: QWidget) -> Callable[[], object]:
+    """Make what the menu's entry calls."""
+    return RigPlans(bench, window).open
 
 
 class RigPlans(QObject):
@@ -61,7 +68,7 @@ class RigPlans(QObject):
         """Plan the rig in a file."""
         self._run(jobs.FORETELL_RIG, (rig,), rig.name, str(rig))
 
-    def _run(self, job: jobs.Job, what: tuple[object, ...], name: str, said: str) -> None:
+    def _run(self, job: Job, what: tuple[object, ...], name: str, said: str) -> None:
         """Plan, in a window that is there at once; closed before there is a plan, it needs none any more."""
         if self.shown is not None:
             self.shown.close()

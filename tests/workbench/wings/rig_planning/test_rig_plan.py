@@ -16,8 +16,8 @@ from core.wings.rig_planning.rig_plan import ForetoldRig
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.views import ask
+from workbench.wings.rig_planning import jobs
 from workbench.wings.rig_planning.rig_plan import RigPlans
-from workbench.work import jobs
 
 ROWS = [
     ("block 50\u00a0mm", "U\u00a0=\u00a00.017\u00a0mm (k\u00a0=\u00a02)"),

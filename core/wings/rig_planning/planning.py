@@ -1,0 +1,43 @@
+"""What `trisect plan` does."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from core.cli.language import spoken
+from core.cli.measuring import Shown
+from core.errors import InputError
+from core.messages import Message
+from core.progress import Progress
+from core.report.wording import Words
+from core.wings.rig_planning.plan_step import plan, plan_values, write_plan
+from core.wings.rig_planning.plan_words import plan_rows
+
+
+def run_plan(
+    rig: Path,
+    out: Path | None,
+    *,
+    scans: int,
+    changes: bool,
+    sigma_cut: float,
+    bounds: bool = False,
+    progress: Progress,
+) -> Shown:
+    """Predict, write what is asked for, and return what to say."""
+    if scans < 1:
+        raise InputError(
+            Message("design.too_few_scans", "{scans} scans cannot be drawn", scans=scans),
+            where="--scans",
+            todo=Message("advice.give_one_or_more", "give 1 or more"),
+        )
+    if not sigma_cut > 0:
+        raise InputError(
+            Message("design.cut_too_small", "{sigma_cut:g} mm cuts every point", sigma_cut=sigma_cut),
+            where="--sigma-cut",
+            todo=Message("advice.give_length_above_zero", "give a length above 0"),
+        )
+    result = plan(rig, scans=scans, changes=changes, sigma_cut_mm=sigma_cut, bounds=bounds, progress=progress)
+    files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
+    return Shown(plan_rows(result, Words(spoken())), plan_values(result), files=files)

@@ -1,0 +1,53 @@
+"""With each wing taken away the house works: commands, a measurement, the window."""
+
+import pytest
+from typer.main import get_command
+
+from core.cli.app import app, whole_command
+from core.door import WITHOUT
+from core.wing import wings
+from tests.code import ROOT
+from tests.simulated import CUT, trisect
+from tests.wings.strangers import look_again
+
+OURS = tuple(sorted(path.parent.name for path in ROOT.glob("core/wings/*/wing.py")))
+SAME = ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "scan.npz", "gauge.json")
+"""Results that say nothing of when they were made."""
+
+
+@pytest.fixture
+def without(monkeypatch):
+    """Takes wings away, by their names."""
+
+    def taken_away(*names):
+        monkeypatch.setenv(WITHOUT, ",".join(names))
+        look_again()
+
+    yield taken_away
+    monkeypatch.undo()
+    look_again()
+
+
+def test_every_folder_of_a_wing_is_found_and_has_a_readme_of_few_lines():
+    assert tuple(sorted(wing.name for wing in wings())) == OURS
+    for name in OURS:
+        assert len((ROOT / "core" / "wings" / name / "README.md").read_text(encoding="utf-8").splitlines()) <= 12
+
+
+@pytest.mark.parametrize("name", OURS)
+def test_without_a_wing_its_commands_are_gone_and_all_others_stand(without, name):
+    before = set(whole_command()[0].commands)
+    without(name)
+    command, unusable = whole_command()
+    assert not unusable
+    assert set(get_command(app).commands) <= set(command.commands) < before
+
+
+def test_without_any_wing_a_set_is_measured_to_the_same_bytes(without, simulated, measured, tmp_path):
+    without(*OURS)
+    assert set(whole_command()[0].commands) == set(get_command(app).commands)
+    said = trisect("run", simulated, "--out", tmp_path / "out", *CUT)
+    assert said.code in (0, 1), said.err
+    assert (tmp_path / "out" / "report.pdf").exists()
+    for name in SAME:
+        assert (tmp_path / "out" / name).read_bytes() == (measured / name).read_bytes(), name
