@@ -34,6 +34,11 @@ class ControlChart:
     own: bool
     n: int
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Both ends."""
+        return self.lower, self.upper
+
     def holds(self, value: float) -> bool:
         """Whether a value lies within the limits; one that is not known does not."""
         return self.lower <= value <= self.upper

@@ -4,34 +4,42 @@ from __future__ import annotations
 
 import random
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 from datetime import date
 from pathlib import Path
 from typing import Any
 
 import pytest
 from openpyxl import load_workbook
+from openpyxl.cell import Cell
+from PySide6.QtWidgets import QApplication
 
 import core.cli.language
 import workbench.language
 from core.cli import output
 from core.files.exchange.xlsx import write_xlsx
+from core.files.results.rig_history import PastCheck
 from core.inspect.characteristic import thickness_characteristic
 from core.messages import Message
 from core.report.content import ReportContent
 from core.report.facts.fact import Fact, Reader, for_reader
 from core.report.facts.of_budget import INPUT, input_cells
-from core.report.facts.of_features import HEADS, PERMITTED
-from core.report.facts.of_studies import study_facts, study_tables
+from core.report.facts.of_checks import ALLOWED_FROM, ALLOWED_TO, check_facts, history_table
+from core.report.facts.of_features import HEADS, PERMITTED, characteristic_cells
+from core.report.facts.of_studies import study_facts, study_tables, study_title
+from core.report.facts.table import Uncertain
 from core.report.pdf import build_report
-from core.report.wording import Words
+from core.report.wording import Words, shown_unit, with_unit
 from core.study.artefact_check import ArtefactCheck
+from core.study.control_chart import ControlChart
 from tests.check_cases import check
 from tests.report.inspection_samples import characteristics, studies
 from tests.report.report_samples import block_content
 from tests.report.test_report_pdf import words as pdf_words
 from tests.workbench.test_facts import BLOCK, squeezed
 from workbench.pages.inspect.words import repeats_tsv
-from workbench.pages.words import fact_row
+from workbench.pages.words import fact_row, show_table
+from workbench.views.lists.data_table import DataTable
 
 Sheets = Mapping[str, tuple[tuple[Any, ...], ...]]
 
@@ -102,6 +110,68 @@ def test_twenty_numbers_drawn_at_random_have_one_wording_each(
         counts.append((len(said), name))
     print(*(f"{number}  {name}" for number, name in counts), sep="\n")
     assert [number for number, _ in counts] == 20 * [1], counts
+
+
+def shown_cell(cell: Cell, words: Words, *, signed: bool = False) -> str:
+    """A number as a workbook shows it, in full where it was stated."""
+    if cell.number_format == "General":
+        return words.general(cell.value)
+    return words.fixed(cell.value, len(cell.number_format.partition(".")[2]), signed=signed)
+
+
+def test_twenty_cells_of_tables_drawn_at_random_show_one_number_of_digits(
+    content: ReportContent, tmp_path: Path, printed: str, words: Words, qapp: QApplication
+) -> None:
+    """As its fact has them, whose decimals follow the uncertainty where there is one."""
+    write_xlsx(tmp_path / "r.xlsx", content)
+    sheet = load_workbook(tmp_path / "r.xlsx")["studies"]
+    in_workbook = {(row[0].value, row[1].value): row[2] for row in sheet.iter_rows()}
+    tables = [(table.for_reader(Reader.AUDITOR), study) for study in content.studies for table in study_tables(study)]
+    cells = [
+        (table, study, place, column)
+        for table, study in tables
+        if table.level <= Reader.AUDITOR
+        for place, row in enumerate(table.rows)
+        for column, value in enumerate(row)
+        if column and isinstance(value, (float, Uncertain))
+    ]
+    assert any(isinstance(table.rows[place][column], Uncertain) for table, _, place, column in cells)
+    for table, study, place, column in random.Random(37).sample(cells, 20):
+        fact = table.columns[column].fact(table.rows[place][column])
+        number, said = replace(fact, unit="").text(words), f"{words.known(fact.label)} {fact.text(words)}"
+        assert said in dict(output.fact_rows((), [table]))[table.lines(words)[place][0]]
+        shown = DataTable()
+        show_table(shown, table)
+        assert shown.rows()[place][column] == number
+        assert squeezed("".join(table.texts(words)[place])) in printed
+        name = table.lines(words)[place][0]
+        cell = in_workbook[study_title(study, words), f"{name}: {words.known(fact.label)}"]
+        assert shown_cell(cell, words, signed=fact.signed) == number
+
+
+def test_a_characteristic_has_the_digits_of_its_uncertainty_in_the_workbook(
+    content: ReportContent, tmp_path: Path, words: Words
+) -> None:
+    inspected = characteristics()
+    shown = block_content(language=content.language, gauge=None, inspected=inspected)
+    write_xlsx(tmp_path / "r.xlsx", shown)
+    head, *rows = load_workbook(tmp_path / "r.xlsx")["result"].iter_rows()
+    place = [cell.value for cell in head].index(words.known("measured"))
+    for one, row in zip(inspected, rows, strict=True):
+        if isinstance(row[place].value, float):
+            assert with_unit(shown_cell(row[place], words), shown_unit(one)[0]) == characteristic_cells(one, words)[2]
+
+
+def test_a_rigs_history_shows_the_digits_of_its_card(words: Words) -> None:
+    """A step that is off by 0.0513 ± 0.21 mm is off by 0.05 mm in both."""
+    last, chart = replace(check(), error_mm=0.0513, unseen_mm=0.21), ControlChart(0.0, -0.1234, 0.1234, own=False, n=0)
+    of_card = {words.known(fact.label): fact for fact in check_facts(last, chart)}
+    table = history_table([(PastCheck.of(last, 21.5), chart)])
+    in_table = {words.known(one.label): said for one, said in zip(table.columns, table.texts(words)[0], strict=True)}
+    for name in map(words.known, (ALLOWED_FROM, ALLOWED_TO)):
+        assert in_table[name] == of_card[name].parts(words)[0]
+    step = next(fact for fact in of_card.values() if fact.sd is not None)
+    assert in_table[words.known("off by")] == step.parts(words)[0] == words.fixed(0.05, 2, signed=True)
 
 
 def test_the_workbook_calls_each_fact_as_terminal_and_window(

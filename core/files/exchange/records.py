@@ -60,18 +60,18 @@ def fact_row(of: str, fact: Fact, words: Words) -> dict[str, Any]:
     }
 
 
-def study_rows(content: ReportContent, words: Words) -> list[dict[str, Any]]:
-    """All that is told of the studies, what stands in tables value by value: FACT_COLUMNS."""
+def facts_of_studies(content: ReportContent, words: Words) -> list[tuple[str, Fact]]:
+    """All that is told of the studies, what stands in tables value by value, each with what it is told of."""
     return [
-        fact_row(study_title(study, words), fact, words)
+        (study_title(study, words), fact)
         for study in content.studies
         for fact in (*study_facts(study), *(fact for table in study_tables(study) for fact in table.facts(words)))
     ]
 
 
-def told_rows(content: ReportContent, words: Words) -> list[dict[str, Any]]:
-    """All that is told of what the result rests on: FACT_COLUMNS."""
-    return [fact_row(of, fact, words) for of, facts in content.facts.items() for fact in facts]
+def told_facts(content: ReportContent) -> list[tuple[str, Fact]]:
+    """All that is told of what the result rests on, each with what it is told of."""
+    return [(of, fact) for of, facts in content.facts.items() for fact in facts]
 
 
 def unit_of(one: Characteristic) -> tuple[str, float]:

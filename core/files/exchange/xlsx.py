@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import math
 import zipfile
 from collections.abc import Iterable, Mapping, Sequence
 from datetime import UTC, datetime
@@ -22,14 +23,17 @@ from core.files.exchange.records import (
     Row,
     as_table,
     budget_rows,
+    fact_row,
+    facts_of_studies,
     frame_rows,
     result_row,
     setting_rows,
-    study_rows,
-    told_rows,
+    told_facts,
 )
-from core.messages import label
+from core.inspect.characteristic import Characteristic
+from core.messages import decimals_of, label
 from core.report.content import ReportContent
+from core.report.facts.fact import Fact
 from core.report.facts.of_budget import (
     CONTRIBUTION,
     DISTRIBUTION,
@@ -63,7 +67,9 @@ _ZIP_TIME = (1980, 1, 1, 0, 0, 0)
 
 
 def write_xlsx(path: Path, content: ReportContent) -> None:
-    """Write result, budgets, studies, frames, facts of each step and settings, each on a sheet, numbers in full.
+    """Write result, budgets, studies, frames, facts of each step and settings, each on a sheet.
+
+    Cells hold numbers in full, and show as many decimals as the report does.
 
     What the report tells in words is told in its language; the names of sheets, frames and settings are fixed.
 
@@ -75,7 +81,7 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     book = Workbook()
     book.remove(book.worksheets[0])
     words = Words.of(content.language)
-    results = [{**result_row(one), "rule": words(one.rule or "")} for one in content.characteristics]
+    results = [{**_result(one), "rule": words(one.rule or "")} for one in content.characteristics]
     budgets = [
         row | {"source": words(cause.words), "distribution": words(row["distribution"] or "")}
         for one in content.characteristics
@@ -84,9 +90,9 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     tables: dict[str, Sequence[Sequence[Any]]] = {
         "result": _headed(RESULT_HEADS, results, words),
         "budget": _headed(BUDGET_HEADS, budgets, words),
-        **({"studies": as_table(FACT_COLUMNS, study_rows(content, words))} if content.studies else {}),
+        **({"studies": _facts(facts_of_studies(content, words), words)} if content.studies else {}),
         "frames": as_table(FRAME_COLUMNS, frame_rows(content)),
-        "facts": as_table(FACT_COLUMNS, told_rows(content, words)),
+        "facts": _facts(told_facts(content), words),
         "settings": [["name", "value"], *setting_rows(content)],
     }
     for name, rows in tables.items():
@@ -99,17 +105,39 @@ def write_xlsx(path: Path, content: ReportContent) -> None:
     write_bytes(path, _timeless(stream.getvalue(), content.timestamp))
 
 
+def _result(one: Characteristic) -> Row:
+    """A characteristic with the decimals of its U."""
+    row = result_row(one)
+    return _shown(row, decimals_of(row["U"] or math.nan), ("value", "deviation", "U"))
+
+
+def _facts(facts: Iterable[tuple[str, Fact]], words: Words) -> list[list[Any]]:
+    """Facts as a table, each with its decimals."""
+    numbers = ("value", "uncertainty", "low", "high")
+    return as_table(FACT_COLUMNS, [_shown(fact_row(of, fact, words), fact.decimals, numbers) for of, fact in facts])
+
+
+def _shown(row: Row, decimals: int | None, names: Iterable[str]) -> Row:
+    """The row with the real numbers of these names beside the `decimals` that are shown of them; None: as they are."""
+    if decimals is None:
+        return row
+    return {**row, **{name: (row[name], decimals) for name in names if isinstance(row[name], float)}}
+
+
 def _headed(heads: Mapping[str, str], rows: Iterable[Row], words: Words) -> list[list[Any]]:
     """A head line in the reader's language and the rows, in the order of the heads."""
     return [[words.known(name) for name in heads.values()], *([row[key] for key in heads] for row in rows)]
 
 
 def _fill(sheet: Worksheet, rows: Sequence[Sequence[Any]]) -> None:
-    """Rows with a bold head that stays in sight; a text never becomes a formula."""
+    """Rows with a bold head that stays in sight; a text never becomes a formula, (value, decimals) are a number."""
     widths: dict[int, int] = {}
     for row, values in enumerate(rows, start=1):
         for column, value in enumerate(values, start=1):
             cell = sheet.cell(row, column)
+            if isinstance(value, tuple):
+                value, decimals = value
+                cell.number_format = f"0.{'0' * decimals}" if decimals > 0 else "0"
             if isinstance(value, str):
                 cell.value = ILLEGAL_CHARACTERS_RE.sub(" ", value)
                 cell.data_type = "s"

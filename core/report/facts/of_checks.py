@@ -11,7 +11,7 @@ from core.calibrate.results import ProposedReadjustment
 from core.messages import Message, decimals_of, label, plain, plural_message
 from core.report.facts.fact import Fact, Grade, Reader, Value, named
 from core.report.facts.pictures import Picture, used_fact
-from core.report.facts.table import Column, FactTable
+from core.report.facts.table import Cell, Column, FactTable, Uncertain
 from core.states import CHECKS, VERDICT
 from core.study.artefact_check import KINDS, ArtefactCheck
 from core.study.control_chart import ControlChart
@@ -20,6 +20,7 @@ GRADES: dict[str, Grade] = {"passed": "good", "doubtful": "warn", "failed": "bad
 PROBABILITY = label("Probability that noise and the calibrations' uncertainty alone would set the stripes as far off")
 STRIPES_OFF, STRIPES_OFF_MM = label("stripes off by"), label("stripes off on the target by")
 CHANCE = label("chance")
+ALLOWED_FROM, ALLOWED_TO = label("allowed from"), label("allowed to")
 
 
 class Check(Protocol):
@@ -88,6 +89,8 @@ class PastCheck(Protocol):
     @property
     def error_mm(self) -> float: ...
     @property
+    def unseen_mm(self) -> float: ...
+    @property
     def offset_px(self) -> float: ...
     @property
     def offset_mm(self) -> float: ...
@@ -117,16 +120,16 @@ def history_table(checks: Iterable[tuple[PastCheck, ControlChart]]) -> FactTable
         Column(STRIPES_OFF_MM, "mm", 3, level=Reader.METROLOGIST),
         Column(CHANCE, significant=2, level=Reader.AUDITOR),
         Column(label("step height"), "mm"),
-        Column(label("off by"), "mm", 3, signed=True),
-        Column(label("allowed from"), "mm", 3, signed=True),
-        Column(label("allowed to"), "mm", 3, signed=True),
+        Column(label("off by"), "mm", signed=True),
+        Column(ALLOWED_FROM, "mm", signed=True),
+        Column(ALLOWED_TO, "mm", signed=True),
         Column(label("allowed by")),
         Column(label("air"), "°C"),
     )
     return FactTable(columns, tuple(_past_cells(one, chart) for one, chart in checks))
 
 
-def _past_cells(check: PastCheck, chart: ControlChart) -> tuple[Value, ...]:
+def _past_cells(check: PastCheck, chart: ControlChart) -> tuple[Cell, ...]:
     seen = (check.offset_px, check.offset_mm, check.p)
     allowed: Value = label("its uncertainty") if check.artefact else label("its stability")
     if chart.own:
@@ -138,9 +141,7 @@ def _past_cells(check: PastCheck, chart: ControlChart) -> tuple[Value, ...]:
         check.e_n if check.artefact else None,
         *(None if check.artefact else _known(value) for value in seen),
         check.step_mm,
-        _known(check.error_mm),
-        chart.lower,
-        chart.upper,
+        *(Uncertain(mm, check.unseen_mm) if math.isfinite(mm) else None for mm in (check.error_mm, *chart.limits)),
         allowed,
         check.celsius,
     )
@@ -158,10 +159,11 @@ def _allowed(check: Check, chart: ControlChart) -> tuple[Fact, ...]:
             "Mean ± 3 standard deviations of the {n} checks before with these calibrations",
             n=chart.n,
         )
-    span = Message("told.span", "{lower:+.3f} mm to {upper:+.3f} mm", lower=chart.lower, upper=chart.upper)
-    name = label("allowed by its history") if chart.own else label("allowed by its stability")
     grade: Grade = "" if math.isnan(check.error_mm) or chart.holds(check.error_mm) else "warn"
-    return (Fact(name, span, tip=tip, level=Reader.AUDITOR, grade=grade),)
+    return tuple(
+        Fact(name, mm, "mm", decimals_of(check.unseen_mm), tip, Reader.AUDITOR, signed=True, grade=grade)
+        for name, mm in zip((ALLOWED_FROM, ALLOWED_TO), chart.limits, strict=True)
+    )
 
 
 def readjustment_facts(done: ProposedReadjustment) -> tuple[Fact, ...]:

@@ -12,7 +12,7 @@ from core.messages import label, plain
 from core.report.facts.fact import Fact, Reader, named
 from core.report.facts.of_features import characteristic_facts
 from core.report.facts.pictures import Picture, used_fact
-from core.report.facts.table import Column, FactTable
+from core.report.facts.table import Column, FactTable, Uncertain
 
 UPPER, LOWER = label("upper face"), label("lower face")
 
@@ -63,5 +63,10 @@ def pictures_fact(pictures: Sequence[PictureStep]) -> Fact:
 def pictures_table(pictures: Sequence[PictureStep]) -> FactTable:
     """The step of each picture of the fan alone that gave one."""
     own = label("Standard uncertainty that is the picture's own (k = 1)")
-    columns = (Column(label("picture")), Column(label("thickness"), "mm", 3), Column(label("own u"), "mm", 3, own))
-    return FactTable(columns, tuple((plain(one.name), one.thickness_mm, one.own_mm) for one in pictures if one.used))
+    columns = (Column(label("picture")), Column(label("thickness"), "mm"), Column(label("own u"), "mm", tip=own))
+    rows = (
+        (plain(one.name), Uncertain(one.thickness_mm, one.own_mm), Uncertain(one.own_mm, one.own_mm))
+        for one in pictures
+        if one.used
+    )
+    return FactTable(columns, tuple(rows))

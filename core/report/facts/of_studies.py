@@ -9,7 +9,7 @@ import numpy as np
 from core.messages import Message, decimals_of, label, plain
 from core.report.facts.fact import Fact, Grade, Reader
 from core.report.facts.of_budget import EFFECTIVE, freedom_fact
-from core.report.facts.table import Column, FactTable
+from core.report.facts.table import Column, FactTable, Uncertain
 from core.report.wording import ENGLISH, Words, study_name
 from core.states import DECISIONS, SPREAD, VERDICT
 from core.study.acceptance import AcceptanceCheck
@@ -90,6 +90,11 @@ def study_tables(study: Study) -> tuple[FactTable, ...]:
             return ()
 
 
+def digits_of(study: Type1Study | SeriesStudy) -> int:
+    """Decimals of its values: one more than their scatter has."""
+    return max(decimals_of(study.s) + 1, LEAST_DIGITS)
+
+
 def repeat_facts(
     statistics: RepeatStatistics, unit: str = "mm", nominal: float | None = None, digits: int = LEAST_DIGITS
 ) -> list[Fact]:
@@ -143,7 +148,7 @@ def _of_repeats(study: RepeatStudy) -> list[Fact]:
 
 
 def _of_type1(study: Type1Study) -> list[Fact]:
-    unit, digits = study.unit, max(decimals_of(study.s) + 1, LEAST_DIGITS)
+    unit, digits = study.unit, digits_of(study)
     asked = Message(
         "study.tip_capable", "(0.1 T − |bias|) / (3 s); capable if Cg and Cgk are {limit:g} or more", limit=LIMIT
     )
@@ -228,7 +233,7 @@ def _of_grr(study: GrrStudy) -> list[Fact]:
 
 
 def _of_series(study: SeriesStudy) -> list[Fact]:
-    unit, digits = study.unit, max(decimals_of(study.s) + 1, LEAST_DIGITS)
+    unit, digits = study.unit, digits_of(study)
     facts = [_index(name, index) for name, index in study.indices.items()]
     level = Reader.AUDITOR if facts else Reader.TECHNICIAN
     facts += [
@@ -333,7 +338,7 @@ def _anova(study: GrrStudy) -> FactTable:
 
 def _points(study: SeriesStudy) -> FactTable:
     """The points of the chart in their order, with the rules that each of them breaks."""
-    charts, digits = study.charts, max(decimals_of(study.s) + 1, LEAST_DIGITS)
+    charts, digits = study.charts, digits_of(study)
     points = study.values if charts is None else charts.location.points
     names = study.labels if charts is None else tuple(study.label_of(place) for place in range(len(points)))
     broken: dict[int, list[str]] = {}
@@ -355,7 +360,7 @@ def _control_limits(study: SeriesStudy) -> tuple[FactTable, ...]:
     """Those of both charts; nothing where there are too few points for any."""
     if study.charts is None:
         return ()
-    digits = max(decimals_of(study.s) + 1, LEAST_DIGITS)
+    digits = digits_of(study)
     columns = (
         Column(label("control chart")),
         Column(label("mean"), study.unit, digits),
@@ -376,15 +381,15 @@ def _quantities(study: AcceptanceCheck) -> FactTable:
     columns = (
         Column(label("quantity")),
         Column(label("positions")),
-        Column(label("largest error"), "mm", 4, signed=True),
+        Column(label("largest error"), "mm", signed=True),
         Column(label("at"), tip=label("Position of the largest error")),
         Column(label("limit"), "mm"),
         Column(VERDICT),
     )
     rows = tuple(
         (
-            one.title, one.positions, one.largest_error, plain(one.worst.position), one.limit,
-            _decision(one.verdict) or None,
+            one.title, one.positions, Uncertain(one.largest_error, one.k * one.worst.u),
+            plain(one.worst.position), one.limit, _decision(one.verdict) or None,
         )
         for one in study.quantities
     )  # fmt: skip

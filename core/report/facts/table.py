@@ -4,10 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
-from core.messages import Message, plain
+from core.messages import Message, decimals_of, plain
 from core.report.facts.fact import Fact, Reader, Value
 from core.report.wording import Words
+
+
+@dataclass(frozen=True, slots=True)
+class Uncertain:
+    """A number of a table whose uncertainty, which stands elsewhere, decides how many decimals are shown.
+
+    `sd` is standard or expanded, as where the number is told with it, in the column's unit.
+    """
+
+    value: float
+    sd: float
+
+
+Cell: TypeAlias = Value | Uncertain
+"""What stands in a row."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -22,10 +38,11 @@ class Column:
     significant: int | None = None
     signed: bool = False
 
-    def fact(self, value: Value) -> Fact:
+    def fact(self, cell: Cell) -> Fact:
         """One of its values."""
+        value, digits = (cell.value, decimals_of(cell.sd)) if isinstance(cell, Uncertain) else (cell, self.digits)
         return Fact(
-            self.label, value, self.unit, self.digits, self.tip, self.level,
+            self.label, value, self.unit, digits, self.tip, self.level,
             significant=self.significant, signed=self.signed,
         )  # fmt: skip
 
@@ -47,7 +64,7 @@ class FactTable:
     """
 
     columns: tuple[Column, ...]
-    rows: tuple[tuple[Value, ...], ...]
+    rows: tuple[tuple[Cell, ...], ...]
     title: str = ""
     level: Reader = Reader.TECHNICIAN
 
@@ -87,11 +104,11 @@ class FactTable:
     def _level(self, column: Column) -> Reader:
         return max(self.level, column.level)
 
-    def _name(self, row: tuple[Value, ...], words: Words) -> str:
+    def _name(self, row: tuple[Cell, ...], words: Words) -> str:
         name = self.columns[0].fact(row[0]).text(words)
         return words("{name}: {value}", name=words(self.title), value=name) if self.title else name
 
-    def _said(self, row: tuple[Value, ...], words: Words) -> list[str]:
+    def _said(self, row: tuple[Cell, ...], words: Words) -> list[str]:
         return [
             f"{words.known(column.label)} {column.fact(value).text(words)}"
             for column, value in zip(self.columns[1:], row[1:], strict=True)

@@ -14,7 +14,7 @@ from reportlab.lib.utils import ImageReader
 from reportlab.platypus import Flowable, KeepTogether, Spacer, Table, TableStyle
 
 from core.report.facts.fact import Fact, Reader, for_reader
-from core.report.facts.table import FactTable, tables_for_reader
+from core.report.facts.table import FactTable, Uncertain, tables_for_reader
 from core.report.layout.paragraph import Paragraph
 from core.report.layout.style import HAIRLINE, MUTED, SANS, TEXT_WIDTH, TINT, ReportLook, color
 from core.report.wording import grouped
@@ -252,7 +252,7 @@ def fact_tables(look: ReportLook, tables: Iterable[FactTable]) -> list[Flowable]
 def _fact_table(look: ReportLook, table: FactTable) -> Table:
     """Numbers stand to the right, below their names with the units."""
     words, places = look.words, range(len(table.columns))
-    numeric = [place for place in places if any(isinstance(row[place], (int, float)) for row in table.rows)]
+    numeric = [place for place in places if any(isinstance(row[place], (int, float, Uncertain)) for row in table.rows)]
     names = [(words.known(column.label), column.unit) for column in table.columns]
     head = [
         look.text(words.in_unit(name, unit) if unit else name, "head_number" if place in numeric else "head")

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from PySide6.QtCore import Qt
 from PySide6.QtWidgets import QWidget
 
+from core.messages import decimals_of
 from workbench.language import named, number, tr
 from workbench.theme import shades
 from workbench.views.plots.base import Plot, tinted, written
@@ -142,7 +143,8 @@ class RunChart(Plot):
         runs, place = self._runs, round(x) - 1
         if runs is None or not 0 <= place < len(runs.values):
             return ""
-        value, U = (written(float(part[place]), 1e-4) for part in (runs.values, runs.U))
+        decimals = decimals_of(float(runs.U[place]))
+        value, U = (number(float(part[place]), f".{decimals}f") for part in (runs.values, runs.U))
         return named(runs.labels[place], f"{value} ± {U} mm (k = {number(runs.k, 'g')})")
 
 

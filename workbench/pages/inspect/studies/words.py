@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.report.facts.of_studies import chart_names
+from core.report.facts.of_studies import chart_names, digits_of
 from core.study.series import SeriesStudy
 from core.study.series_chart import RULE_WORDS, Chart
 from workbench.language import named, tr
@@ -37,21 +37,19 @@ def charts(study: Study) -> tuple[ShownChart, ...]:
         return ()
     both = (study.charts.location, study.label_of), (study.charts.spread, study.label_of_spread)
     return tuple(
-        _shown(
-            chart, study.points, label_of, (tr(title), tr("part") if study.size == 1 else tr("subgroup")), study.unit
-        )
+        _shown(chart, study, label_of, (tr(title), tr("part") if study.size == 1 else tr("subgroup")))
         for (chart, label_of), title in zip(both, chart_names(study), strict=True)
     )
 
 
-def _shown(chart: Chart, count: int, label_of: Callable[[int], str], axes: tuple[str, str], unit: str) -> ShownChart:
-    """A chart `count` points wide: a moving range stands at its second value, and the first value has none."""
-    missing = count - len(chart.points)
+def _shown(chart: Chart, study: SeriesStudy, label_of: Callable[[int], str], axes: tuple[str, str]) -> ShownChart:
+    """A chart as wide as the study: a moving range stands at its second value, and the first value has none."""
+    missing = study.points - len(chart.points)
     tips = [""] * missing
     for place, value in enumerate(chart.points):
-        said = named(label_of(place), f"{wording().fixed(float(value), 4)} {unit}")
+        said = named(label_of(place), f"{wording().fixed(float(value), digits_of(study))} {study.unit}")
         rules = [RULE_WORDS[one.rule - 1] for one in chart.breaks if one.place == place]
         tips.append("\n".join([said, *map(tr, rules)]))
-    good = np.array([place - missing not in chart.breaking for place in range(count)])
+    good = np.array([place - missing not in chart.breaking for place in range(study.points)])
     values = np.concatenate([np.full(missing, np.nan), chart.points])
     return ShownChart(values, good, tuple(tips), (chart.lower, chart.centre, chart.upper), axes)
