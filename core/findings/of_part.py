@@ -101,6 +101,6 @@ ROWS = (
             "what is measured on the part contains that; where it is stated how far below its surface the part is "
             "seen, that does instead. Spray the part matt, or compare it with a master of its material."),
     Finding("inspection.rig_not_checked", Weight.CAUTION, Effect.WIDENS_U,
-            "U is large because the rig was not checked on the day of the scan: {part_mm:.3f} mm of {U_mm:.3f} mm. "
+            "U is large because the rig was not checked on the day of the scan: {part_mm:.2g} mm of {U_mm:.2g} mm. "
             "Take 3 pictures of the plane target in the fan (1 min)."),
 )  # fmt: skip

@@ -57,8 +57,8 @@ ROWS = (
     Finding("check.pose_left_out", Weight.CAUTION, Effect.NONE,
             "Picture {pose} of the check says nothing: {reason}."),
     Finding("check.leaves_much", Weight.CAUTION, Effect.NONE,
-            "The check leaves a step of {step_mm:g} mm uncertain by U = {unseen_mm:.3f} mm, the calibrations alone "
-            "by {calibrations_mm:.3f} mm. Take twice as many pictures more, near and far, each tilted by about 40° "
+            "The check leaves a step of {step_mm:g} mm uncertain by U = {unseen_mm:.2g} mm, the calibrations alone "
+            "by {calibrations_mm:.2g} mm. Take twice as many pictures more, near and far, each tilted by about 40° "
             "to another side: seen nearly square on, a target's few corners say little of how it is tilted, a black "
             "square's four less than a grid of them."),
     # How long calibrations and checks hold

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
+from core.messages import decimals_of
 from core.report.facts.fact import Fact, Reader, for_reader, heading
 from core.report.facts.table import FactTable
 from core.report.wording import Words
@@ -26,6 +27,11 @@ def px(value: float) -> str:
 def mm(value: float, digits: int = 3) -> str:
     """A length in millimetres."""
     return length(value, "mm", digits)
+
+
+def sigma(value_mm: float) -> str:
+    """A standard uncertainty in millimetres, to two digits."""
+    return mm(value_mm, max(decimals_of(value_mm), 0))
 
 
 def degrees(value: float, digits: int = 3) -> str:

@@ -25,7 +25,7 @@ from workbench.pages.scan.run import short
 from workbench.pages.scan.stage import Stage
 from workbench.pages.sources import scan_begins_live
 from workbench.pages.step_page import StepPage
-from workbench.pages.words import mm
+from workbench.pages.words import sigma
 from workbench.views.forms.live_panel import LivePanel, LiveStrip
 from workbench.views.forms.source_chooser import SourceChooser
 from workbench.views.image.side_by_side import SideBySide
@@ -268,11 +268,11 @@ class ScanPage(StepPage):
         rows = []
         for name in p.work.names:
             record = records.get(name)
-            sigma = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
-            text = mm(sigma) if sigma is not None else ""
+            known = record.sigma_mm if record is not None and not math.isnan(record.sigma_mm) else None
+            text = sigma(known) if known is not None else ""
             said = words.frame_line(record, seen.get(name), marked=name in p.work.marked)
             picture = p.thumbnails.pictures.get(name)
-            rows.append(ListRow(name, sigma, text, not p.is_left_out(name), said, picture, short(name)))
+            rows.append(ListRow(name, known, text, not p.is_left_out(name), said, picture, short(name)))
         shown = [(row.name, row.text, row.used, row.reason, row.thumbnail is None) for row in rows]
         if shown != self._rows:
             self._rows = shown

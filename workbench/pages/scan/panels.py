@@ -22,7 +22,7 @@ from workbench.pages.scan.stage import Stage
 from workbench.pages.scan_form import add_scan_settings
 from workbench.pages.stripes import set_stripe_editable
 from workbench.pages.whole import EVERYTHING
-from workbench.pages.words import count, mm, show_facts
+from workbench.pages.words import count, show_facts, sigma
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import alarm, heading, in_column, muted, say, say_notes
@@ -102,7 +102,7 @@ class ScanCard(StageCard):
         look = self._presenter.work.look
         if look is None:
             return ""
-        return tr("{count} points, median σ {sigma}.", count=count(len(look)), sigma=mm(look.median_sigma_mm))
+        return tr("{count} points, median σ {sigma}.", count=count(len(look)), sigma=sigma(look.median_sigma_mm))
 
     def _how_to_begin(self) -> str:
         begin = tr("Sweep the part with a live source, or choose the folder of a recording.")

@@ -12,7 +12,7 @@ from core.report.facts.of_scan import scan_facts
 from core.scan.features.frames import NO_REASON, FrameRecord
 from core.scan.preview.shown import FrameStages, ShownScan
 from workbench.language import named, sentence, text_of, tr
-from workbench.pages.words import count, mm, percent
+from workbench.pages.words import count, percent, sigma
 
 
 def facts(look: ShownScan | None) -> tuple[Fact, ...]:
@@ -51,7 +51,7 @@ def frame_sentence(place: int, total: int, name: str, record: FrameRecord | None
             "other sweeps, {left_out} left out.",
             frame=start,
             points=count(record.points),
-            sigma=mm(record.sigma_mm),
+            sigma=sigma(record.sigma_mm),
             crossings=record.fan_crossings,
             lines=record.fan_lines_met,
             sweeps=record.sweep_crossings,
