@@ -248,7 +248,7 @@ class FanCalibration:
             return None
         return Message(
             "fan.minority",
-            "only {used} of the {all} poses that show target and stripes agree on the light planes",
+            "only {used} of the {all} poses that show target and stripes agree on the laser planes",
             used=used,
             all=len(speaking),
         )

@@ -131,7 +131,7 @@ def planes(
     exclude: Exclude = None,
     json: Json = False,
 ) -> None:
-    """Calibrate the fan's light planes from SET/planes, with camera.json in DIR; writes planes.json."""
+    """Calibrate the laser planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import arguments, measuring
 
     chosen = arguments.options(

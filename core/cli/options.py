@@ -148,7 +148,7 @@ ChannelOption = Annotated[
 AcceptFewPoses = Annotated[
     bool,
     typer.Option(
-        "--accept-few-poses", help="Use light planes even though fewer than half of the target's poses agree with them."
+        "--accept-few-poses", help="Use laser planes even though fewer than half of the target's poses agree with them."
     ),
 ]
 

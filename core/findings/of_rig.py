@@ -10,7 +10,7 @@ ROWS = (
             "How far the rig may have changed since its calibration is not stated ([stability] in rig.toml); "
             "assumed are standard uncertainties of {turn_urad:.0f} µrad, {shift_um:.0f} µm and {centre_px:.3g} px."),
     Finding("scan.calibrated_in_this_sitting", Weight.INFORMATION, Effect.NONE,
-            "The light planes were calibrated {hours:.1f} h before the end of the scan by the same camera, as the logs "
+            "The laser planes were calibrated {hours:.1f} h before the end of the scan by the same camera, as the logs "
             "of both recordings say: that is as good as a check of the day, and what may have changed before it is not "
             "reckoned with."),
     Finding("scan.stability_charted", Weight.INFORMATION, Effect.NONE,

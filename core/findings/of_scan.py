@@ -38,7 +38,7 @@ ROWS = (
             "Crossings of the stripes disagree {times:.1f} times as much as their noise explains, everywhere alike; "
             "the points' σ contains it. The hand may have moved during exposures, or the laser is out of focus."),
     Finding("scan.fan_disagrees", Weight.GRAVE, Effect.NO_PROOF,
-            "Many crossings with the fan disagree with the sweeps; none was left out: check the fan's calibration, "
+            "Many crossings with the fan disagree with the sweeps; none was left out: check the laser planes, "
             "and that object and camera stood still.", fact="fan_disagrees"),
     Finding("scan.explained_by_change", Weight.GRAVE, Effect.NO_PROOF,
             "Camera or laser are not as calibrated: crossings disagree {times:.2g} times as much as their noise "

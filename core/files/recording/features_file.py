@@ -96,7 +96,9 @@ def read_views(path: Path, key: str) -> SeenViews | None:
 
 
 _PLANES_TODO = Message(
-    "advice.calibrate_fan_first", "calibrate the fan first{command}", command=Command("trisect planes SET --out DIR")
+    "advice.calibrate_planes_first",
+    "calibrate the laser planes first{command}",
+    command=Command("trisect planes SET --out DIR"),
 )
 
 

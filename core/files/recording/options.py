@@ -42,7 +42,7 @@ class Options:
         Let the poses of the plane target correct the camera, in one adjustment with the fan; else it stays as its own
         views gave it.
     accept_few_poses
-        Use light planes even though fewer than half of the poses agree with them.
+        Use laser planes even though fewer than half of the poses agree with them.
 
     Raises
     ------

@@ -269,8 +269,8 @@ def read_planes(path: Path, camera: Camera) -> FanCalibration:
     tables = read_json(
         path,
         todo=Message(
-            "advice.calibrate_fan_first",
-            "calibrate the fan first{command}",
+            "advice.calibrate_planes_first",
+            "calibrate the laser planes first{command}",
             command=Command("trisect planes SET --out DIR"),
         ),
     )
@@ -285,8 +285,8 @@ def read_planes(path: Path, camera: Camera) -> FanCalibration:
             ),
             where=path,
             todo=Message(
-                "advice.calibrate_fan_again",
-                "calibrate the fan again{command}",
+                "advice.calibrate_planes_again",
+                "calibrate the laser planes again{command}",
                 command=Command("trisect planes SET --out DIR"),
             ),
         )
@@ -393,7 +393,7 @@ def _camera(path: Path, table: _Camera | None, image_size: tuple[int, int]) -> C
         raise InputError(
             Message("fan.camera_invalid", "camera is none: {reason}", reason=error.what),
             where=path,
-            todo=Message("advice.solve_fan_again", "calibrate the fan again"),
+            todo=Message("advice.solve_planes_again", "calibrate the laser planes again"),
         ) from error
 
 

@@ -20,7 +20,7 @@ def rig_check(check: InterimCheck | None, now: datetime, sitting_hours: float | 
             "ok",
             Message(
                 "live.calibrated_in_this_sitting",
-                "The light planes were calibrated {hours:.1f} h ago with this camera: no check is needed.",
+                "The laser planes were calibrated {hours:.1f} h ago with this camera: no check is needed.",
                 hours=sitting_hours,
             ),
         )

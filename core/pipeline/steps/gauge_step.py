@@ -186,7 +186,7 @@ def _bent(cloud: Cloud, bends: Array | None) -> Iterator[Reason]:
         ),
         Message(
             "gauge.advice_straight_lines",
-            "see what the calibration of the light planes says of the lines, mend that, and calibrate them again",
+            "see what the calibration of the laser planes says of the lines, mend that, and calibrate them again",
         ),
         of_own=True,
     )

@@ -185,7 +185,7 @@ def test_a_normal_that_contradicts_pi_is_refused(tmp_path, camera, fan):
 def test_planes_of_another_camera_are_refused(tmp_path, camera, fan):
     write_planes(tmp_path / "planes.json", fan, camera.camera)
     other = Camera((1920, 1374), camera.camera.matrix * [[1.001, 1, 1], [1, 1, 1], [1, 1, 1]])
-    with pytest.raises(InputError, match="the camera was calibrated again; calibrate the fan again"):
+    with pytest.raises(InputError, match="the camera was calibrated again; calibrate the laser planes again"):
         read_planes(tmp_path / "planes.json", other)
 
 

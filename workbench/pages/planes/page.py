@@ -37,7 +37,7 @@ class PlanesPage(CalibrationPage):
         self._build(
             (
                 (self.picture, tr("Picture"), tr("One pose with its target, stripes and line numbers")),
-                (self.rig, tr("3D"), tr("Camera, light planes and poses of the plate")),
+                (self.rig, tr("3D"), tr("Camera, laser planes and poses of the plate")),
                 (self.history, tr("History"), tr("Laser planes accepted before; restore them")),
             ),
             tr("Folder with pictures of the plate under the laser"),
