@@ -226,15 +226,15 @@ def test_windows_are_not_tried_on_a_second_python():
 
 
 @pytest.fixture(scope="module")
-def tree() -> Tree:
-    """Of this project."""
-    return Tree(Path(__file__).parents[1])
+def proofs() -> dict[Path, set[str]]:
+    """Those of this project, each with what it rests on."""
+    tree = Tree(Path(__file__).parents[1])
+    return {path: tree.proof(path) for path in proofs_of()}
 
 
-def test_no_proof_of_this_project_is_overlooked(tree):
-    proofs = proofs_of()
+def test_no_proof_of_this_project_is_overlooked(proofs):
     assert len(proofs) > 100
-    assert all("tests.conftest" in tree.proof(path) and "core" in tree.proof(path) for path in proofs[:10])
+    assert all({"tests.conftest", "core"} <= rests_on for rests_on in proofs.values())
 
 
 def test_files_that_no_proof_reads_touch_no_module():
@@ -242,9 +242,9 @@ def test_files_that_no_proof_reads_touch_no_module():
     assert touched_modules({".ci/proven", "locks/dev.txt", "resources/manual/check.md", "README.md"}) == set()
 
 
-def test_no_proof_of_numbers_rests_on_the_window(tree):
+def test_no_proof_of_numbers_rests_on_the_window(proofs):
     """The program's name stands in many texts, and is that of the package for scripts, whose start knows the window."""
-    found = {path.as_posix() for path in proofs_of() if "workbench.app" in tree.proof(path)}
+    found = {path.as_posix() for path, rests_on in proofs.items() if "workbench.app" in rests_on}
     assert found and not {
         path for path in found if path.startswith(("tests/accuracy", "tests/calibrate", "tests/scan"))
     }

@@ -3,7 +3,6 @@
 import hashlib
 import json
 import re
-import shutil
 import subprocess
 import sys
 
@@ -258,10 +257,9 @@ def test_simulate_takes_effects_of_real_rigs_from_a_file(tmp_path):
     )
 
 
-def test_the_reader_of_our_output_may_leave_early(simulated, measured, tmp_path):
-    shutil.copytree(measured, tmp_path / "out")
-    words = ("gauge", str(simulated), "--out", str(tmp_path / "out"), "--json", "--quiet")
-    command = [sys.executable, "-m", "core.cli", *words]
+def test_the_reader_of_our_output_may_leave_early(tmp_path):
+    (tmp_path / "values.csv").write_text("value\n50.01\n50.02\n50.03\n")
+    command = [sys.executable, "-m", "core.cli", "study", "repeats", str(tmp_path / "values.csv"), "--json", "--quiet"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
     process.stdout.close()
     complaints = process.stderr.read()

@@ -85,14 +85,14 @@ def test_a_folder_without_results_has_nothing_to_export(tmp_path):
     assert (said.code, "camera.json: the file is missing" in said.sentence) == (2, True)
 
 
-def test_a_camera_goes_to_opencv_and_comes_back_to_calibrate_the_planes_with(simulated, out, tmp_path):
-    assert trisect("export", out, "--format", "opencv", "--to", tmp_path / "handed").code == 0
+def test_a_camera_goes_to_opencv_and_comes_back_to_calibrate_the_planes_with(tiny_set, tiny_measured, tmp_path):
+    assert trisect("export", tiny_measured, "--format", "opencv", "--to", tmp_path / "handed").code == 0
     said = trisect("import-camera", tmp_path / "handed" / "camera_opencv.yml", "--out", tmp_path / "again")
     assert said.code == 0, said.err
     assert "calibrated by another program" in said.out
-    ours, theirs = (json.loads((folder / "camera.json").read_text()) for folder in (out, tmp_path / "again"))
+    ours, theirs = (json.loads((folder / "camera.json").read_text()) for folder in (tiny_measured, tmp_path / "again"))
     assert (theirs["matrix"], theirs["distortion"], theirs["id"]) == (ours["matrix"], ours["distortion"], ours["id"])
-    assert trisect("planes", simulated, "--out", tmp_path / "again").code == 0
+    assert trisect("planes", tiny_set, "--out", tmp_path / "again").code == 0
 
 
 def test_help_of_export_names_every_format():

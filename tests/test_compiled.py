@@ -111,11 +111,18 @@ def copies(asked_once, tmp_path):
     return copy_of(package.parent, tmp_path / "package") / "core", own, own / code.relative_to(cache)
 
 
-def test_the_answer_changes_with_a_function_of_another_file(asked_once, tmp_path):
-    package, _, _ = copies(asked_once, tmp_path)
-    assert ask(package, tmp_path / "cache")[:2] == (21.0, 0)
+def test_the_answer_changes_with_a_function_of_another_file_and_what_nobody_has_used_for_long_is_removed(
+    asked_once, tmp_path
+):
+    package, _, folder = copies(asked_once, tmp_path)
+    old, recent = folder.parent / "old", folder.parent / "recent"
+    old.mkdir()
+    recent.mkdir()
+    month_ago = time.time() - 30 * 24 * 3600
+    os.utime(old, (month_ago, month_ago))
     (package / "callee.py").write_text(CALLEE.format(factor=3.0))
     assert ask(package, tmp_path / "cache")[:2] == (31.0, 2)
+    assert (old.exists(), recent.exists(), folder.exists()) == (False, True, True)
     (package / "callee.py").write_text(CALLEE.format(factor=2.0))
     assert ask(package, tmp_path / "cache")[:2] == (21.0, 0)
 
@@ -132,18 +139,6 @@ def test_code_that_is_not_whole_is_made_anew(asked_once, tmp_path):
     for file in folder.iterdir():
         file.write_bytes(file.read_bytes()[:-1])
     assert ask(package, tmp_path / "cache")[:2] == (21.0, 2)
-
-
-def test_what_nobody_has_used_for_long_is_removed(asked_once, tmp_path):
-    package, _, folder = copies(asked_once, tmp_path)
-    old, recent = folder.parent / "old", folder.parent / "recent"
-    old.mkdir()
-    recent.mkdir()
-    month_ago = time.time() - 30 * 24 * 3600
-    os.utime(old, (month_ago, month_ago))
-    (package / "callee.py").write_text(CALLEE.format(factor=3.0))
-    ask(package, tmp_path / "cache")
-    assert (old.exists(), recent.exists(), folder.exists()) == (False, True, True)
 
 
 def test_python_is_refused_an_inlined_function_before_and_after_others_have_compiled_it(package, tmp_path):
@@ -165,13 +160,6 @@ def test_numbers_spelt_out_share_one_code_of_a_function(package, tmp_path):
     assert ask(package, tmp_path / "cache")[:2] == (11.0, 2)
 
 
-def test_a_cache_that_cannot_be_written_is_done_without(package, tmp_path):
-    (tmp_path / "cache").write_text("no folder")
-    answer, _, folder = ask(package, tmp_path / "cache")
-    assert answer == 21.0
-    assert not folder.parent.exists()
-
-
 TWO = """
 import subprocess, sys
 from core.code_cache import note_on_cache
@@ -183,18 +171,19 @@ print(FOLDER, "lost" if note_on_cache() else "kept")
 """
 
 
-@pytest.mark.parametrize("in_the_way", [False, True])
-def test_where_no_cache_can_be_written_a_process_and_those_it_starts_share_one_until_its_end(
-    package, tmp_path, in_the_way
-):
-    if in_the_way:
-        (tmp_path / "cache").write_text("no folder")
+def test_where_no_cache_can_be_written_a_process_and_those_it_starts_share_one_until_its_end(package, tmp_path):
+    (tmp_path / "cache").write_text("no folder")
     said = run(TWO, ASK, cwd=package.parent, cache=tmp_path / "cache")
     answers, folders = (said[0:2], said[3:5]), {said[2], said[5], said[6]}
     assert answers == (["21.0", "2"], ["21.0", "0"])
     assert len(folders) == 1
-    assert said[7] == ("lost" if in_the_way else "kept")
-    assert Path(folders.pop()).exists() != in_the_way
+    assert said[7] == "lost"
+    assert not Path(folders.pop()).parent.exists()
+
+
+def test_nothing_is_told_of_a_cache_that_is_kept(monkeypatch):
+    monkeypatch.delenv(code_cache.HANDED_DOWN, raising=False)
+    assert code_cache.note_on_cache() is None
 
 
 def compiled_modules():

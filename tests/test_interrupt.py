@@ -109,7 +109,7 @@ def test_a_command_ends_in_order_by_each_signal(tmp_path, name):
 
 
 @POSIX
-@pytest.mark.parametrize("name", ["SIGTERM", "SIGKILL"])
+@pytest.mark.parametrize("name", ["SIGTERM", pytest.param("SIGKILL", marks=pytest.mark.accuracy)])
 def test_while_it_compiles_a_command_leaves_no_process_behind(simulated, tmp_path, name):
     """Those that compile are ended, and where the command is killed they end by themselves."""
     words = ("run", simulated, "--out", tmp_path / "out")
