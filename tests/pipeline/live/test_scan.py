@@ -38,14 +38,14 @@ from core.simulate.scenario import Scenario
 from tests.pipeline.live_bench import ScriptedSource, Window, after, answer_to, record
 
 RIG = Rig(Checkerboard(17, 12, 10.0), BlackSquare(60.0), 3, np.radians(5.0))
-FRAMES = 16
+FRAMES, SCALE = 16, 0.2
 
 
 class Stage:
     """A simulated scan at a small scale, rendered once."""
 
     def __init__(self):
-        stage, sheets, _ = scan_of(Scenario(scale=0.25, frames=FRAMES))
+        stage, sheets, _ = scan_of(Scenario(scale=SCALE, frames=FRAMES))
         self.camera, self.fan = stage.rig.camera, stage.rig.fan
         self.reference = stage.reference()
         self.frames = [stage.frame(index, sheet) for index, sheet in enumerate(sheets)]
@@ -80,7 +80,7 @@ def test_a_source_that_switches_lasers_itself_takes_the_reference_and_scans(monk
     window = Window()
     ended = scan(monkeypatch, tmp_path, stage, swept(stage, 20, pace_s=0.05), window)
     assert ended.error is None
-    assert window.all(LiveStarted)[0].image_size == (960, 687)
+    assert window.all(LiveStarted)[0].image_size == stage.reference.shape[::-1] == (768, 550)
     assert [taken.name for taken in window.all(LiveTaken)] == ["reference"]
     assert not window.all(LiveAsk)
     assert np.array_equal(read_picture(tmp_path / "scan" / "reference.png"), stage.reference)
@@ -596,8 +596,8 @@ def test_a_folder_that_holds_something_is_not_touched(monkeypatch, tmp_path, sta
 
 def test_pictures_for_the_window_are_reduced_by_a_whole_factor(monkeypatch, tmp_path, stage):
     window = Window()
-    scan(monkeypatch, tmp_path, stage, ScriptedSource(stage, 12), window, display_px=400)
+    scan(monkeypatch, tmp_path, stage, ScriptedSource(stage, 12), window, display_px=300)
     view = window.all(LiveView)[0]
     assert view.scale == 3
-    assert view.picture.shape == (687 // 3, 320)
+    assert view.picture.shape == (550 // 3, 768 // 3)
     assert view.picture.dtype == np.uint8

@@ -63,14 +63,15 @@ sys.exit("\\n".join(map(str, new)) or None)
 
 
 @pytest.mark.parametrize(
-    "work",
+    ("work", "made"),
     [
-        pytest.param(SCAN, id="measuring a scan", marks=pytest.mark.accuracy),
-        pytest.param(LIVE, id="looking at a live one"),
+        pytest.param(SCAN, ("simulated", "measured"), id="measuring a scan", marks=pytest.mark.accuracy),
+        pytest.param(LIVE, ("tiny_set", "tiny_measured"), id="looking at a live one"),
     ],
 )
-def test_after_warming_up_nothing_is_compiled_nor_loaded(simulated, measured, tmp_path, work):
-    out = copy_of(measured, tmp_path / "out")
-    program = [sys.executable, "-c", COMPILED + work + NEW, simulated, out]
+def test_after_warming_up_nothing_is_compiled_nor_loaded(request, tmp_path, work, made):
+    pictures, results = map(request.getfixturevalue, made)
+    out = copy_of(results, tmp_path / "out")
+    program = [sys.executable, "-c", COMPILED + work + NEW, pictures, out]
     ran = subprocess.run(program, capture_output=True, text=True, check=False)
     assert ran.returncode == 0, ran.stderr
