@@ -23,6 +23,23 @@ _NO_WING = Message("plugin.why_no_wing", "it is no Wing with a name of its own")
 
 
 @dataclass(frozen=True, slots=True)
+class ReportSection:
+    """A section of the report: a heading and facts. It stands behind the checks by artefacts.
+
+    Parameters
+    ----------
+    title
+        Its heading: English words that the report translates.
+    facts
+        "module:name" of a function of the folder of results (a path) and the `core.report.content.ReportContent` so
+        far, that gives the `core.report.facts.fact.Fact` of the section. Without facts the section is not printed.
+    """
+
+    title: str
+    facts: str
+
+
+@dataclass(frozen=True, slots=True)
 class Wing:
     """What a wing adds to the command line and the results. What it names is imported when it is asked for.
 
@@ -34,11 +51,14 @@ class Wing:
         Its commands of `trisect`, as "module:name" of a `typer.Typer` that is light to import; "": it has none.
     after
         The command behind which they stand in `trisect --help`; "": at the end.
+    sections
+        What it adds to the report.
     """
 
     name: str
     commands: str = ""
     after: str = ""
+    sections: tuple[ReportSection, ...] = ()
 
 
 class Named(Protocol):

@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.results import CameraCalibration, FanCalibration
+from core.door import Origin
 from core.findings.table import gravest_first
 from core.image.stripes.centreline import Centreline
 from core.inspect.characteristic import Characteristic
@@ -166,6 +167,25 @@ class LightProfiles:
     U_mm: float
 
 
+@dataclass(frozen=True, slots=True)
+class BroughtSection:
+    """A section of the report that a wing brings.
+
+    Parameters
+    ----------
+    title
+        Its heading in English.
+    facts
+        What it tells.
+    origin
+        The package it comes from; None: the program itself.
+    """
+
+    title: str
+    facts: tuple[Fact, ...]
+    origin: Origin | None = None
+
+
 @dataclass(frozen=True, eq=False, slots=True)
 class ReportContent:
     """Everything that is printed. The same content gives the same bytes.
@@ -212,6 +232,8 @@ class ReportContent:
         Interim check of these calibrations; None where there is none.
     artefacts
         Known artefacts measured with these calibrations, each as nearest in time to this result.
+    brought
+        Sections of the wings.
     calibrations
         Which calibrations the result rests on.
     rig_id
@@ -281,6 +303,7 @@ class ReportContent:
     studies: tuple[Study, ...] = ()
     check: Check | None = None
     artefacts: tuple[ArtefactCheck, ...] = ()
+    brought: tuple[BroughtSection, ...] = ()
     calibrations: tuple[CalibrationMark, ...] = ()
     rig_id: str = ""
     overlay: Overlay | None = None
@@ -388,6 +411,7 @@ class ReportContent:
             "studies": [(study_facts(one), study_tables(one), one.notes) for one in self.studies],
             "artefacts": self.artefacts,
             "compared": self.compared,
+            "brought": self.brought,
             "view": "" if self.view_shown is None else self.view_shown.words,
             "certificates": sorted(self.certificates.items()),
             "inspected": [(one.name, one.kind, one.value, one.u, one.k, one.limits) for one in self.inspected],

@@ -149,6 +149,8 @@ def _names(content: ReportContent) -> Iterator[str]:
     yield from (one.name for one in content.deviations)
     yield from (frame.name for frame in content.frames)
     yield from (*content.hashes, *content.points)
+    for brought in content.brought:
+        yield from (brought.title, *(str(text) for one in brought.facts for text in (one.label, one.value)))
     for study in content.studies:
         cells = (str(cell) for table in study_tables(study) for row in table.rows for cell in row)
         yield from (study_title(study), *map(str, study.notes), *cells)
@@ -158,7 +160,8 @@ def _most_pages(content: ReportContent) -> int:
     """Pages beyond which lists are shortened."""
     more = len(content.repeats) > 0 or len(content.remarks) > LONG_REMARKS
     results = (len(content.characteristics) - 1) / RESULTS_A_PAGE
-    return MOST_PAGES + more + max(0, math.ceil(results)) + len(content.studies) + len(content.deviations)
+    sections = len(content.studies) + len(content.deviations) + len(content.brought)
+    return MOST_PAGES + more + max(0, math.ceil(results)) + sections
 
 
 def _page_room(paper: Paper) -> float:

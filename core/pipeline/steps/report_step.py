@@ -44,6 +44,7 @@ from core.inspect.step_height import profile_axes
 from core.messages import Command, Message, label
 from core.model import Camera
 from core.model.arrays import Array
+from core.pipeline.steps.brought_sections import with_brought_sections
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import Calibration, Workspace, check_calibration, read_calibration
 from core.progress import Progress, silent
@@ -189,7 +190,8 @@ def results_content(out: Path, part: str = "", record: RunRecord | None = None) 
         timestamp=record.measured_at,
         profiles=_light_profiles(out, cloud, gauge) if profiled and gauge else None,
     )
-    return replace(with_inspection(content, out), compared=_compared(out), check=_check(out, calibration))
+    content = replace(with_inspection(content, out), compared=_compared(out), check=_check(out, calibration))
+    return with_brought_sections(content, out)
 
 
 def _check(out: Path, calibration: Calibration) -> InterimCheck | None:

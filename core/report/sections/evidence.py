@@ -37,6 +37,19 @@ from core.report.wording import grouped, short_hash
 from core.study.artefact_check import KINDS
 
 
+def brought(look: ReportLook, content: ReportContent) -> list[Flowable]:
+    """The sections of the wings; one of another package says so."""
+    parts: list[Flowable] = []
+    for number, one in enumerate(content.brought):
+        body: list[Flowable] = [figures(look, one.facts, columns=4)]
+        if one.origin is not None:
+            package = {"package": one.origin.package, "version": one.origin.version}
+            said = look.words("From the package {package} {version}, which is no part of Trisect.", **package)
+            body += [look.text(said, "caption")]
+        parts += [section(look, f"brought-{number}", one.title, body)]
+    return parts
+
+
 def artefacts(look: ReportLook, content: ReportContent) -> list[Flowable]:
     """Known artefacts measured with these calibrations, against their certificates."""
     if not content.artefacts:

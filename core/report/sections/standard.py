@@ -59,6 +59,7 @@ def story(look: ReportLook, content: ReportContent, pictures: Pictures, limits: 
         ("repeats", lambda: _repeats(look, content, pictures, limits)),
         ("studies", lambda: studies(look, content, pictures, limits)),
         ("artefacts", lambda: evidence.artefacts(look, content)),
+        ("", lambda: evidence.brought(look, content)),
     ]
     rest: list[Part] = []
     grounds: list[Part] = [
