@@ -63,7 +63,7 @@ class Bench:
         **more: Any,
     ) -> Task:
         def failed(problem: Any) -> None:
-            self.notices.failed(problem)
+            self.notices.failed(problem, job)
             if on_failed is not None:
                 on_failed(problem)
 

@@ -121,6 +121,7 @@ class MainWindow(QMainWindow):
         self._stack.addWidget(self._steps)
         self.setCentralWidget(self._stack)
         self._task: Task | None = None
+        self._not_done = ""
         self._remaining = Remaining({})
         self._left = False
         self.log_file: Path | None = None
@@ -537,6 +538,7 @@ class MainWindow(QMainWindow):
             (open_banner if self.model.is_open else self.welcome.banner).show_notice(
                 str(notice.level), notice.text, notice.details
             )
+            self._not_done = notice.job
         else:
             self.statusBar().showMessage(notice.text, 8000)
         self._messages_button.setText(tr("Messages ({n})", n=self.notice_list.count()))
@@ -550,6 +552,10 @@ class MainWindow(QMainWindow):
             self.statusBar().clearMessage()
 
     def _task_started(self, task: Task) -> None:
+        if self._not_done == task.job:  # what kept it from being done is mended, or is told anew
+            self.banner.hide()
+            self.operator.banner.hide()
+            self.welcome.banner.hide()
         self._task = task
         self._stage, self._counted = "", (0, 0)
         name = name_of(task.job)

@@ -47,6 +47,8 @@ class Notice:
     text: str
     details: str = ""
     at: datetime = field(default_factory=lambda: datetime.now().astimezone())
+    job: str = ""
+    """Which job could not be done, if this tells of one; it is no longer so when that job begins anew."""
 
 
 class Notices(QObject):
@@ -61,9 +63,9 @@ class Notices(QObject):
         self._raised.connect(lambda level, text, details: self.add(Level(level), text, details))
         self._restore: list[Callable[[], object]] = []
 
-    def add(self, level: Level, text: str, details: str = "") -> None:
+    def add(self, level: Level, text: str, details: str = "", *, job: str = "") -> None:
         """Tell the technician; call in the GUI thread only."""
-        notice = Notice(level, text, details)
+        notice = Notice(level, text, details, job=job)
         self.all.append(notice)
         del self.all[:-KEPT]
         log.log(_LOG_LEVEL[level], "%s%s", text, f"\n{details}" if details else "")
@@ -81,9 +83,9 @@ class Notices(QObject):
         """Something that kept a job from being done."""
         self.add(Level.ERROR, text, details)
 
-    def failed(self, problem: Exception | Failure) -> None:
+    def failed(self, problem: Exception | Failure, job: str = "") -> None:
         """What kept a job from being done, as it was raised."""
-        self.error(text_of(problem), problem.details if isinstance(problem, Failure) else "")
+        self.add(Level.ERROR, text_of(problem), problem.details if isinstance(problem, Failure) else "", job=job)
 
     def raised(self, kind: type[BaseException], value: BaseException, trace: TracebackType | None) -> None:
         """Tell an exception that was not caught, of any thread, in one notice; the program goes on."""

@@ -8,7 +8,12 @@ from typing import Any
 
 import pytest
 
+from core.errors import InputError
+from core.messages import plain
+from workbench.main_window import MainWindow
 from workbench.notices import Level, Notices, log_to_file
+from workbench.work import jobs
+from workbench.work.tasks import Task
 
 
 @pytest.fixture
@@ -56,3 +61,19 @@ def test_notices_are_written_to_a_log_file(notices: Notices, tmp_path: Path, usu
 def test_where_no_log_can_be_written_the_program_goes_on(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
     assert log_to_file(tmp_path / "file" / "log") is None
+
+
+@pytest.mark.parametrize(("begun", "there"), [(jobs.FIND_VIEWS, False), (jobs.MEASURE_SCAN, True)])
+def test_the_banner_of_a_failed_job_goes_as_that_job_begins_anew(
+    window: MainWindow, begun: jobs.Job, there: bool
+) -> None:
+    window.show()
+    window.bench.notices.failed(
+        InputError(plain("the board shows 17 × 12 inner corners, not 18 × 12")), jobs.FIND_VIEWS
+    )
+    assert window.welcome.banner.isVisible()
+    task = Task(window.bench.measuring, window, 1, begun, "Camera")
+    window.bench.measuring.task_started.emit(task)
+    window.bench.measuring.task_ended.emit(task)
+    assert window.welcome.banner.isVisible() == there
+    assert window.notice_list.count() == 1, "it stays among the messages"
