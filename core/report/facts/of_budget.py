@@ -69,6 +69,15 @@ def rows_told(one: Characteristic) -> tuple[Contribution, ...]:
     return (*one.budget, *(Contribution(pair[0], 0.0) for pair in ALWAYS_TOLD if causes.isdisjoint(pair)))
 
 
+def largest_row(one: Characteristic) -> tuple[Contribution, float] | None:
+    """The row that contributes most to u, and its share of u² (0 to 1); None where not every row is known."""
+    variance = sum(row.u_mm**2 for row in one.budget)
+    if not 0 < variance < math.inf:
+        return None
+    row = max(one.budget, key=lambda row: row.u_mm)
+    return row, row.u_mm**2 / variance
+
+
 def input_cells(one: Characteristic) -> tuple[tuple[Fact, ...], ...]:
     """Of each input its value, distribution, u(x), sensitivity |c|, contribution, freedom and share of the variance."""
     _, factor = shown_unit(one)

@@ -26,6 +26,7 @@ from core.states import OUT_OF_DATE
 from workbench.language import number, sentence, text_of, tr
 from workbench.pages.inspect import words
 from workbench.pages.inspect.faces import FACES, NUMBERS
+from workbench.pages.inspect.largest import why_so_large
 from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
 from workbench.pages.inspect.picks import Mode, Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
@@ -36,7 +37,7 @@ from workbench.theme import icon
 from workbench.views.colours import FACE_LOWER, FACE_UPPER
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
-from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say_notes
+from workbench.views.layouts import alarm, enable, heading, in_column, in_row, muted, say, say_notes
 from workbench.views.lists.tree_model import Cell, TreeModel, TreeRow
 from workbench.views.lists.value_rows import ValueRows, Verdict
 
@@ -230,12 +231,12 @@ class ResultPanel(QWidget):
         self._presenter = presenter
         self._shown: object = None
         self.verdict, self.rows, self.rule = Verdict(), ValueRows(), muted()
-        self.budget, self.notes, self.alarm = ValueRows(), muted(), alarm()
+        self.largest, self.budget, self.notes, self.alarm = muted(), ValueRows(), muted(), alarm()
         self.budget_title, self.notes_title = heading(tr("Uncertainty budget")), heading(tr("Notes"))
         column = in_column(on=self, spacing=6)
         for widget in (
-            self.verdict, self.alarm, self.rows, self.rule, self.budget_title, self.budget, self.notes_title,
-            self.notes,
+            self.verdict, self.alarm, self.rows, self.rule, self.budget_title, self.largest, self.budget,
+            self.notes_title, self.notes,
         ):  # fmt: skip
             column.addWidget(widget)
 
@@ -249,7 +250,9 @@ class ResultPanel(QWidget):
         self._show_verdict(gauge, outdated)
         show_facts(self.rows, gauge_facts(gauge))
         self.rule.setText("" if gauge.rule is None else tr("Rule: {rule}.", rule=text_of(gauge.rule)))
-        show_facts(self.budget, budget_facts(thickness_characteristic(gauge)))
+        thickness = thickness_characteristic(gauge)
+        say(self.largest, why_so_large(thickness))
+        show_facts(self.budget, budget_facts(thickness))
         say_notes(gauge.notes, self.alarm, self.notes)
         self.notes_title.setVisible(bool(self.notes.text()))
 

@@ -30,6 +30,7 @@ from workbench.pages.inspect.features.edit import InspectFeatureEdit
 from workbench.pages.inspect.features.form import FeatureForm, choose_nominal
 from workbench.pages.inspect.features.plan import THICKNESS, InspectFeatures
 from workbench.pages.inspect.features.templates import InspectTemplates
+from workbench.pages.inspect.largest import why_so_large
 from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
@@ -366,15 +367,26 @@ class FeaturesPanel(QWidget):
     def _sentence(self) -> str:
         features = self._features
         if not features.plan.features:
-            return tr("Steps, spheres, flatness, sections and more, beside the thickness.")
+            return self._why_U() or tr("Steps, spheres, flatness, sections and more, beside the thickness.")
         if features.problem:
             return features.problem
         chosen = features.result(features.chosen)
         if chosen is not None and chosen.problem:
             return text_of(chosen.problem)
-        if features.measuring or features.shown is not None:
+        if features.measuring:
             return ""
+        if features.shown is not None:
+            return self._why_U()
         return features.buttons.measure or tr("The features have changed or are not measured yet: measure them.")
+
+    def _why_U(self) -> str:
+        """Why U of the chosen result is as large as it is, of the thickness where none is chosen."""
+        chosen = self._features.chosen
+        if chosen not in self._features.plan.names:
+            gauge = self._scan.gauge
+            return "" if gauge is None or self._scan.is_thickness_old else why_so_large(thickness_characteristic(gauge))
+        result = None if self._features.outdated(chosen) is not None else self._features.result(chosen)
+        return why_so_large(result.rows[0]) if result is not None and result.rows else ""
 
     def _add(self, kind: FeatureKind) -> None:
         if not kind.nominal_file:
