@@ -20,7 +20,7 @@ CLICKS = 15
 """From the first page to the report, *Stop* on each live page and *Add to repeats* among them."""
 
 
-@pytest.mark.slow
+@pytest.mark.accuracy
 def test_from_the_simulated_rig_to_the_report(technician: Technician, tmp_path: Path) -> None:
     t = technician
     scene = tmp_path / "small.toml"
