@@ -65,6 +65,10 @@ class Tree:
         self._names = {*self.files, *gone}
         self._named = cache(self._named_in_module)
 
+    def names_in(self, name: str) -> set[str]:
+        """Modules of ours that a module names itself."""
+        return self._named(name)
+
     def closure(self, names: Iterable[str]) -> set[str]:
         """Modules that are imported when the modules of these names are, themselves among them."""
         found: set[str] = set()
@@ -286,15 +290,16 @@ def packing_changed(root: Path, changed: set[str] | None) -> bool:
 
 def proofs_of(root: Path = ROOT) -> list[Path]:
     """Every file with proofs."""
-    return [path for path in _files_of_tests(root) if "mark.accuracy" in (root / path).read_text(encoding="utf-8")]
+    return [path for path in files_of_tests(root) if "mark.accuracy" in (root / path).read_text(encoding="utf-8")]
 
 
 def below_workbench(root: Path = ROOT) -> list[Path]:
     """Every file of tests but those of windows."""
-    return [path for path in _files_of_tests(root) if path.parts[1] != "workbench"]
+    return [path for path in files_of_tests(root) if path.parts[1] != "workbench"]
 
 
-def _files_of_tests(root: Path) -> list[Path]:
+def files_of_tests(root: Path) -> list[Path]:
+    """Every file of tests, as paths within the checkout."""
     return [path.relative_to(root) for path in sorted((root / "tests").rglob("test_*.py"))]
 
 
