@@ -3,6 +3,7 @@ import gc
 import itertools
 import os
 import random
+import re
 import shutil
 import tempfile
 from collections.abc import Iterator
@@ -12,10 +13,13 @@ from pathlib import Path
 import pytest
 
 from core.files.results.rig_history import DATA
-from tests import code
+from tests import code, durations
 from tests.shared import SAID_ALOUD, made_once
 
 _TESTS = itertools.count()
+_TEST = re.compile(r"^(?:def test_|class Test)", re.MULTILINE)
+_PROOF = re.compile(r"^@pytest\.mark\.accuracy$", re.MULTILINE)
+_ALL_PROOFS = re.compile(r"^pytestmark = .*mark\.accuracy", re.MULTILINE)
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
@@ -62,14 +66,24 @@ def pytest_collection() -> Iterator[None]:
         gc.enable()
 
 
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    """Files with nothing but proofs are not imported where no proof is wanted; those that are named are."""
+    if "not accuracy" in config.option.markexpr and collection_path.match("test_*.py"):
+        text = collection_path.read_text(encoding="utf-8")
+        if _ALL_PROOFS.search(text) or 0 < len(_TEST.findall(text)) == len(_PROOF.findall(text)):
+            return True
+    return None
+
+
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Modules with long proofs first, then windows: a long module handed out last would keep one process busy alone."""
+    """Long modules first, by what they took (`tests/durations.py`): one handed out last would keep a process alone."""
     seed = config.getoption("shuffled")
     if seed is not None:
         _shuffle(items, random.Random(seed))
         return
-    long = {item.path for item in items if item.get_closest_marker("slow") or item.get_closest_marker("accuracy")}
-    items.sort(key=lambda item: (item.path not in long, "workbench" not in item.path.parts))
+    seconds = durations.read()
+    usual = 1.0  # of a module that nobody has measured: among the short ones
+    items.sort(key=lambda item: -seconds.get(item.path.relative_to(config.rootpath).as_posix(), usual))
 
 
 def _shuffle(items: list[pytest.Item], chance: random.Random) -> None:

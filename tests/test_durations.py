@@ -1,0 +1,15 @@
+"""Modules are handed out by what they took: the longest first."""
+
+from tests import durations
+
+
+def test_what_has_run_replaces_what_is_known_of_it_and_what_is_short_or_gone_has_no_line(tmp_path):
+    file = tmp_path / "tests" / "durations.txt"
+    file.parent.mkdir()
+    for name in "abc":
+        (file.parent / f"test_{name}.py").touch()
+    assert durations.read(file) == {}
+    durations.write({"tests/test_a.py": 30.2, "tests/test_b.py": 4.0, "tests/test_c.py": 0.3, "tests/no.py": 9.0}, file)
+    assert file.read_text() == "30 tests/test_a.py\n4 tests/test_b.py\n"
+    durations.write({"tests/test_b.py": 1.0, "tests/test_c.py": 50.0}, file)
+    assert list(durations.read(file)) == ["tests/test_c.py", "tests/test_a.py"]
