@@ -92,9 +92,10 @@ def _comparisons(tree: ast.Module, lines: list[str]) -> Iterator[tuple[str, int,
 
 
 def drawn(root: Path, seed: int, count: int) -> list[Change]:
-    """So many of each kind, the same for the same seed."""
+    """So many of each kind, one of either in turn, the same for the same seed."""
     chance = random.Random(seed)
-    return [one for found in changes(root).values() for one in chance.sample(found, min(count, len(found)))]
+    of_each = [chance.sample(found, count) for found in changes(root).values()]
+    return [one for pair in zip(*of_each, strict=True) for one in pair]
 
 
 def tests_of(tree: Tree, closures: dict[Path, set[str]], module: str) -> list[Path]:

@@ -10,7 +10,6 @@ from core.files.pictures import read_picture, write_picture
 from core.files.recording.recording_set import open_set
 from core.files.recording.step_settings import PlanesSettings
 from core.image.stripes.stripe import StripeSettings
-from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.workspace import RIDGES, Workspace
 from tests.simulated import copy_of
@@ -18,23 +17,15 @@ from tests.simulated import copy_of
 TOO_FAINT = PlanesSettings(StripeSettings(8.0, 1000.0))
 
 
-@pytest.fixture(scope="module")
-def camera(tiny_set, tmp_path_factory) -> bytes:
-    """The camera's calibration as it is written."""
-    work = Workspace.open(open_set(tiny_set), tmp_path_factory.mktemp("camera"))
-    camera_step(work)
-    return work.path("camera").read_bytes()
-
-
 @pytest.fixture
-def work(tiny_set, camera, tmp_path):
+def work(tiny_set, tiny_measured, tmp_path):
     """A set of which pose01 was taken with the fan off, and a calibrated camera."""
     folder = copy_of(tiny_set, tmp_path / "set")
     off = read_picture(folder / "planes" / "pose01_off.png")
     noise = np.random.default_rng(1).normal(0, 1, off.shape)
     write_picture(folder / "planes" / "pose01.png", np.clip(np.round(off + noise), 0, 255).astype(np.uint8))
     workspace = Workspace.open(open_set(folder), tmp_path / "out")
-    workspace.path("camera").write_bytes(camera)
+    workspace.path("camera").write_bytes((tiny_measured / "camera.json").read_bytes())
     return workspace
 
 
