@@ -21,7 +21,7 @@ OUT    ?= out
 TESTS_AT_ONCE  ?= 3
 PROOFS_AT_ONCE ?= 2
 # A test process that crashes ends the run at once: with these scopes a new one would wait for work for ever.
-# Modules are handed out in the order tests/conftest.py puts them into: long ones first.
+# Modules are handed out in the order tests/conftest.py puts them into: long ones first, by tests/durations.txt.
 AS_MODULES   := --dist loadscope --no-loadscope-reorder --max-worker-restart=0
 SIDE_BY_SIDE := -n $(TESTS_AT_ONCE) $(AS_MODULES)
 
