@@ -1,16 +1,22 @@
 """With each wing taken away the house works: commands, a measurement, the window."""
 
+import ast
+import re
+
 import pytest
 from typer.main import get_command
 
 from core.cli.app import app, whole_command
 from core.door import WITHOUT
 from core.wing import wings
-from tests.code import ROOT
+from tests.code import ROOT, modules, nodes
 from tests.simulated import CUT, trisect
 from tests.wings.strangers import look_again
 
 OURS = tuple(sorted(path.parent.name for path in ROOT.glob("core/wings/*/wing.py")))
+NEEDS_A_WING = re.compile(r"\b(core|tests|workbench)\.wings\b")
+TABLES = {"tests/accuracy/bounds.py"}
+"""What makes all tables of accuracy, of house and wings: no test."""
 SAME = ("camera.json", "planes.json", "cloud.ply", "mesh.ply", "scan.npz", "gauge.json")
 """Results that say nothing of when they were made."""
 
@@ -41,6 +47,17 @@ def test_without_a_wing_its_commands_are_gone_and_all_others_stand(without, name
     command, unusable = whole_command()
     assert not unusable
     assert set(get_command(app).commands) <= set(command.commands) < before
+
+
+def test_no_test_of_the_house_needs_a_wing():
+    found = {
+        path.relative_to(ROOT).as_posix()
+        for path in modules("tests")
+        if not path.is_relative_to(ROOT / "tests" / "wings") and not path.is_relative_to(ROOT / "tests/workbench/wings")
+        for node in nodes(path)
+        if isinstance(node, ast.Import | ast.ImportFrom) and NEEDS_A_WING.search(ast.unparse(node))
+    }
+    assert found == TABLES
 
 
 def test_without_any_wing_a_set_is_measured_to_the_same_bytes(without, simulated, measured, tmp_path):

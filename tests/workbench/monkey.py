@@ -54,6 +54,7 @@ from workbench.settings import AppSettings
 from workbench.steps import STEPS
 from workbench.views import ask
 from workbench.views.stage_card import StageCard
+from workbench.wing import window_wings
 from workbench.work.process import WorkerProcess
 
 KEYS = (
@@ -62,9 +63,10 @@ KEYS = (
 )  # fmt: skip
 
 DIALOGS = (
-    "new", "import", "next part", "copy", "audit", "sign in", "keys", "double click", "plan rig", "many sets", "manual",
+    "new", "import", "next part", "copy", "audit", "sign in", "keys", "double click", "many sets", "manual",
+    *(entry.name for wing in window_wings() for entry in wing.entries),
 )  # fmt: skip
-"""Entries of the menus that open a window of their own."""
+"""Entries of the menus that open a window of their own, those of the wings among them."""
 
 HARMLESS = ("This plugin does not support", "propagateSizeHints", "raise()", "OpenGL", "libGL", "MESA", "QXcbClipboard")
 """What platforms without a screen or a graphics card say, whatever is shown."""

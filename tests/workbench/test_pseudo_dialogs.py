@@ -34,10 +34,11 @@ from workbench.steps import STEPS
 from workbench.views.image.view import ImageView
 from workbench.views.lists.shortcut_list import native
 from workbench.views.plots.base import Plot
+from workbench.wing import window_wings
 
 OPENED = (
     "new", "open", "open set", "import", "next part", "copy", "pack", "unpack", "audit", "sign in", "quick card",
-    "plan rig", "script", "keys", "double click", "about",
+    "script", "keys", "double click", "about", *(entry.name for wing in window_wings() for entry in wing.entries),
 )  # fmt: skip
 """The entries of the menus that open a dialog."""
 ALIKE = (
