@@ -21,6 +21,17 @@ STALE_WITH: Mapping[str, tuple[str, ...]] = {"project": (), **{page: needed_by(p
 """What makes a step out of date when it is: a report prints the thickness, though it can do without one."""
 
 
+TITLES: Mapping[str, str] = {
+    "project": label("Project"),
+    "camera": label("Camera"),
+    "planes": label("Laser planes"),
+    "scan": label("Scan"),
+    "inspect": label("Inspect"),
+    "report": label("Report"),
+}
+"""What the pages are called."""
+
+
 class State(StrEnum):
     """A step's place on the rail."""
 

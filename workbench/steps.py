@@ -21,6 +21,7 @@ from workbench.pages.report.presenter import ReportPresenter
 from workbench.pages.scan.page import ScanPage
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.step_page import StepPage
+from workbench.step_state import TITLES
 
 
 @dataclass(frozen=True, slots=True)
@@ -31,18 +32,21 @@ class Step:
     """
 
     name: str
-    title: str
     icon: str
     help: str
     manual: str
     presenter: Callable[[Bench], StepPresenter]
     page: Callable[..., StepPage]
 
+    @property
+    def title(self) -> str:
+        """What it is called."""
+        return TITLES[self.name]
+
 
 STEPS: tuple[Step, ...] = (
     Step(
         "project",
-        label("Project"),
         "mdi6.clipboard-text-outline",
         label("What is measured, by whom and for whom: the fields the report prints."),
         "projects",
@@ -51,7 +55,6 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "camera",
-        label("Camera"),
         "mdi6.camera-outline",
         label("Show the camera its target from many sides; it learns how it sees."),
         "calibrate-camera",
@@ -60,7 +63,6 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "planes",
-        label("Laser planes"),
         "mdi6.laser-pointer",
         label("Hold the plate into the three-line laser at different distances."),
         "calibrate-planes",
@@ -69,7 +71,6 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "scan",
-        label("Scan"),
         "mdi6.line-scan",
         label("Sweep the single line by hand over the part; nothing else may move."),
         "scan",
@@ -78,7 +79,6 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "inspect",
-        label("Inspect"),
         "mdi6.ruler-square",
         label("Look at the surface, measure the thickness, judge how sure it is."),
         "inspect",
@@ -87,7 +87,6 @@ STEPS: tuple[Step, ...] = (
     ),
     Step(
         "report",
-        label("Report"),
         "mdi6.file-certificate-outline",
         label("Read the pages, choose what is in them, hand them over."),
         "report",

@@ -12,7 +12,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.whole import MeasuringAll
-from workbench.step_state import ORDER, State
+from workbench.step_state import ORDER, TITLES, State
 
 ProgressLevel = Literal["", "good", "warn", "bad"]
 
@@ -56,9 +56,8 @@ class ProjectPresenter(StepPresenter):
     def progress_rows(self) -> list[tuple[str, str, str, ProgressLevel]]:
         """One row a step: title, state in words, the sentence that explains it, level."""
         levels: dict[State, ProgressLevel] = {State.DONE: "good", State.OUTDATED: "warn"}
-        titles = self._titles()
         return [
-            (titles[step], tr(STEP_STATES[one.state]), one.sentence, levels.get(one.state, ""))
+            (tr(TITLES[step]), tr(STEP_STATES[one.state]), one.sentence, levels.get(one.state, ""))
             for step, one in self.model.states.items()
             if step != "project"
         ]
@@ -68,22 +67,12 @@ class ProjectPresenter(StepPresenter):
         states = self.model.states
         for step in ORDER:
             if states[step].state is not State.DONE:
-                return tr("Next: {step}. {sentence}", step=self._titles()[step], sentence=states[step].sentence)
+                return tr("Next: {step}. {sentence}", step=tr(TITLES[step]), sentence=states[step].sentence)
         return tr("All steps are done.")
 
     def place(self) -> str:
         """The project's folder."""
         return str(self.model.folder or "")
-
-    def _titles(self) -> dict[str, str]:
-        return {
-            "project": tr("Project"),
-            "camera": tr("Camera"),
-            "planes": tr("Laser planes"),
-            "scan": tr("Scan"),
-            "inspect": tr("Inspect"),
-            "report": tr("Report"),
-        }
 
     def label(self, name: str) -> str:
         """What a field is called on screen."""

@@ -15,7 +15,7 @@ from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
 from workbench.pages.presenter import StepPresenter
 from workbench.pages.report.stage import Facts, Stage, WhyNot, stage_of, why_not_export, why_not_make
-from workbench.step_state import State
+from workbench.step_state import TITLES, State
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -140,12 +140,11 @@ class ReportPresenter(StepPresenter):
     def warning(self) -> str:
         """What is out of date in the results the report prints, or ""."""
         states = self.model.states
-        titles = {"scan": tr("Scan"), "inspect": tr("Inspect")}
-        for step, title in titles.items():
+        for step in ("scan", "inspect"):
             if states[step].state is State.OUTDATED:
                 return tr(
                     "{step}: {sentence} The report prints what was measured then.",
-                    step=title,
+                    step=tr(TITLES[step]),
                     sentence=states[step].sentence,
                 )
         if "inspection" in self.model.results and not up_to_date("inspection", self.project, self.model.results):
