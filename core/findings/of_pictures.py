@@ -53,9 +53,9 @@ ROWS = (
             "during a scan, or scan again."),
     # Frames without points
     Finding("scan.frames_without_points", Weight.CAUTION, Effect.NONE,
-            "{n} of {all} frames gave no points ({reason}): {names}."),
+            "{n} of {all} frames gave no points ({reason}): {names}.", told_of="frames"),
     Finding("scan.many_frames_without_points", Weight.CAUTION, Effect.NONE,
-            "{n} of {all} frames gave no points ({reason}): {names} and others."),
+            "{n} of {all} frames gave no points ({reason}): {names} and others.", told_of="frames"),
     Finding("scan.frames_moved", Weight.CAUTION, Effect.NONE,
             "Object or camera moved during the scan: {n} of {all} frames were left out, the first {name} (the fan's "
             "light is {shift_px:.1f} px or more aside, measured across its lines). Hold both still and scan again "

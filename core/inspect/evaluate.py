@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from core.errors import InputError
 from core.findings.brought import failure, unusable
 from core.findings.proof import SIZE_UNCONFIRMED, Doubt, notes_of
-from core.findings.table import note_of
+from core.findings.table import fact_of, note_of
 from core.inspect.characteristic import Characteristic
 from core.inspect.conformity import Verdict
 from core.inspect.features.measured import FeatureResult, Measure, Scene
@@ -219,11 +219,11 @@ def _by_master(length: Characteristic, master: Master, k: float) -> Characterist
         why = notes_of(master.remaining_doubts)
         added += (Doubt.of(note_of("feature.master_doubted", master=master.name, why=why)),)
     added = tuple(doubt for doubt in added if doubt not in found.doubts)
-    gone = SIZE_UNCONFIRMED if master.same_calibration else None
+    gone = SIZE_UNCONFIRMED.fact if master.same_calibration else None
     return replace(
         found,
-        notes=(*notes_of(added), *(note for note in found.notes if gone is None or note != gone.note)),
-        doubts=(*(doubt for doubt in found.doubts if doubt != gone), *added),
+        notes=(*notes_of(added), *(note for note in found.notes if fact_of(note) != gone)),
+        doubts=(*(doubt for doubt in found.doubts if doubt.fact != gone), *added),
     )
 
 

@@ -21,6 +21,7 @@ from core.files.reading import file_hash
 from core.files.results.run_file import read_run
 from core.files.results.scan_file import read_scan
 from core.files.step_graph import FILES
+from core.findings.table import without_notes_on
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
@@ -31,7 +32,6 @@ from core.pipeline.project.results import load_results
 from core.pipeline.project.workspace import project_set
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
-from core.scan.features.frames import left_out_notes
 from core.scan.preview.shown import FrameStages, SettledScan, ShownScan
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.coverage_map import CoverageMap
@@ -73,7 +73,6 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
     results = load_results(folder, progress)
     cloud = _NO_POINTS if results.cloud is None else results.cloud
     features = None if results.cloud is None else read_scan(results.files["scan"]).features
-    of_frames = left_out_notes(results.frames)  # told with the frames themselves
     half, most = np.quantile(cloud.sigma, (0.5, 0.95)) if len(cloud) else (np.nan, np.nan)
     return ShownScan(
         points=cloud.points.astype(np.float32),
@@ -87,7 +86,7 @@ def show_scan(folder: Path, progress: Progress = silent) -> ShownScan:
         sigma_95_mm=float(most),
         share=0.0 if features is None else _covered(features, cloud.uv),
         stripe=None if features is None else features.sweep_stripe,
-        notes=tuple(note for note in _scan_notes(results) if note not in of_frames),
+        notes=without_notes_on("frames", _scan_notes(results)),
         problems=results.problems,
         ground=None if results.gauge is None else results.gauge.lower.plane,
     )
