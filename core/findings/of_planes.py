@@ -37,6 +37,10 @@ ROWS = (
     Finding("fan.poses_scatter", Weight.CAUTION, Effect.WIDENS_U,
             "the poses scatter by {scatter:.2f} mm, {times:.0f} times their noise, which the planes' uncertainty "
             "contains: is the target curled, its size as stated, the camera well calibrated?"),
+    Finding("fan.channels_differ", Weight.CAUTION, Effect.WIDENS_U,
+            "by the {channel} channel alone the light planes lie {mm:.2f} mm off those in use (RMS), {times:.1f} times "
+            "what both leave uncertain, which the planes' uncertainty contains: expose so that no channel saturates, "
+            "and record without compression"),
     Finding("fan.readjusted", Weight.INFORMATION, Effect.NONE,
             "Re-adjustment of camera and fan by {poses} poses of a check of {date}: fan turned by {turn_urad:.0f} "
             "µrad and moved by {shift_um:.0f} µm, picture by {drift_px:.2f} px, focal length by "

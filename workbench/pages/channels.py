@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from core.acquire.grey import CHANNELS
-from core.files.recording.laser_channel import NAMES
+from core.image.channel_names import CHANNEL_NAMES
 from core.messages import capital
 from workbench.language import text_of, tr
 from workbench.views.forms.form import SettingsForm
@@ -11,7 +11,7 @@ from workbench.views.forms.form import SettingsForm
 
 def add_channel(form: SettingsForm) -> None:
     """Add the choice "channel" to a form; "" is what the pictures are best looked at in."""
-    choices = [("", tr("Found automatically")), *((name, capital(text_of(NAMES[name]))) for name in CHANNELS)]
+    choices = [("", tr("Found automatically")), *((name, capital(text_of(CHANNEL_NAMES[name]))) for name in CHANNELS)]
     form.add_choice(
         "channel", tr("Colour"), choices,
         tr("What the laser's light is looked for in, in colour pictures: one channel, or a difference of two, which is "

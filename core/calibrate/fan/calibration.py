@@ -18,6 +18,7 @@ import numpy as np
 
 from core.calibrate.board_shape import TRUE, Board, BoardShape, BoardTolerance
 from core.calibrate.fan.bundle import Bundle, solve
+from core.calibrate.fan.channels import with_differences
 from core.calibrate.fan.cross_validation import predict
 from core.calibrate.fan.observations import BundlePose, Plate
 from core.calibrate.fan.pencil import FreePlanes, PlaneSet
@@ -164,6 +165,7 @@ def fit_fan(
     if plate is not None and options.seen_bowed is None:
         flat = solve(verdict.start, _bundle_poses(located), camera)
     summary = summarise(located, free, used, verdict, foretold, further, flat)
+    summary = with_differences(summary, used, located, camera, plate)
     converged = verdict.converged and all(one.converged for one in (free, used, flat) if one is not None)
     of_fit = () if converged else (NOT_CONVERGED,)
     shape_known = options.seen_bowed is not None

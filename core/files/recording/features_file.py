@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -31,6 +32,7 @@ from core.files.arrays_file import (
     write_arrays,
 )
 from core.image.exclusion import known_exclusion
+from core.image.stripes.centreline import Centreline
 from core.image.targets.target_view import TargetView
 from core.messages import Command, Message, as_text, from_text
 
@@ -52,6 +54,8 @@ _POSES = {
     "moved_px": real("pictures", optional=True),
     "gain": real("pictures", optional=True),
     **centreline_members("stripe", "pictures"),
+    "other_channels": texts("channels", optional=True),
+    **{name: replace(one, optional=True) for name, one in centreline_members("other", "others").items()},
 }
 _TODO = Message("advice.calibrate_camera_again", "calibrate the camera again")
 
@@ -113,6 +117,7 @@ def write_poses(path: Path, planes_id: str, poses: Sequence[PoseFeatures]) -> No
         "gain": np.array([pose.gain for pose in poses]),
         **pack_views([pose.view for pose in poses]),
         **pack_centrelines("stripe", [pose.centrelines for pose in poses]),
+        **_packed_others(poses),
     }
     write_arrays(path, arrays)
 
@@ -146,9 +151,30 @@ def _unpacked(arrays: Arrays) -> tuple[PoseFeatures, ...]:
         (tuple(note for line in said.splitlines() if (note := from_text(line))) for said in notes),
         np.where(moved_px == _NOT_KNOWN, math.nan, moved_px).tolist(),
         arrays.get("gain", np.ones(len(names))).tolist(),
+        _unpacked_others(arrays, len(names)),
         strict=True,
     )
     return tuple(PoseFeatures(*pose) for pose in columns)
+
+
+def _packed_others(poses: Sequence[PoseFeatures]) -> dict[str, NDArray[Any]]:
+    """Stripes in other channels, channel by channel of each pose; nothing where there are none."""
+    channels = sorted({channel for pose in poses for channel in pose.others})
+    if not channels:
+        return {}
+    lines = [pose.others.get(channel, ()) for pose in poses for channel in channels]
+    return {"other_channels": pack_texts(channels), **pack_centrelines("other", lines)}
+
+
+def _unpacked_others(arrays: Arrays, poses: int) -> list[Mapping[str, tuple[Centreline, ...]]]:
+    """What `_packed_others` packed, pose by pose; KeyError or ValueError if the arrays do not fit together."""
+    if "other_channels" not in arrays:
+        return [{}] * poses
+    channels, lines = unpack_texts(arrays["other_channels"]), unpack_centrelines("other", arrays)
+    if len(lines) != poses * len(channels):
+        raise ValueError(f"{len(lines)} stripes in other channels do not make {poses} poses")
+    rows = (lines[first : first + len(channels)] for first in range(0, len(lines), len(channels)))
+    return [{channel: own for channel, own in zip(channels, row, strict=True) if own} for row in rows]
 
 
 _NO_VIEW = -1

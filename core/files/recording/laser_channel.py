@@ -7,7 +7,7 @@ in a JPEG it is of coarser pixels and steps.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from core.acquire.grey import CHANNELS, PLAIN_CHANNELS, Channel, saturated_in, to_grey
 from core.files.jpeg import compression_of
+from core.image.channel_names import CHANNEL_NAMES
 from core.messages import Message
 
 CLEARLY = 1.5
@@ -31,16 +32,6 @@ _REST_QUANTILE, _REST_SD = 0.8, 1.2816
 standard deviations noise alone is within at that share. The darker half holds the shadow of a mean with light in it."""
 _BACKGROUND_PX = 31
 """Width of the mean that stands for a picture without the light, where there is none: many times a stripe's."""
-
-NAMES: Mapping[Channel, Message] = {
-    "red": Message("set.channel_red", "red"),
-    "green": Message("set.channel_green", "green"),
-    "blue": Message("set.channel_blue", "blue"),
-    "red-green": Message("set.channel_red_green", "red − green"),
-    "green-red": Message("set.channel_green_red", "green − red"),
-    "blue-red": Message("set.channel_blue_red", "blue − red"),
-}
-"""The channels in words."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -78,7 +69,7 @@ class LaserChannel:
                 "The colour pictures in {part} are looked at in their {channel} channel, in which the laser's light "
                 "stands out {times:.1f} times as far as in grey. A channel in rig.toml decides otherwise.",
                 part=part,
-                channel=NAMES[self.channel],
+                channel=CHANNEL_NAMES[self.channel],
                 times=self.times,
             ),
         )

@@ -9,7 +9,7 @@ from itertools import chain, islice
 from pathlib import Path
 
 from core.acquire.folder import read_ahead
-from core.acquire.grey import Channel, is_difference, to_grey
+from core.acquire.grey import PLAIN_CHANNELS, Channel, PlainChannel, is_difference, to_grey
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes
@@ -74,6 +74,19 @@ class PictureReader:
         if part == "camera":
             return self._decoded_target(data, path, rig.channel_of("camera"))
         return to_grey(decode_colours(data, path, rig.mosaic), self.laser_channel(part).channel)
+
+    def read_channels(self, path: Path) -> Mapping[PlainChannel, Picture]:
+        """Read one picture of the set in each of its channels; none of a grey one.
+
+        Raises
+        ------
+        InputError
+            As `read`.
+        """
+        picture = decode_colours(read_bytes(path), path, self.recording_set.rig.mosaic)
+        if picture.ndim < 3 or picture.shape[2] < 3:
+            return {}
+        return {channel: to_grey(picture, channel) for channel in PLAIN_CHANNELS}
 
     def read_further(self, path: Path, number: int) -> Picture | None:
         """As `read` the further exposure of this number of a picture; None if there is none."""

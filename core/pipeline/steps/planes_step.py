@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from core.acquire.grey import is_difference
+from core.acquire.grey import Channel, is_difference
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
@@ -27,6 +27,7 @@ from core.image.exclusion import Exclusion
 from core.image.mosaic import ALL_SITES
 from core.image.repeated import Repeats, pixels_of
 from core.image.stripes.exchanged import EXCHANGED, PAIRS_TRIED, are_exchanged, light_off_over_on
+from core.image.stripes.noise import Compression
 from core.image.stripes.stripe import StripeSettings
 from core.image.stripes.told_width import told_width_notes
 from core.messages import Command, Message
@@ -195,10 +196,25 @@ def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
         if on is not None:
             further.append((on, None if pair.off is None else pictures.read_further(pair.off, number)))
     sites = pictures.sites(part)
+    others = _other_channels(pictures, pair, channel) if part == "planes" else {}
     if not is_difference(channel) and sites == ALL_SITES:
-        return Beside(None, compression, further)
+        return Beside(None, compression, further, others=others)
     unlit = pictures.read_target(pair.off) if pair.off is not None else None
-    return Beside((pictures.read_target(pair.on), unlit), compression, further, sites)
+    return Beside((pictures.read_target(pair.on), unlit), compression, further, sites, others)
+
+
+def _other_channels(
+    pictures: PictureReader, pair: PlanePair, channel: Channel | None
+) -> Mapping[str, tuple[Picture, Picture, Compression]]:
+    """A pair of colour pictures in each channel but the one in use; nothing of raw ones: most sites do not see it."""
+    if pair.off is None or pictures.recording_set.rig.mosaic is not None:
+        return {}
+    on, off = pictures.read_channels(pair.on), pictures.read_channels(pair.off)
+    return {
+        other: (on[other], off[other], compression_of(pair.on, other))
+        for other in on.keys() & off.keys() - {channel}
+        if on[other].dtype == off[other].dtype
+    }
 
 
 def solve_planes(

@@ -509,8 +509,32 @@ def test_poses_round_trip_and_belong_to_their_fan(tmp_path):
     assert back[0].view.covariance is None
     assert np.array_equal(back[2].view.covariance, covariance)
     assert np.array_equal(back[2].centrelines[1].uv, poses[2].centrelines[1].uv)
+    assert [pose.others for pose in back] == [{}] * 3
     assert read_poses(tmp_path / "planes.npz", "another fan") == ()
     assert read_poses(tmp_path / "none.npz", "fan1") == ()
+
+
+def test_stripes_of_poses_in_other_channels_round_trip(tmp_path):
+    rng = np.random.default_rng(6)
+    blue, green = (centreline(rng, 2), centreline(rng, 3)), (centreline(rng, 4),)
+    poses = [
+        PoseFeatures("p1", None, (), others={"blue": blue}),
+        PoseFeatures("p2", None, ()),
+        PoseFeatures("p3", None, (), others={"green": green, "blue": blue[:1]}),
+    ]
+    path = tmp_path / "planes.npz"
+    write_poses(path, "fan1", poses)
+    back = read_poses(path, "fan1")
+    assert [{name: len(own) for name, own in pose.others.items()} for pose in back] == [
+        {"blue": 2},
+        {},
+        {"blue": 1, "green": 1},
+    ]
+    assert np.array_equal(back[2].others["green"][0].uv, green[0].uv)
+    with np.load(path) as arrays:
+        np.savez(path, **{**arrays, "other_channels": np.array(["blue"])})
+    with pytest.raises(InputError, match=r"planes\.npz"):
+        read_poses(path, "fan1")
 
 
 def test_the_id_in_a_file_of_poses_has_the_name_that_earlier_versions_gave_it(tmp_path):

@@ -11,8 +11,8 @@ on it, is left out as well (`core.calibrate.fan.poses.plate`).
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any, Final
 
 import cv2
@@ -61,6 +61,8 @@ FLANK = 1.5
 """Stripe σ on either side of a point where the plate is looked at with the laser off."""
 SHORTEST = 12
 """Runs with fewer points left are dropped."""
+AS_BRIGHT = 0.25
+"""Stripes less high than this share of those in use are another channel's crosstalk: it says nothing of the planes."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -69,13 +71,15 @@ class Beside:
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
     theirs; `compression` is that of each picture; `further` are further exposures of them, shorter or longer.
-    `sites` are those of raw pictures that see the laser.
+    `sites` are those of raw pictures that see the laser. `others` are the pictures, fan on and off, in other channels
+    in which its light may be seen as well, and the compression of each, by the channels' names.
     """
 
     target: tuple[Picture, Picture | None] | None = None
     compression: Compression = UNCOMPRESSED
     further: Sequence[tuple[Picture, Picture | None]] = ()
     sites: Sites = ALL_SITES
+    others: Mapping[str, tuple[Picture, Picture, Compression]] = field(default_factory=dict)
 
 
 NOTHING: Final = Beside()
@@ -146,14 +150,9 @@ def measure_plane_pose(
         else:
             why = _other_stripes(settings, seen)
         return PoseFeatures(name, view, (), why, moved_px=moved_px)
-    level = _plate_level(plate, view)
-    centrelines = _on_even_plate(centrelines, plate, level, carrier, laser_off=off is not None)
-    centrelines = without_clutter(centrelines, camera)
-    if camera is not None and off is not None and not beside.further:
-        even = EvenPlate.of(plate, view, level)
-        found = _beside_marks(centrelines, light, even, camera, beside.sites)
-        found = _on_even_plate(found, even.picture, level, carrier, laser_off=True, uneven=even.uneven)
-        centrelines = without_clutter(found, None) or centrelines
+    carried = _Carried(plate, view, _plate_level(plate, view), carrier, camera, off is not None)
+    others = _in_others(centrelines, carried, outside, settings, beside)
+    centrelines = carried.stripes(centrelines, light, beside)
     notes: tuple[Message, ...] = ()
     if off is not None and moved is None:
         note = Message(
@@ -162,7 +161,7 @@ def measure_plane_pose(
             pose=name,
         )
         notes = (note,)
-    return PoseFeatures(name, view, centrelines, notes=notes, moved_px=moved_px, gain=light.gain)
+    return PoseFeatures(name, view, centrelines, notes=notes, moved_px=moved_px, gain=light.gain, others=others)
 
 
 def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:
@@ -253,6 +252,54 @@ def _stripes(
     )
     found = fused(first, others)[0] if others else first.lines
     return sites.brought_back(found)
+
+
+@dataclass(frozen=True, eq=False, slots=True)
+class _Carried:
+    """What is known of a plate on which stripes were found: its picture (H, W), its target, its grey level and edges.
+
+    `paired` is whether there is a picture without the laser.
+    """
+
+    plate: Picture
+    view: TargetView
+    level: float
+    carrier: Plate
+    camera: Camera | None
+    paired: bool
+
+    def stripes(self, found: tuple[Centreline, ...], light: _Light, beside: Beside) -> tuple[Centreline, ...]:
+        """Of what was `found` what lies on the even plate, up to its marks and between them, without clutter."""
+        found = _on_even_plate(found, self.plate, self.level, self.carrier, laser_off=self.paired)
+        found = without_clutter(found, self.camera)
+        if self.camera is None or not self.paired or beside.further:
+            return found
+        even = EvenPlate.of(self.plate, self.view, self.level)
+        whole = _beside_marks(found, light, even, self.camera, beside.sites)
+        whole = _on_even_plate(whole, even.picture, self.level, self.carrier, laser_off=True, uneven=even.uneven)
+        return without_clutter(whole, None) or found
+
+
+def _in_others(
+    centrelines: Sequence[Centreline],
+    carried: _Carried,
+    outside: NDArray[np.bool_],
+    settings: StripeSettings | None,
+    beside: Beside,
+) -> Mapping[str, tuple[Centreline, ...]]:
+    """The stripes in the other channels of a pair of colour pictures that show them not much fainter."""
+    uv = np.vstack([line.uv for line in centrelines])
+    height = float(np.median(np.concatenate([line.strength for line in centrelines])))
+    found = {}
+    for channel, (on, off, compression) in beside.others.items():
+        alone = Beside(compression=compression)
+        light = _Light.of(on, off, carried.view, outside, alone)
+        if float(np.median(_sample(light.picture, uv))) < AS_BRIGHT * height:
+            continue
+        stripes = carried.stripes(_stripes(light, carried.view, settings, alone), light, alone)
+        if stripes:
+            found[channel] = stripes
+    return found
 
 
 def _looked_for(light: _Light, there: tuple[slice, slice], settings: StripeSettings | None) -> tuple[Centreline, ...]:

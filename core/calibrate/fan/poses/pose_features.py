@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -39,6 +39,9 @@ class PoseFeatures(Excludable):
     gain
         Factor of the plate's light with the fan on over that with the fan off, which was taken off; 1: the same, or not
         known.
+    others
+        The stripes in other channels of colour pictures that show them about as well, by the channel's name: they are
+        compared with those in use.
     """
 
     name: str
@@ -48,6 +51,7 @@ class PoseFeatures(Excludable):
     notes: tuple[Message, ...] = ()
     moved_px: float = math.nan
     gain: float = 1.0
+    others: Mapping[str, tuple[Centreline, ...]] = field(default_factory=dict)
 
     @property
     def used(self) -> bool:

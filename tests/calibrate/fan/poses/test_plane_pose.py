@@ -1,5 +1,5 @@
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import cv2
 import numpy as np
@@ -12,6 +12,7 @@ from core.calibrate.fan.poses import plane_pose
 from core.calibrate.fan.poses.located_pose import shows_no_stripe
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
+from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, CircleGrid, TargetNotFound, detect
 from core.model import Pose
@@ -139,6 +140,22 @@ def test_the_fan_is_seen_in_its_colour_and_the_target_in_grey(pair, with_off):
     assert np.quantile(misses, 0.99) < 0.3
     sigma = np.concatenate([line.sigma for line in features.centrelines])
     assert np.sqrt(np.mean((misses / sigma) ** 2)) < 1.25
+
+
+def test_stripes_are_found_in_other_channels_that_are_not_mere_crosstalk(pair, measured):
+    def with_light(share: float, aside_px: float) -> tuple[np.ndarray, np.ndarray, Compression]:
+        light = share * (pair.on.astype(np.float32) - pair.off)
+        light = cv2.warpAffine(light, np.array([[1, 0, 0], [0, 1, aside_px]], np.float32), light.shape[::-1])
+        return np.clip(np.round(pair.off + light), 0, 255).astype(np.uint8), pair.off, UNCOMPRESSED
+
+    beside = Beside(others={"green": with_light(0.6, 0.5), "blue": with_light(0.1, 0.0)})
+    features = measure_plane_pose("p", pair.on, pair.off, TARGET, CAMERA, beside=beside)
+    assert np.array_equal(features.centrelines[0].uv, measured.centrelines[0].uv)
+    assert features.others.keys() == {"green"}
+    green = replace(features, centrelines=features.others["green"])
+    assert np.median(misses_px(green)) == pytest.approx(0.5, abs=0.1)
+    assert len(misses_px(green)) > 0.9 * len(misses_px(measured))
+    assert measured.others == {}
 
 
 def test_points_at_the_edges_of_the_square_are_left_out(measured):
