@@ -86,20 +86,20 @@ def form_zone(
     bumps, place = _bumps(at, length)
     misfit = sources.mean(residuals)
     field = PRIOR * max(float(np.sqrt(np.mean(misfit**2))), SMALLEST_FORM_MM) * bumps
-    shared = np.hstack([sources.speckle, sources.sweeps, sources.explained])
     weights = np.clip(1 - (fit.residuals / SILENT_SD) ** 2, 1e-3, None) ** 2 / fit.own**2
-    columns = np.hstack([design, shared, field])
-    information = (columns * weights[:, None]).T @ columns
+    others = np.hstack([field, design, sources.explained])
+    information = sources.information(others, weights)
     known = np.ones(len(information))
-    known[: design.shape[1]] = 0.0
-    information[np.diag_indices(len(information))] += known
-    of_field = cho_solve(cho_factor(information), (columns * weights[:, None]).T)[-field.shape[1] :]
+    known[field.shape[1] : field.shape[1] + design.shape[1]] = 0.0
+    wanted = np.eye(len(known))[:, : field.shape[1]]
+    solved = cho_solve(cho_factor(information + np.diag(known)), wanted)
+    of_field = weights * (solved.T @ np.hstack([others, sources.speckle, sources.sweeps]).T)
     aside = design[place] @ np.linalg.pinv(design[place])  # the surface itself is no form
     to_places = (np.eye(len(place)) - aside) @ field[place]
     predict = to_places @ of_field
     pattern = to_places @ (of_field @ misfit)
     seen = max(float(np.ptp(pattern)), 1e-12)
-    value, farthest = _zone(seen, predict @ (field @ (of_field @ misfit)) / seen, predict @ _drawn(sources, fit))
+    value, farthest = _zone(seen, predict @ (field @ (of_field @ misfit)) / seen, _drawn(predict, sources, fit))
     rows = Contribution(Cause.FORM_NOISE, farthest / 2), Contribution(Cause.FORM_SMOOTHED, SMOOTHED * value)
     return FormZone(value, rows, length)
 
@@ -119,12 +119,12 @@ def _side(at: Array, outward: Array) -> float:
     return float(np.sqrt(12.0 * spreads[0] * spreads[1]))
 
 
-def _drawn(sources: Sources, fit: Generalised) -> Array:
-    """(J, DRAWS) errors of the stretches, drawn from all causes."""
+def _drawn(predict: Array, sources: Sources, fit: Generalised) -> Array:
+    """(C, DRAWS) what `predict` (C, J) makes of errors of the stretches, drawn from all causes."""
     rng = np.random.default_rng(0)
     shared = np.hstack([sources.speckle, sources.sweeps, sources.common, sources.below])
     alone = fit.own[:, None] * rng.normal(size=(len(fit.own), DRAWS))
-    return np.asarray(alone + shared @ rng.normal(size=(shared.shape[1], DRAWS)))
+    return np.asarray(predict @ alone + (predict @ shared) @ rng.normal(size=(shared.shape[1], DRAWS)))
 
 
 def _zone(seen: float, pattern: Array, noise: Array) -> tuple[float, float]:

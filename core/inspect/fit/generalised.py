@@ -32,6 +32,7 @@ from scipy.linalg import cho_factor, cho_solve
 
 from core.inspect.uncertainty.error_sources import Sources
 from core.model.arrays import Array
+from core.model.positive_definite import inverse_of
 
 SILENT_SD = 6.0
 """Limit of Tukey's biweight: a stretch this many of its own standard deviations off has no weight left, but 1e-6.
@@ -83,23 +84,21 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
 
     The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
     """
-    effects = np.hstack([sources.speckle, sources.sweeps, sources.measured, sources.form])
-    fixed, first_form = design.shape[1], effects.shape[1] - sources.form.shape[1]
-    weights, factor = np.ones(len(misfit)), np.ones(2)
+    others = np.hstack([design, sources.measured, sources.form])
+    effects = np.hstack([others, sources.speckle, sources.sweeps])
+    fixed, forms = design.shape[1], slice(others.shape[1] - sources.form.shape[1], others.shape[1])
+    prior = np.repeat([0.0, 1.0], [fixed, effects.shape[1] - fixed])
+    weights, factor, scale = np.ones(len(misfit)), np.ones(2), np.ones(effects.shape[1])
     group = sources.of_fan.astype(np.int64)
     form = float(np.clip(np.median(sources.own), SMALLEST_FORM_MM, LARGEST_FORM_MM))
     for _ in range(ROUNDS):
         own = sources.own * np.sqrt(factor[group])
-        root = np.sqrt(weights) / own
-        effects[:, first_form:] = form * sources.form
-        columns = np.hstack([design, effects]) * root[:, None]
-        of_group = [columns[group == number].T @ columns[group == number] for number in range(2)]
-        information = of_group[0] + of_group[1]
-        information[np.diag_indices(len(information))] += np.repeat([0.0, 1.0], [fixed, effects.shape[1]])
-        inverse = cho_solve(cho_factor(information), np.eye(len(information)))
-        solution = inverse @ (columns.T @ (misfit * root))
-        residuals = (misfit - design @ solution[:fixed] - effects @ solution[fixed:]) / own
-        form_before, form = form, _form(form, solution[fixed + first_form :], inverse[fixed + first_form :])
+        weight, scale[forms] = weights / own**2, form
+        of_group = [scale[:, None] * part * scale for part in sources.information_of_each(others, weight)]
+        inverse = inverse_of(of_group[0] + of_group[1] + np.diag(prior))
+        solution = inverse @ (scale * (effects.T @ (weight * misfit)))
+        residuals = (misfit - effects @ (scale * solution)) / own
+        form_before, form = form, _form(form, solution[forms], inverse.diagonal()[forms])
         for number in range(2):
             mine = group == number
             spent = float(np.sum(inverse * of_group[number]))
@@ -107,7 +106,7 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
         weights = np.clip(1 - (residuals / SILENT_SD) ** 2, 1e-3, None) ** 2
         if abs(form - form_before) < 0.05 * form + SMALLEST_FORM_MM:
             break
-    gains = inverse[:fixed] @ (columns * root[:, None]).T
+    gains = weight * ((inverse[:fixed] * scale) @ effects.T)
     assumed = sources.common[:, sources.assumed & ~sources.unexplained]
     if not assumed.shape[1]:
         return Generalised(solution[:fixed], gains, own, form_before, residuals)
@@ -118,19 +117,26 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
         acting = wanted @ gains
         return np.asarray(np.hypot(np.linalg.norm(acting * own, axis=1), np.linalg.norm(acting @ shared, axis=1)))
 
-    gains = _with_assumed(np.hstack([columns, assumed * root[:, None]]), root, gains, assumed.shape[1], noise)
+    columns = np.hstack([design, assumed, others[:, fixed:] * scale[fixed : others.shape[1]]])
+    acting = weight * np.hstack([columns, shared]).T
+    gains = _with_assumed(sources.information(columns, weight), acting, gains, assumed.shape[1], noise)
     return Generalised(gains @ misfit, gains, own, form_before, residuals)
 
 
-def _with_assumed(columns: Array, root: Array, gains: Array, assumed: int, noise: Callable[[Array], Array]) -> Array:
-    """`gains` (p, J) where the last `assumed` of `columns` (J, m) take part as far as `noise` of gains (q,) allows."""
-    information, of_estimate = columns.T @ columns, np.eye(columns.shape[1])[:, : len(gains)]
-    prior = np.repeat([0.0, 1.0], [len(gains), len(information) - len(gains)])
+def _with_assumed(
+    information: Array, acting: Array, gains: Array, assumed: int, noise: Callable[[Array], Array]
+) -> Array:
+    """`gains` (p, J) where what is `assumed`, after the p estimates, takes part as far as `noise` of gains (q,) allows.
+
+    `information` (n, n) is Aᵀ W A of all unknowns, `acting` (n, J) is Aᵀ W.
+    """
+    fixed = len(gains)
+    of_estimate = np.eye(len(information))[:, :fixed]
+    prior = np.repeat([0.0, 1.0], [fixed, len(information) - fixed])
 
     def with_share(share: float) -> Array:
-        prior[-assumed:] = share**-2.0
-        inverse = cho_solve(cho_factor(information + np.diag(prior)), of_estimate)
-        return np.asarray(inverse.T @ (columns * root[:, None]).T)
+        prior[fixed : fixed + assumed] = share**-2.0
+        return np.asarray(cho_solve(cho_factor(information + np.diag(prior)), of_estimate).T @ acting)
 
     most, low, high = NOISE_FOR_ASSUMED * noise(gains), math.log(LEAST_SHARE), 0.0
     share = high
@@ -146,10 +152,10 @@ def _with_assumed(columns: Array, root: Array, gains: Array, assumed: int, noise
     return gains
 
 
-def _form(form: float, solution: Array, inverse: Array) -> float:
+def _form(form: float, solution: Array, variances: Array) -> float:
     """The form's standard deviation again, from what the patches (in units of it) came out as and their redundancy."""
     patches = len(solution)
-    known = patches - float(inverse[:, -patches:].trace())
+    known = patches - float(variances.sum())
     grown = float(solution @ solution) / max(known, 1e-3)
     return float(np.clip(form * np.sqrt(grown), SMALLEST_FORM_MM, LARGEST_FORM_MM))
 

@@ -218,8 +218,12 @@ def judge_form(cloud: Cloud, left: Left, part: Parts, places: Places, errors: Po
     residuals = Residuals(
         stretches.misfit, stretches.expected, group, stretches.cell, places.number * (int(part.max(initial=0)) + 1)
     )
-    shared = np.hstack([sources.speckle, sources.sweeps, sources.common])
-    return judge_with_shared(residuals, SharedErrors(sources.own, shared, stretches.design))
+    shared = np.hstack([sources.common, sources.speckle, sources.sweeps])
+
+    def information(others: Array, weight: Array) -> Array:
+        return sources.information(np.hstack([others, sources.common]), weight)
+
+    return judge_with_shared(residuals, SharedErrors(sources.own, shared, stretches.design, information))
 
 
 def notes_on_form(

@@ -90,13 +90,13 @@ def _explained(shape: Shape, cloud: Cloud, errors: PointErrors) -> _Explained:
     part = np.zeros(len(cloud), dtype=np.int64)
     outward = shape.outward(cloud.points, part)
     sources = Sources.of(cloud, outward, np.ones(len(cloud)), part, patches(cloud.uv, part), errors)
-    shared = np.hstack([sources.speckle, sources.sweeps, sources.explained])
+    shared = np.hstack([sources.explained, sources.speckle, sources.sweeps])
     weights, left = np.ones(len(sources.own)), np.inf
     for _ in range(_ROUNDS):
         design = sources.mean(shape.design(cloud.points, part))
         misfit = sources.mean(shape.misfit(cloud.points, part)) / sources.own
         columns = np.hstack([design, shared]) / sources.own[:, None]
-        information = (columns * weights[:, None]).T @ columns
+        information = sources.information(np.hstack([design, sources.explained]), weights / sources.own**2)
         known = np.ones(len(information))
         known[: design.shape[1]] = _FREE * information.diagonal()[: design.shape[1]]
         information[np.diag_indices(len(information))] += known

@@ -20,6 +20,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.sparse import csr_array
 
 from core.calibrate.deviations import LAWLESS, UNMEASURED
 from core.inspect.causes import Cause
@@ -55,6 +56,8 @@ class Sources:
     form: Array  # (J, patches)
     behind: Array  # (J, 2) what skewed light, and what wider stripes, may do at most, in mm; 0 where none is seen
     below: Array  # (J, faces) what light from below each face does that nothing excludes
+    on_planes: csr_array  # (J, 3S) how each follows its sweep's plane, in mm²: as many numbers as a sweep has
+    planes: Array  # (3S, F + 3S) how the planes follow the causes of `speckle` and `sweeps`
     unexplained: NDArray[np.bool_]  # (K,) common errors whose law is not known: a fit must not take them out
     assumed: NDArray[np.bool_]  # (K,) common errors whose size nothing has measured
     cause_below: Cause  # what the row of `below` is called
@@ -120,7 +123,8 @@ class Sources:
         seen = light_below(cloud, part, np.broadcast_to(direction, cloud.points.shape), errors.part, errors.light)
         of_face = part[first]
         noise = mean(own)
-        speckle, sweeps = _of_sweeps(cloud.sweep[first], lever, errors)
+        planes, on_planes = errors.planes_by_cause, _on_planes(cloud.sweep[first], lever, errors.sweeps)
+        speckle, sweeps = np.split(on_planes @ planes, [planes.shape[1] - planes.shape[0]], axis=1)
         if errors.speckle is not None:
             known = np.flatnonzero(place >= 0)
             _add_fan(speckle, errors.speckle, place[known], stretch[known], (share * of_noise)[known])
@@ -139,12 +143,32 @@ class Sources:
             form,
             np.column_stack([mean(of_noise * mm[part]) for mm in (seen.skewed_mm, seen.wider_mm)]),
             (mean(of_noise) * seen.unseen_mm[of_face])[:, None] * (of_face[:, None] == np.arange(len(seen.unseen_mm))),
+            on_planes,
+            planes,
             np.array([source in LAWLESS for source in errors.sources], dtype=np.bool_),
             np.array([source in UNMEASURED for source in errors.sources], dtype=np.bool_),
             Cause.LIGHT_FROM_BELOW_ASSUMED
             if errors.part is None or errors.part.material is None
             else Cause.LIGHT_FROM_BELOW,
         )
+
+    def information(self, others: Array, weight: Array) -> Array:
+        """Aᵀ W A (n, n) of A = [`others` (J, q), `speckle`, `sweeps`]; `weight` (J,) is the diagonal of W."""
+        of_swept, of_fan = self.information_of_each(others, weight)
+        return of_swept + of_fan
+
+    def information_of_each(self, others: Array, weight: Array) -> tuple[Array, Array]:
+        """What stretches of sweeps, and those of the fan, add to `information`.
+
+        All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
+        """
+        fan, swept = np.flatnonzero(self.of_fan), np.flatnonzero(~self.of_fan)
+        rows = np.hstack([one[fan] for one in (others, self.speckle, self.sweeps)]) * np.sqrt(weight[fan])[:, None]
+        weighted = weight[swept, None] * others[swept]
+        planes = _triangles(self.on_planes[swept], weight[swept]) @ self.planes
+        across = (self.on_planes[swept].T @ weighted).T @ self.planes
+        of_swept = np.block([[weighted.T @ others[swept], across], [across.T, planes.T @ planes]])
+        return of_swept, rows.T @ rows
 
     def mean(self, values: Array) -> Array:
         """Weighted means over the stretches (J,) or (J, …) of `values` (N,) or (N, …)."""
@@ -172,28 +196,34 @@ def _gain_of_noise(cloud: Cloud, direction: Array, gain: Array, errors: PointErr
     return np.asarray(np.copysign(np.clip(np.abs(follows), LEAST_GAIN, LARGEST_GAIN), follows))
 
 
-def _of_sweeps(sweep: NDArray[np.int64], lever: Array, errors: PointErrors) -> tuple[Array, Array]:
-    """Effects (J, F) and (J, 3S) on each stretch of its sweep's plane: of the fan's cells, and of all else."""
-    covariance, speckle = errors.sweep_covariance, errors.speckle
-    cells = 0 if speckle is None else speckle.covariance.shape[1]
-    if covariance is None:
-        return np.zeros((len(sweep), cells)), np.zeros((len(sweep), 0))
-    shared = np.zeros((len(covariance), cells)) if speckle is None else speckle.covariance
-
-    def effect(of_planes: Array) -> Array:
-        blocks = of_planes.reshape(errors.sweeps, errors.sweep_size, of_planes.shape[1])
-        acting = np.einsum("ji,jik->jk", lever, blocks[np.maximum(sweep, 0)])
-        acting[sweep < 0] = 0.0
-        return np.asarray(acting)
-
-    return effect(shared), effect(_root(covariance - shared @ shared.T))
+def _on_planes(sweep: NDArray[np.int64], lever: Array, sweeps: int) -> csr_array:
+    """(J, 3S) how stretches follow the planes of the `sweep` (J,) of each by its `lever` (J, k); 0 of the fan."""
+    size, swept = lever.shape[1], (sweep >= 0) & (sweeps > 0)
+    place = size * sweep[swept, None] + np.arange(size)
+    starts = np.concatenate([[0], size * np.cumsum(swept)])
+    return csr_array((lever[swept].ravel(), place.ravel(), starts), (len(sweep), size * sweeps))
 
 
-def _root(covariance: Array) -> Array:
-    """R (n, n) with R Rᵀ = `covariance`, found in units of its standard deviations: they differ by many powers."""
-    size = np.sqrt(np.maximum(covariance.diagonal(), 1e-300))
-    values, vectors = np.linalg.eigh((covariance + covariance.T) / (2 * np.outer(size, size)))
-    return np.asarray(size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
+def _triangles(on_planes: csr_array, weight: Array) -> csr_array:
+    """Few rows with the Aᵀ W A of A = `on_planes` (J, 3S), none of its rows empty, and the diagonal `weight` of W.
+
+    Of each sweep the triangle of its QR decomposition: Aᵀ W A itself loses to rounding what little is known of some
+    planes' directions.
+    """
+    count, columns = on_planes.shape
+    size = on_planes.nnz // max(count, 1)
+    if not size:
+        return csr_array((0, columns))
+    lever = on_planes.data.reshape(count, size) * np.sqrt(weight)[:, None]
+    sweep, each = np.unique(on_planes.indices[::size] // size, return_inverse=True)
+    order, members = np.argsort(each, kind="stable"), np.bincount(each)
+    within = np.arange(count) - np.repeat(np.cumsum(members) - members, members)
+    stacked = np.zeros((len(sweep), max(int(members.max()), size), size))
+    stacked[each[order], within] = lever[order]
+    triangle = np.asarray(np.linalg.qr(stacked, mode="r"), dtype=np.float64)
+    place = np.broadcast_to(size * sweep[:, None, None] + np.arange(size), triangle.shape)
+    starts = size * np.arange(size * len(sweep) + 1)
+    return csr_array((triangle.ravel(), place.ravel(), starts), (size * len(sweep), columns))
 
 
 def _add_fan(

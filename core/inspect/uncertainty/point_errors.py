@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
@@ -37,7 +38,7 @@ OWN_SHARE = 0.1
 """A point's own noise is never taken for less than this share of its σ."""
 
 
-@dataclass(frozen=True, eq=False, slots=True)
+@dataclass(frozen=True, eq=False)
 class PointErrors:
     """How the errors of a cloud's points hang together.
 
@@ -148,6 +149,18 @@ class PointErrors:
         """How many sweeps the covariance holds."""
         return 0 if self.sweep_covariance is None else len(self.sweep_covariance) // self.sweep_size
 
+    @cached_property
+    def planes_by_cause(self) -> Array:
+        """(3S, F + 3S) how the stacked π follow the fan's F cells, and what else errs in them; (0, F) if not known.
+
+        With P their covariance and C that with the cells, the square root of P − C Cᵀ.
+        """
+        cells = 0 if self.speckle is None else self.speckle.covariance.shape[1]
+        if self.sweep_covariance is None:
+            return np.zeros((0, cells))
+        shared = np.zeros((len(self.sweep_covariance), 0)) if self.speckle is None else self.speckle.covariance
+        return np.hstack([shared, _root(self.sweep_covariance - shared @ shared.T)])
+
     def forms(self, rays: Array, uv: Array) -> Array:
         """(N, sweep_size) what the numbers of a sweep are multiplied by at `rays` (N, 3) of pixels `uv` (N, 2)."""
         return row_forms(rays, uv[:, 1], self.image_rows, self.sweep_size)
@@ -195,6 +208,13 @@ class PointErrors:
             stripe = np.where(known, stripe.max() + 1 + part, stripe)
             along = np.where(known, self.speckle.cell[place], along) if known.any() else along
         return pairs(stripe, along - along.min())
+
+
+def _root(covariance: Array) -> Array:
+    """R (n, n) with R Rᵀ = `covariance`, found in units of its standard deviations: they differ by many powers."""
+    size = np.sqrt(np.maximum(covariance.diagonal(), 1e-300))
+    values, vectors = np.linalg.eigh((covariance + covariance.T) / (2 * np.outer(size, size)))
+    return np.asarray(size[:, None] * vectors * np.sqrt(np.maximum(values, 0.0)))
 
 
 def _correlation_px(pieces: Sequence[Centreline]) -> float:

@@ -1,9 +1,13 @@
-"""Noise of a stripe moves its points across a slanting surface by their depth and by their pixel."""
+"""What errs in the stretches of a face: noise that moves pixels, and light planes that many stretches share."""
+
+from dataclasses import fields
+from types import SimpleNamespace
 
 import numpy as np
+import pytest
 
 from core.calibrate.camera.reprojection import parameters_of
-from core.inspect.uncertainty.error_sources import _gain_of_noise
+from core.inspect.uncertainty.error_sources import Sources, _gain_of_noise, _on_planes
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.model import Camera
 from core.scan.common_errors import CommonErrors
@@ -49,3 +53,43 @@ def gain_of(points, outward):
     common = CommonErrors(CAMERA.image_size, (), parameters_of(CAMERA)[None], np.zeros((1, 3, 3)), PLANE[None, None])
     gain = (outward * points / points[:, 2:]).sum(axis=1)
     return _gain_of_noise(cloud, outward, gain, PointErrors(common=common))
+
+
+@pytest.mark.parametrize("size", [3, 6])
+def test_the_information_of_all_stretches_is_that_of_few_rows_a_sweep(size):
+    rng, sweeps, cells = np.random.default_rng(3), 7, 5
+    sweep = np.sort(rng.choice([-2, -1, 0, 1, 3, 4, 6], 200))
+    sweep[sweep == 3] = 4
+    sweep[-1] = 5  # a sweep with one stretch, and others with none
+    lever, planes = rng.normal(size=(200, size)), rng.normal(size=(size * sweeps, cells + size * sweeps))
+    loose = rng.normal(size=size)  # a direction that hardly anything fixes, and no stretch feels
+    lever -= np.outer(lever @ loose, loose) / (loose @ loose)
+    planes[:size] += 1e7 * np.outer(loose, rng.normal(size=planes.shape[1]))
+    on_planes = _on_planes(sweep, lever, sweeps)
+    speckle, shared = np.split(on_planes @ planes, [cells], axis=1)
+    speckle[sweep < 0] = rng.normal(size=(np.count_nonzero(sweep < 0), cells))
+    others, weight = rng.normal(size=(200, 4)), rng.uniform(0.1, 2.0, 200)
+    known = {"of_fan": sweep < 0, "speckle": speckle, "sweeps": shared, "on_planes": on_planes, "planes": planes}
+    sources = Sources(**{one.name: known.get(one.name, SimpleNamespace()) for one in fields(Sources)})
+    columns = np.hstack([others, speckle, shared])
+    expected = (columns * weight[:, None]).T @ columns
+    np.testing.assert_allclose(sources.information(others, weight), expected, atol=1e-6 * np.abs(expected).max())
+    of_swept, of_fan = sources.information_of_each(others, weight)
+    of_sweeps = (columns * (weight * (sweep >= 0))[:, None]).T @ columns
+    np.testing.assert_allclose(of_swept, of_sweeps, atol=1e-6 * np.abs(expected).max())
+    np.testing.assert_allclose(of_fan, expected - of_sweeps, atol=1e-6 * np.abs(expected).max())
+
+
+def test_where_no_planes_are_known_the_others_and_the_speckle_are_left():
+    sweep, others = np.array([0, 1, -1, 1]), np.arange(8.0).reshape(4, 2)
+    errors = PointErrors()
+    on_planes = _on_planes(sweep, np.ones((4, 3)), errors.sweeps)
+    known = {
+        "of_fan": sweep < 0,
+        "speckle": np.zeros((4, 0)),
+        "sweeps": np.zeros((4, 0)),
+        "on_planes": on_planes,
+        "planes": errors.planes_by_cause,
+    }
+    sources = Sources(**{one.name: known.get(one.name, SimpleNamespace()) for one in fields(Sources)})
+    np.testing.assert_allclose(sources.information(others, np.ones(4)), others.T @ others)
