@@ -237,7 +237,6 @@ def _normal(equations: Adjustment, solution: Solution, candidates: Sequence[_Can
     felt = weight[:, None] * (moves - solution.design @ eliminated)
     noise, cells = equations.noise(solution).T @ felt, eliminated[equations.unknowns :]
     calibrated = felt.T @ unsure
-    _, expected = equations.covariance(solution)
     return Normal(
         moves.T @ felt,
         moves.T @ (weight * solution.residuals * solution.sigma),
@@ -245,7 +244,7 @@ def _normal(equations: Adjustment, solution: Solution, candidates: Sequence[_Can
         tuple(one.suspect for one in candidates for _ in range(one.moves.shape[1])),
         {one.suspect: one.places for one in candidates},
         solution.misfit,
-        expected,
+        equations.expected(solution),
     )
 
 

@@ -127,8 +127,7 @@ class _Scores:
 
     @classmethod
     def of(cls, equations: Adjustment, solution: Solution) -> _Scores:
-        _, expected = equations.covariance(solution)
-        scale = max(1.0, solution.misfit / max(expected, 1.0))
+        scale = max(1.0, solution.misfit / max(equations.expected(solution), 1.0))
         weighted = csr_array(diags_array(solution.weights / solution.sigma**2) @ solution.design)
         earlier, later, pattern = movements_of(equations, solution)
         return cls(equations, solution, weighted, equations.noise(solution), earlier, later, pattern, scale)

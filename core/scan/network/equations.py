@@ -25,11 +25,11 @@ from functools import cached_property
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.linalg.lapack import dpotri
 from scipy.sparse import csr_array, diags_array, hstack
 
 from core.model import Fan
 from core.model.arrays import Array, set_field
+from core.model.positive_definite import inverse_by
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
@@ -87,8 +87,7 @@ class Solution:
     @cached_property
     def inverse(self) -> Array:
         """H⁻¹ (N, N)."""
-        lower = np.tril(dpotri(self.factor[0], lower=1)[0])
-        return np.asarray(lower + np.tril(lower, -1).T)
+        return inverse_by(self.factor[0])
 
     @property
     def misfit(self) -> float:
@@ -153,16 +152,27 @@ class Adjustment:
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
         """(3S, 3S) of the planes from the crossings' whole covariance, and the expected `Solution.misfit`."""
+        middle, of_planes = self._middle(solution), solution.inverse[: self.unknowns]
+        covariance = of_planes @ middle @ of_planes.T
+        return np.asarray((covariance + covariance.T) / 2), self._expected(solution, middle)
+
+    def expected(self, solution: Solution) -> float:
+        """The expected `Solution.misfit` alone."""
+        return self._expected(solution, self._middle(solution))
+
+    def _expected(self, solution: Solution, middle: Array) -> float:
+        numbers = len(solution.cells) + self.unknowns - 3 * self.sweeps
+        return float(np.sum(solution.weights) + numbers - np.sum(solution.inverse * middle))
+
+    def _middle(self, solution: Solution) -> Array:
+        """Aᵀ W V W A + P (N, N)."""
         felt, weight = self._felt(solution), solution.weights / solution.sigma**2
         lower = normal_matrix(felt, np.ones(felt.shape[0]))
         lower += normal_matrix(solution.design, weight**2 * self._rest(solution))
         middle = lower + np.tril(lower, -1).T
         middle[np.diag_indices(len(middle))] += self._prior()
         self._add_motion(middle)
-        gained = solution.inverse @ middle
-        covariance = gained[: self.unknowns] @ solution.inverse[:, : self.unknowns]
-        expected = np.sum(solution.weights) + len(solution.cells) + (self.unknowns - 3 * self.sweeps) - np.trace(gained)
-        return np.asarray((covariance + covariance.T) / 2), float(expected)
+        return np.asarray(middle)
 
     def shared_with_fan(self, solution: Solution) -> Array:
         """(3S, F) covariance of the planes' errors π̂ − π with the errors z of the fan's cells.

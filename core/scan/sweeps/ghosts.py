@@ -215,7 +215,7 @@ def free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) ->
         as_a, as_b = crossings.a == sweep, crossings.b == sweep
         rays = np.concatenate([geometry.rays[as_a], geometry.rays[as_b]])
         noise = np.concatenate([(crossings.sigma_a * px)[as_a], (crossings.sigma_b * px)[as_b]])
-        _, spread, directions = np.linalg.svd(rays / noise[:, None])
+        _, spread, directions = np.linalg.svd(rays / noise[:, None], full_matrices=len(rays) < 3)
         if len(rays) < 3 or spread[2] < FIRM * np.sqrt(len(rays)):
             free[sweep] = directions[2]
     return free
