@@ -6,6 +6,7 @@ from PySide6.QtCore import QEvent, QRect, QSize, Qt, Signal
 from PySide6.QtGui import QFont, QFontMetrics, QResizeEvent
 from PySide6.QtWidgets import QFrame, QLabel, QPushButton, QSizePolicy, QToolButton, QWidget
 
+from core.messages import unparted
 from workbench.language import tr
 from workbench.pages.scan.presenter import ScanPresenter
 from workbench.theme import icon
@@ -36,6 +37,7 @@ class Large(QLabel):
         self.setSizePolicy(QSizePolicy.Policy.Expanding, QSizePolicy.Policy.Ignored)
 
     def setText(self, text: str) -> None:
+        text = unparted(text)
         if text != self.text():
             super().setText(text)
             self._fit()
@@ -75,7 +77,7 @@ class GuideBand(QFrame):
         self.go, self.exchange = QPushButton(), QToolButton()
         self.sentence.setAccessibleName(tr("Hint"))
         self.beside.setObjectName("muted")
-        for label, px in ((self.covered, 40), (self.needed, 17), (self.counts, 17)):
+        for label, px in ((self.covered, 40), (self.needed, 22), (self.counts, 22)):
             font = QFont(label.font())
             font.setPixelSize(px)
             label.setFont(font)

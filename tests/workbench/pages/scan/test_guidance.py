@@ -1,7 +1,8 @@
 """What is said to the hand while a scan is recorded."""
 
 from dataclasses import replace
-from typing import Any
+from types import SimpleNamespace
+from typing import Any, cast
 
 import pytest
 from PySide6.QtCore import QSize
@@ -9,11 +10,13 @@ from PySide6.QtGui import QFontMetrics
 
 from core.image.exclusion import Exclusion
 from core.messages import plain
-from core.scan.preview.hints import ENOUGH
+from core.scan.preview.hints import ENOUGH, HandState, HintLimits, hints_for
 from core.scan.preview.preflight import Check
+from core.translations import language
 from tests.workbench.pages import scan_cases as cases
+from workbench.language import choose
 from workbench.pages.scan.guidance import Situation, guidance
-from workbench.pages.scan.guide import LARGEST, SMALLEST, Large
+from workbench.pages.scan.guide import LARGEST, SMALLEST, GuideBand, Large
 
 DETAIL = cases.detail(0)
 NOW = Situation("Live: Camera 1", False, False, ("", ""), False, DETAIL, ())
@@ -69,3 +72,55 @@ def test_a_sentence_is_as_large_as_there_is_room_for_and_whole(qtbot, size):
     assert LARGEST == short > long >= SMALLEST
     taken = QFontMetrics(label.font()).boundingRect(label.rect(), 0x1000, label.text())
     assert taken.height() <= size.height()
+
+
+FROM_TWO_METRES_PX = 22
+"""At a window of 1280 pixels these are a third of them high where its picture is made three times smaller: 7 pixels."""
+HAND = HandState(3, 3, 0.1, 2.0, 1280, 200.0, 255.0, 0.0)
+HINTS = [
+    hints_for(state, HintLimits())[0]
+    for state in (
+        replace(HAND, strength=5.0),
+        replace(HAND, saturated=0.9),
+        replace(HAND, speed_px=123.0),
+        replace(HAND, sigma_mm=9.0, lines_met=1),
+        replace(HAND, sigma_mm=9.0),
+    )
+]
+SITUATIONS = (
+    NOW,
+    NOW._replace(gone=True),
+    NOW._replace(stopping=True),
+    NOW._replace(paused=True),
+    NOW._replace(detail=cases.detail(0, stage="reference")),
+    NOW._replace(detail=cases.detail(0, stage="ready")),
+    NOW._replace(detail=replace(DETAIL, share=ENOUGH)),
+    *(with_preview(hints=(hint,)) for hint in HINTS),
+    *(with_preview(exclusion=one) for one in (Exclusion.MOVED, Exclusion.WITHOUT_FAN, Exclusion.WITHOUT_STRIPE)),
+)
+
+
+@pytest.mark.parametrize("name", ["en", "de", "zh_CN"])
+def test_at_1280_pixels_every_sentence_and_number_can_be_read_from_two_metres(qtbot, qapp, name):
+    def shown(now: Situation) -> GuideBand:
+        live = SimpleNamespace(recorded=123, go_on=lambda: None, buttons=SimpleNamespace(start=""))
+        band = GuideBand(cast(Any, SimpleNamespace(live=live, guidance=guidance(now))))
+        qtbot.addWidget(band)
+        band.resize(1280, band.height())
+        band.show()
+        band.refresh()
+        qtbot.waitUntil(lambda: bool(band.sentence.text()))
+        return band
+
+    try:
+        choose(language(name), qapp)
+        for now in SITUATIONS:
+            band = shown(now)
+            label = band.sentence
+            taken = QFontMetrics(label.font()).boundingRect(label.rect(), 0x1000, label.text())
+            assert taken.height() <= label.height() and label.font().pixelSize() >= 28, label.text()
+            assert "123 px" not in label.text(), "a line break parts no number from its unit"
+            assert min(one.font().pixelSize() for one in (band.needed, band.counts)) >= FROM_TWO_METRES_PX
+            assert band.counts.geometry().bottom() < band.height() and band.covered.geometry().top() >= 0
+    finally:
+        choose(language("en"), qapp)
