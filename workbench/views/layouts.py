@@ -241,14 +241,14 @@ class RoomySentence(Sentence):
         return max(super().heightForWidth(width), *heights, 0)
 
 
-class TwoLines(Sentence):
-    """A sentence with room for two lines, however short it is: what stands below it stays where it is.
+class FewLines(Sentence):
+    """A sentence with room for so many lines, however short it is: what stands below it stays where it is.
 
     One that is longer takes more room; a `steady` one is cut instead, and its tip tells it whole.
     """
 
-    def __init__(self, *, steady: bool = False) -> None:
-        self._said, self._steady = "", steady
+    def __init__(self, lines: int = 2, *, steady: bool = False) -> None:
+        self._said, self._steady, self._lines = "", steady, lines
         super().__init__()
         self.setObjectName("muted")
 
@@ -266,21 +266,21 @@ class TwoLines(Sentence):
         self._show()
 
     def heightForWidth(self, width: int) -> int:
-        two = self._two()
-        return two if self._steady else max(two, super().heightForWidth(width))
+        least = self._least()
+        return least if self._steady else max(least, super().heightForWidth(width))
 
     def sizeHint(self) -> QSize:
         return QSize(super().sizeHint().width(), self.heightForWidth(self.width()))
 
     def minimumSizeHint(self) -> QSize:
-        return QSize(super().minimumSizeHint().width(), self._two())
+        return QSize(super().minimumSizeHint().width(), self._least())
 
     def resizeEvent(self, event: QResizeEvent) -> None:
         super().resizeEvent(event)
         self._show()
 
-    def _two(self) -> int:
-        return 2 * self.fontMetrics().lineSpacing()
+    def _least(self) -> int:
+        return self._lines * self.fontMetrics().lineSpacing()
 
     def _show(self) -> None:
         shown = self._cut() if self._steady else self._said
@@ -290,10 +290,10 @@ class TwoLines(Sentence):
 
     def _cut(self) -> str:
         lines = QElidingLabel.wrapText(unparted(self._said), self.width(), self.font())
-        if len(lines) <= 2:
+        if len(lines) <= self._lines:
             return self._said
-        last = self.fontMetrics().elidedText("".join(lines[1:]), Qt.TextElideMode.ElideRight, self.width() - 2)
-        return lines[0] + last
+        whole, rest = "".join(lines[: self._lines - 1]), "".join(lines[self._lines - 1 :])
+        return whole + self.fontMetrics().elidedText(rest, Qt.TextElideMode.ElideRight, self.width() - 2)
 
 
 def muted(text: str = "") -> Sentence:

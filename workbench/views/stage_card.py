@@ -9,7 +9,7 @@ from PySide6.QtWidgets import QFrame, QHBoxLayout, QPushButton, QSizePolicy, QWi
 
 from workbench.theme import icon
 from workbench.views.common import IconLabel
-from workbench.views.layouts import RoomySentence, TwoLines, enable, in_column, in_row, mark_primary
+from workbench.views.layouts import FewLines, RoomySentence, enable, in_column, in_row, mark_primary
 from workbench.views.lists.value_rows import VERDICT_ICONS, VerdictKind
 
 
@@ -29,7 +29,7 @@ class StageCard(QFrame):
     def __init__(self, buttons: Sequence[CardButton], parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self.setObjectName("card")
-        self.title, self.words, self.sign = RoomySentence(), TwoLines(), IconLabel(16)
+        self.title, self.words, self.sign = RoomySentence(), FewLines(), IconLabel(16)
         self.sign.hide()
         self.sign.setSizePolicy(
             QSizePolicy.Policy.Fixed, QSizePolicy.Policy.Ignored

@@ -68,8 +68,8 @@ class InspectPage(StepPage):
         self.pin_to_side(self.card)
         self.features = FeaturesPanel(presenter.features, presenter.feature, presenter.templates, presenter.scan)
         self.pin_to_side(self.features)
+        self.add_to_side(self.features.state)  # of three lines, whatever it says: it pushes nothing as it changes
         self.add_to_side(self.features.form)  # above what would push it down as it comes
-        self.add_to_side(self.features.state)
         self.faces = FacesPanel(presenter)
         self.faces_fold = self.add_panel(tr("What is measured"), self.faces, kept="faces")
         self.part = PartPanel(presenter)

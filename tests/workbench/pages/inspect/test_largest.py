@@ -8,10 +8,18 @@ from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic
 from core.inspect.results import Contribution
 from core.messages import NO_BREAK_SPACE, plain
+from core.translations import language
 from tests.workbench.pages import inspect_cases as cases
+from workbench.language import choose
 from workbench.pages.inspect.features.plan import THICKNESS
 from workbench.pages.inspect.largest import HELPS, why_so_large
 from workbench.pages.inspect.page import InspectPage
+from workbench.views.layouts import FewLines
+
+COLUMN_PX = 345
+"""Of the side at 1280 pixels."""
+LONGEST = {Cause.LIGHT_FROM_BELOW_ASSUMED, Cause.SCALE_TEMPERATURE_ASSUMED}
+"""Causes whose names alone take two lines: their tip tells the rest."""
 
 
 def characteristic(*budget: Contribution) -> Characteristic:
@@ -54,3 +62,17 @@ def test_it_stands_below_the_list_without_scrolling_until_the_thickness_is_out_o
     presenter.faces.set_number("tolerance_mm", 0.3)
     page.refresh()
     assert "Largest" not in page.features.state.text()
+
+
+def test_it_is_told_whole_in_every_language_beside_a_column_of_the_smallest_window(qtbot, qapp) -> None:
+    label = FewLines(3, steady=True)
+    qtbot.addWidget(label)
+    label.resize(COLUMN_PX, 60)
+    try:
+        for name in ("en", "de", "zh_CN"):
+            choose(language(name), qapp)
+            for cause in HELPS.keys() - LONGEST:
+                label.setText(why_so_large(characteristic(Contribution(cause, 1.0), Contribution(plain("x"), 0.5))))
+                assert label.toolTip() == "", label.text()
+    finally:
+        choose(language("en"), qapp)

@@ -35,7 +35,7 @@ from workbench.pages.inspect.scan import InspectScan
 from workbench.theme import icon
 from workbench.views import ask
 from workbench.views.control_frames import FRAMES_ROLE, SHORT_ROLE, Frame, FramesDelegate
-from workbench.views.layouts import TwoLines, enable, in_column, in_row, muted, say
+from workbench.views.layouts import FewLines, enable, in_column, in_row, muted, say
 from workbench.views.lists.tree_model import Cell, TreeList, TreeRow
 from workbench.views.lists.value_rows import VERDICT_ICONS
 
@@ -86,7 +86,7 @@ class FeaturesPanel(QWidget):
         self.list, self.add, self.measure = _List((tr("Feature"), tr("Value ± U"))), QPushButton(), QPushButton()
         self.templates = TemplatesButton(templates)
         self.remove, self.up, self.down = QToolButton(), QToolButton(), QToolButton()
-        self.state, self.notes = TwoLines(steady=True), muted()
+        self.state, self.notes = FewLines(3, steady=True), muted()
         self.form = FeatureForm(features, edit, scan)
         self.kinds: dict[str, QAction] = {}
         self.actions_of_row: dict[str, QAction] = {}
