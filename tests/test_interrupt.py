@@ -12,6 +12,8 @@ import pytest
 
 from core.cli.bar import bar
 from core.errors import Cancelled
+from core.simulate import recording
+from tests.simulated import trisect
 
 ASKED = {"SIGINT": 130, "SIGTERM": 143, "SIGHUP": 129}
 POSIX = pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such signals")
@@ -98,12 +100,25 @@ def are_gone(pids):
 
 @POSIX
 @pytest.mark.parametrize("name", ASKED)
-def test_a_command_ends_in_order_by_each_signal(tmp_path, name):
+def test_a_command_ends_in_order_by_each_signal(tmp_path, monkeypatch, name):
+    def half(scenario, rig, made, *_):
+        (made / "scan").mkdir(parents=True)
+        signal.raise_signal(getattr(signal, name))
+
+    monkeypatch.setattr(recording, "_render", half)
+    said = trisect("simulate", "block", "--out", tmp_path / "set")
+    assert said.code == ASKED[name]
+    assert said.sentence.startswith("trisect: interrupted;")
+    assert list(tmp_path.iterdir()) == []
+
+
+@POSIX
+def test_a_program_ends_in_order_that_is_asked_to_by_another_one(tmp_path):
     words = ("simulate", "block", "--scale", "0.2", "--frames", "200", "--out", tmp_path / "set")
     command = begun(*words, until="calibration pictures")
-    command.send_signal(getattr(signal, name))
+    command.send_signal(signal.SIGTERM)
     told = command.communicate(timeout=SOON_S)[1]
-    assert command.returncode == ASKED[name]
+    assert command.returncode == ASKED["SIGTERM"]
     assert told.splitlines()[-1].startswith("trisect: interrupted;")
     assert list(tmp_path.iterdir()) == []
 
