@@ -77,7 +77,7 @@ class Tree:
             name = waiting.pop()
             found.add(name)
             packages = {name.rsplit(".", depth)[0] for depth in range(1, name.count(".") + 1)}
-            waiting |= ((self._named(name) | packages) & self._names) - found
+            waiting |= ((self._named(name) | self._brought(name) | packages) & self._names) - found
         return found
 
     def proof(self, path: Path) -> set[str]:
@@ -90,6 +90,12 @@ class Tree:
             if conftest in self.files:
                 found |= self.closure(self._named_by_fixtures(conftest, asked)) | {conftest}
         return found
+
+    def _brought(self, name: str) -> set[str]:
+        """Modules that the door of wings imports where a folder of wings is named: `core.door.by_folders`."""
+        if not name.endswith(".wings"):
+            return set()
+        return {one for one in self.files if one.startswith(f"{name}.") and one.endswith(".wing")}
 
     def _named_in_module(self, name: str) -> set[str]:
         path = self.files.get(name)
@@ -120,7 +126,7 @@ class Tree:
         return named
 
     def _named_in(self, nodes: Iterable[ast.AST], module: str) -> set[str]:
-        """Modules of ours that are imported, or named in a text: what is started by its name."""
+        """Modules of ours that are imported, or named in a text, also as "module:function": what is started by name."""
         named: set[str] = set()
         for node in nodes:
             if isinstance(node, ast.Import):
@@ -131,8 +137,8 @@ class Tree:
                 )
                 base = base or node.module or ""
                 named |= {base, *(f"{base}.{one.name}" for one in node.names)}
-            elif isinstance(node, ast.Constant) and isinstance(node.value, str) and node.value != PROGRAM:
-                named.add(node.value)
+            elif isinstance(node, ast.Constant) and isinstance(node.value, str):
+                named |= {node.value.partition(":")[0]} - {PROGRAM}
         return named & self._names
 
 
