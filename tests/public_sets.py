@@ -18,11 +18,11 @@ from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, open_set
-from core.files.recording.step_settings import CameraSettings, PlanesSettings
 from core.image.targets import Checkerboard, CircleGrid, Target, detect
 from core.model.arrays import Array
 from core.pipeline.steps.camera_step import see_views, solve_camera
 from core.pipeline.steps.planes_step import measure_poses, solve_planes
+from core.settings.options import Options
 
 CAMERA_HALVES, PLANES_HALVES = 6, 20
 """Splits of the pictures in two; planes are quicker to solve."""
@@ -79,7 +79,7 @@ def camera_row(recording_set: RecordingSet) -> tuple[CameraCalibration, str]:
     apart = []
     for _ in range(CAMERA_HALVES):
         a, b = (
-            solve_camera(seen, CameraSettings(excluded=left), tolerance=recording_set.rig.camera_board)
+            solve_camera(seen, Options(excluded=left), tolerance=recording_set.rig.camera_board)
             for left in _halves([view.name for view in seen.found], rng)
         )
         apart.append(_apart(*(_parameters(one)[:, [0, 1, 3, 4]] for one in (a, b))))  # not the skew
@@ -95,7 +95,7 @@ def planes_row(recording_set: RecordingSet, calibration: CameraCalibration) -> s
     usable = [pose for pose in poses if pose.reason is None]
 
     def solve(names: Iterable[str] = ()) -> FanCalibration:
-        left = PlanesSettings(excluded=frozenset(f"planes/{name}" for name in names))
+        left = Options(excluded=frozenset(f"planes/{name}" for name in names))
         return solve_planes(poses, camera, recording_set.rig, left, calibration=calibration)
 
     whole = solve()

@@ -35,11 +35,11 @@ from core.files.project.audit import read_trail
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.folder import backups, create_project, read_project, recoverable, write_autosave, write_project
 from core.files.project.lock import take_lock
-from core.files.recording.options import Options
 from core.files.recording.recorder import Recorder
 from core.files.recording.set_listing import scan_frames
 from core.files.recording.unfinished import unfinished_recording
 from core.pipeline.project.verify import verify
+from core.settings.options import Options
 
 Tell = Callable[[int], None]
 SET, OUT = "set", "out"

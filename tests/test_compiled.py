@@ -49,7 +49,7 @@ import hashlib, sys
 from pathlib import Path
 import core.threads
 core.threads.MOST_WORKERS = int(sys.argv[3])
-from core.files.recording.step_settings import ScanSettings
+from core.settings.options import Options
 from core.files.recording.recording_set import open_set
 from core.pipeline.live import warm_up
 from core.pipeline.steps.scan_step import scan_step
@@ -57,7 +57,7 @@ from core.pipeline.steps.workspace import Workspace
 for stage in sys.argv[4:]:
     getattr(warm_up, stage)()
 out = Path(sys.argv[2])
-scan_step(Workspace.open(open_set(Path(sys.argv[1])), out), ScanSettings(sigma_cut_mm=0.3))
+scan_step(Workspace.open(open_set(Path(sys.argv[1])), out), Options(sigma_cut_mm=0.3))
 print(*(hashlib.sha256((out / name).read_bytes()).hexdigest() for name in ("cloud.ply", "mesh.ply", "scan.npz")))
 """
 

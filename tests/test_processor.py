@@ -15,7 +15,7 @@ from core.processor import PROCESSOR
 MEASURE = """
 import sys
 from pathlib import Path
-from core.files.recording.step_settings import ScanSettings
+from core.settings.options import Options
 from core.files.recording.recording_set import open_set
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.gauge_step import gauge_step
@@ -27,7 +27,7 @@ work = Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2]))
 with second_process() as beside:
     camera_step(work)
     planes_step(work, beside=beside)
-    scan_step(work, ScanSettings(sigma_cut_mm=1.0), beside=beside)
+    scan_step(work, Options(sigma_cut_mm=1.0), beside=beside)
     gauge_step(work)
 """
 """A run without its report, which is not compared."""

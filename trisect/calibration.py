@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.camera import calibration
-from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.results import CameraCalibration, FanCalibration

@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 from core.files.recording import recording_set
-from core.files.recording.options import Options
 from core.files.recording.recording_set import RecordingSet
 from core.files.results import ply
 from core.pipeline import run as whole_run
@@ -15,6 +14,7 @@ from core.pipeline.steps.report_step import report_step
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.surface.cloud import Cloud
+from core.settings.options import Options
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 

@@ -9,10 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from core.acquire.grey import Channel
+from core.acquire.channel import Channel
 from core.errors import InputError
 from core.files import pictures
-from core.files.recording.options import stated_stripe
 from core.image.crossings.crossing import Crossing, cross_centrelines
 from core.image.stripes.centreline import Centreline
 from core.image.stripes.extraction import extract_centrelines
@@ -22,6 +21,7 @@ from core.image.targets import Target, detect
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model import Camera
+from core.settings.options import stated_stripe
 
 Picture = NDArray[np.uint8] | NDArray[np.uint16]
 """Grey levels (height, width)."""

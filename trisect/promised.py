@@ -4,7 +4,6 @@ from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.change import Stability
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import Cancelled, InputError
-from core.files.recording.options import Options
 from core.image.crossings.crossing import Crossing
 from core.image.stripes.centreline import Centreline
 from core.image.targets import BlackSquare, Charuco, Checkerboard, CircleGrid
@@ -16,9 +15,10 @@ from core.inspect.results import GaugeResult as Gauge
 from core.inspect.uncertainty.part import Part
 from core.model import Camera, Fan, LightPlane
 from core.pipeline.project.opened import open_project
-from core.scan.reconstruct import ReconstructOptions
+from core.scan.method import ReconstructOptions
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.fused_surface import Mesh
+from core.settings.options import Options
 from trisect.calibration import calibrate_camera, calibrate_fan
 from trisect.folders import open_set, read_cloud, report, run, simulate, write_cloud
 from trisect.inspection import measure_features, measure_thickness

@@ -32,8 +32,8 @@ from core.scan.features.extraction import FeatureOptions, ScanFeatures, extract_
 from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of, mosaic_of
 from core.scan.features.reference import quantile_reference, sample_indices
+from core.scan.method import ReconstructOptions
 from core.scan.part_light import PartLight
-from core.scan.reconstruct import ReconstructOptions
 from core.scan.results import ScanResult
 from core.scan.surface import fusion, mesh
 from core.scan.surface import triangulate as triangulation
@@ -42,8 +42,6 @@ from core.scan.surface.fused_surface import Mesh, Surface
 from core.scan.surface.normals import with_normals
 from trisect.pictures import checked_picture, same_size
 
-MOST_SIGMA_CUT_MM = 10.0
-"""Standard uncertainty of depth in mm: points less sure say nothing of a part (as on the command line)."""
 FEWEST_FRAMES = 3
 """Without a picture of the fan alone one is made of the frames: of three, the darkest third is one."""
 
@@ -255,16 +253,11 @@ def _change_by_scan(
 
 def _checked(options: ReconstructOptions) -> ReconstructOptions:
     """Return options that can be; InputError for other ones."""
-    row_time = 0.0 if options.row_time_us is None else options.row_time_us
-    if 0 < options.sigma_cut_mm <= MOST_SIGMA_CUT_MM and 0 <= row_time < np.inf:
+    complaint = options.complaint
+    if complaint is None:
         return options
     raise InputError(
-        Message(
-            "api.no_options",
-            "a σ cut of {cut_mm} mm with {row_time} µs from row to row cannot be",
-            cut_mm=str(options.sigma_cut_mm),
-            row_time=str(options.row_time_us),
-        ),
+        complaint,
         where="options",
         todo=Message("api.advice_options", "give a σ cut above 0 and at most 10 mm, and a time not below 0, or None"),
     )

@@ -2,27 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Any, Final, Literal, get_args
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-PlainChannel = Literal["red", "green", "blue"]
-"""One of a colour picture's channels."""
-Channel = Literal[PlainChannel, "red-green", "green-red", "blue-red"]
-"""The same, or a laser's colour as a difference of two: what is grey or white is dark in it, in any light."""
-PLAIN_CHANNELS: Final = get_args(PlainChannel)
-CHANNELS: Final = get_args(Channel)
+from core.acquire.channel import PLAIN_CHANNELS, Channel, is_difference
 
 _BGR: dict[str, int] = {"blue": 0, "green": 1, "red": 2}
 _NONE_SHARE = 4
 """A difference of nothing is this part of the largest grey value: noise below it is not cut off."""
-
-
-def is_difference(channel: str | None) -> bool:
-    """Whether a channel is a difference of two, in which targets cannot be seen."""
-    return channel is not None and channel not in PLAIN_CHANNELS
 
 
 def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.bool_]:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from enum import Enum
 from pathlib import Path
+from typing import Any
 
-from core.calibrate.camera.adjustment import CameraOptions
-from core.cli.options import ChannelName
 from core.files.atomic import make_folder
-from core.files.recording.options import Options, stated_stripe
 from core.files.recording.recording_set import (
     excluded_names,
     open_set,
@@ -18,46 +17,35 @@ from core.files.recording.recording_set import (
     require_planes,
     require_scan,
 )
-from core.image.stripes.stripe import StripeSettings
-from core.scan.method import Method
+from core.settings.options import STRIPE, Options, stated_stripe
+from core.settings.setting import rows, rows_within
 
 
-def options(
-    method: Method = Method.NETWORK,
-    sigma_cut: float = 0.05,
-    *,
-    camera: CameraOptions = CameraOptions(),
-    part: str = "",
-    stripe: StripeSettings | None = None,
-    adjust_camera: bool = False,
-    accept_few_poses: bool = False,
-    channel: ChannelName | None = None,
-) -> Options:
-    """The pipeline's options from the command line's; InputError if one is absurd.
+def options(typed: Mapping[str, Any], part: str = "") -> Options:
+    """The pipeline's options from the words of flags; InputError if one is absurd.
 
-    `stripe` is that of all stripes, in the scan and on the plane target.
+    A stripe that is typed is that of all stripes, in the scan and on the plane target.
     """
-    return Options(
-        method,
-        sigma_cut,
-        camera,
-        part,
-        stripe,
-        adjust_camera=adjust_camera,
-        plane_stripe=stripe,
-        accept_few_poses=accept_few_poses,
-        channel=None if channel is None else channel.value,
-    )
+    chosen: dict[str, Any] = {}
+    for row in rows(Options):
+        within = {
+            one.key: _value(typed[flag.word])
+            for one in rows_within(row)
+            if (flag := one.setting.flag) is not None and flag.word in typed
+        }
+        if row.setting.kind is STRIPE:
+            if within:
+                width_px, contrast = (value or None for value in within.values())
+                chosen[row.key] = stated_stripe(width_px, contrast, "--stripe-width, --contrast")
+        elif row.is_one:
+            chosen |= within
+        else:
+            chosen[row.key] = replace(row.default, **within)
+    return Options(**chosen, part=part)
 
 
-def camera_options(skew: bool | None, k3: bool | None) -> CameraOptions:
-    """The camera model as the command line states it."""
-    return CameraOptions(skew=skew, k3=k3)
-
-
-def stripe(stripe_width: float, contrast: float) -> StripeSettings | None:
-    """Width and contrast of stripes, None where they are to be chosen (0); InputError where only one is given."""
-    return stated_stripe(stripe_width or None, contrast or None, "--stripe-width, --contrast")
+def _value(typed: Any) -> Any:
+    return typed.value if isinstance(typed, Enum) else typed
 
 
 def leaving_out(chosen: Options, folder: Path, names: Sequence[str] | None) -> Options:

@@ -12,7 +12,7 @@ from typing import Any
 
 from rich.table import Table
 
-from core.acquire.grey import Channel
+from core.acquire.channel import Channel
 from core.cli import output, talk
 from core.cli.bar import lines_of, tells_lines
 from core.cli.language import speak_as, spoken, told, tr
@@ -21,7 +21,6 @@ from core.code_cache import note_on_cache
 from core.compiled import FOLDER, is_complete
 from core.errors import InputError
 from core.files.folder_lock import alone_in
-from core.files.recording.options import Options, StatedTilt
 from core.files.recording.recording_set import RIG, open_set, require_folder
 from core.files.recording.rig import read_rig
 from core.files.results.artefact_register import artefact_named
@@ -54,6 +53,7 @@ from core.report.facts.of_gauge import pictures_fact, pictures_table
 from core.report.facts.of_planes import planes_facts, planes_sentences
 from core.report.facts.of_scan import scan_facts, sigma_of
 from core.second_process import SecondProcess
+from core.settings.options import Options, StatedTilt
 from core.stage_times import StageTimes
 from core.states import SET_STATES
 from core.study.artefact_check import ArtefactCheck

@@ -8,27 +8,9 @@ from typing import Annotated
 import typer
 
 from core.cli.bar import bar
-from core.cli.options import (
-    EPILOG,
-    K3,
-    AcceptFewPoses,
-    AdjustCamera,
-    ChannelOption,
-    Contrast,
-    Exclude,
-    Json,
-    MethodOption,
-    Out,
-    Panel,
-    Part,
-    Profile,
-    Set,
-    SigmaCut,
-    Skew,
-    StripeWidth,
-)
+from core.cli.options import EPILOG, Exclude, Json, Out, Panel, Part, Profile, Set
+from core.cli.setting_flags import NOTHING_TYPED, Typed, takes
 from core.pipeline.taken_over import TAKEN_OVER
-from core.scan.method import Method
 from core.second_process import second_process
 
 commands = typer.Typer()
@@ -37,18 +19,11 @@ Celsius = Annotated[float | None, typer.Option(metavar="°C", help="Temperature 
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
+@takes("scan", "camera", "planes")
 def run(
     folder: Set,
     out: Out,
-    method: MethodOption = Method.NETWORK,
-    sigma_cut: SigmaCut = 0.05,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
-    skew: Skew = None,
-    k3: K3 = None,
-    adjust_camera: AdjustCamera = False,
-    accept_few_poses: AcceptFewPoses = False,
+    typed: Typed = NOTHING_TYPED,
     part: Part = "",
     exclude: Exclude = None,
     profile: Profile = False,
@@ -57,16 +32,7 @@ def run(
     """Measure a recording set: calibrations, cloud, mesh, thickness, report."""
     from core.cli import arguments
 
-    options = arguments.options(
-        method,
-        sigma_cut,
-        camera=arguments.camera_options(skew, k3),
-        part=part,
-        stripe=arguments.stripe(stripe_width, contrast),
-        adjust_camera=adjust_camera,
-        accept_few_poses=accept_few_poses,
-        channel=channel,
-    )
+    options = arguments.options(typed, part)
     options = arguments.leaving_out(options, folder, exclude)
     arguments.require_run(folder, out)
     with second_process(TAKEN_OVER) as beside:  # it starts while this one imports
@@ -81,6 +47,7 @@ def run(
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
+@takes("scan")
 def batch(
     sets: Annotated[list[Path], typer.Argument(metavar="SET", help="Recording sets, all names different.")],
     out: Out,
@@ -88,17 +55,13 @@ def batch(
         str, typer.Option(metavar="WHO", help="processes, threads, or dask://HOST:PORT for a Dask cluster.")
     ] = "processes",
     workers: Annotated[int | None, typer.Option(metavar="N", help="Sets at a time; else one for each core.")] = None,
-    method: MethodOption = Method.NETWORK,
-    sigma_cut: SigmaCut = 0.05,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
+    typed: Typed = NOTHING_TYPED,
     json: Json = False,
 ) -> None:
     """Measure many recording sets side by side, each into a folder of its name in DIR."""
     from core.cli import arguments, measuring
 
-    options = arguments.options(method, sigma_cut, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(typed)
     with bar() as progress:
         results = measuring.run_sets(sets, out, executor, workers, options, progress)
     measuring.show_sets(results, as_json=json)
@@ -106,13 +69,18 @@ def batch(
 
 
 @commands.command(rich_help_panel=Panel.CALIBRATE)
+@takes("camera")
 def camera(
-    folder: Set, out: Out, skew: Skew = None, k3: K3 = None, exclude: Exclude = None, json: Json = False
+    folder: Set,
+    out: Out,
+    typed: Typed = NOTHING_TYPED,
+    exclude: Exclude = None,
+    json: Json = False,
 ) -> None:
     """Calibrate the camera from SET/camera; writes camera.json."""
     from core.cli import arguments, measuring
 
-    options = arguments.options(camera=arguments.camera_options(skew, k3))
+    options = arguments.options(typed)
     options = arguments.leaving_out(options, folder, exclude)
     with bar("camera") as progress:
         shown = measuring.run_camera(folder, out, options, progress)
@@ -120,39 +88,29 @@ def camera(
 
 
 @commands.command(rich_help_panel=Panel.CALIBRATE)
+@takes("planes")
 def planes(
     folder: Set,
     out: Out,
-    adjust_camera: AdjustCamera = False,
-    accept_few_poses: AcceptFewPoses = False,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
+    typed: Typed = NOTHING_TYPED,
     exclude: Exclude = None,
     json: Json = False,
 ) -> None:
     """Calibrate the laser planes from SET/planes, with camera.json in DIR; writes planes.json."""
     from core.cli import arguments, measuring
 
-    chosen = arguments.options(
-        stripe=arguments.stripe(stripe_width, contrast),
-        adjust_camera=adjust_camera,
-        accept_few_poses=accept_few_poses,
-        channel=channel,
-    )
-    options = arguments.leaving_out(chosen, folder, exclude)
+    options = arguments.leaving_out(arguments.options(typed), folder, exclude)
     with bar("planes") as progress:
         shown = measuring.run_planes(folder, out, options, progress)
     shown.show(as_json=json)
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.CALIBRATE)
+@takes("check")
 def check(
     folder: Set,
     out: Out,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
+    typed: Typed = NOTHING_TYPED,
     celsius: Celsius = None,
     history: Annotated[
         bool, typer.Option("--history", help="Check nothing: show the checks of this rig so far, with their limits.")
@@ -173,7 +131,7 @@ def check(
         measuring.undo_adjusting(folder, out).show(as_json=json)
         return
     if adjust:
-        options = arguments.options(stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+        options = arguments.options(typed)
         with bar() as progress:
             shown = measuring.run_adjusting(folder, out, options, progress)
         shown.show(as_json=json)
@@ -182,7 +140,7 @@ def check(
         past, shown = measuring.rig_history(folder, out)
         shown.show(as_json=json)
         raise typer.Exit(measuring.exit_code(past.checks[-1].verdict if past.checks else "", good=("passed",)))
-    options = arguments.options(stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(typed)
     with bar() as progress:
         result, shown = measuring.run_check(folder, out, options, progress, celsius)
     shown.show(as_json=json)
@@ -214,14 +172,11 @@ def artefact(
 
 
 @commands.command(rich_help_panel=Panel.MEASURE)
+@takes("scan")
 def scan(
     folder: Set,
     out: Out,
-    method: MethodOption = Method.NETWORK,
-    sigma_cut: SigmaCut = 0.05,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
+    typed: Typed = NOTHING_TYPED,
     exclude: Exclude = None,
     profile: Profile = False,
     json: Json = False,
@@ -229,7 +184,7 @@ def scan(
     """Measure the surface from SET/scan, with the calibrations in DIR; writes cloud.ply and mesh.ply."""
     from core.cli import arguments, measuring
 
-    options = arguments.options(method, sigma_cut, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(typed)
     options = arguments.leaving_out(options, folder, exclude)
     with bar("scan") as progress:
         watched = measuring.timed(progress, profile)
@@ -239,6 +194,7 @@ def scan(
 
 
 @commands.command(epilog=EPILOG, rich_help_panel=Panel.MEASURE)
+@takes("profile")
 def profile(
     folder: Set,
     out: Out,
@@ -257,9 +213,7 @@ def profile(
             "is taken to stand at right angles on them.",
         ),
     ] = 0.0,
-    stripe_width: StripeWidth = 0.0,
-    contrast: Contrast = 0.0,
-    channel: ChannelOption = None,
+    typed: Typed = NOTHING_TYPED,
     part: Part = "",
     exclude: Exclude = None,
     json: Json = False,
@@ -267,7 +221,7 @@ def profile(
     """Measure a thickness with the fixed lines alone, no hand-held laser: by the step in each picture of SET/scan."""
     from core.cli import arguments, measuring
 
-    options = arguments.options(part=part, stripe=arguments.stripe(stripe_width, contrast), channel=channel)
+    options = arguments.options(typed, part)
     options = arguments.leaving_out(options, folder, exclude)
     with bar() as progress:
         verdict, shown = measuring.run_profile(folder, out, options, stage, tilt_sd, progress)

@@ -11,7 +11,6 @@ import typer
 
 from core.errors import InputError
 from core.messages import Message, label
-from core.scan.method import Method
 
 
 class ExitCode(IntEnum):
@@ -69,90 +68,10 @@ class OrderBy(str, Enum):  # noqa: UP042
     time = "time"
 
 
-class ChannelName(str, Enum):  # noqa: UP042
-    """What the laser is looked at in, in colour pictures."""
-
-    red = "red"
-    green = "green"
-    blue = "blue"
-    red_green = "red-green"
-    green_red = "green-red"
-    blue_red = "blue-red"
-
-
 Set = Annotated[Path, typer.Argument(metavar="SET", help="The recording set: a folder with rig.toml and pictures.")]
 Out = Annotated[Path, typer.Option("--out", "-o", metavar="DIR", help="Folder of the results; made if need be.")]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object for machines instead of a table.")]
-MethodOption = Annotated[
-    Method,
-    typer.Option(
-        help="network: all sweeps adjusted together. three-crossings: each frame from its own crossings with the fan, "
-        "the paper's method, for comparison."
-    ),
-]
-SigmaCut = Annotated[
-    float, typer.Option("--sigma-cut", metavar="MM", help="Leave out points with a larger standard uncertainty.")
-]
-Skew = Annotated[
-    bool | None,
-    typer.Option(
-        "--skew/--no-skew",
-        help="Solve for the camera's skew γ, as the paper does, or fix it to 0. Without either it is solved for only "
-        "where that predicts views left out better.",
-        show_default=False,
-    ),
-]
 Part = Annotated[str, typer.Option(metavar="NAME", help="Name of the part in the report; else the name of SET.")]
-K3 = Annotated[
-    bool | None,
-    typer.Option(
-        "--k3/--no-k3",
-        help="Solve for the third radial coefficient, or fix it to 0. Without either it is solved for only where that "
-        "predicts views left out better.",
-        show_default=False,
-    ),
-]
-
-
-AdjustCamera = Annotated[
-    bool,
-    typer.Option(
-        "--adjust-camera",
-        help="Let the poses of the plane target correct the camera, in one adjustment with the fan: for a plane target "
-        "of many points, or a camera calibrated from few views.",
-    ),
-]
-
-
-StripeWidth = Annotated[
-    float,
-    typer.Option("--stripe-width", metavar="PX", help="Visible width of the stripes; 0: chosen from the pictures."),
-]
-Contrast = Annotated[
-    float,
-    typer.Option("--contrast", metavar="GREY", help="Height of a rather faint stripe above its background; 0: chosen."),
-]
-
-
-ChannelOption = Annotated[
-    ChannelName | None,
-    typer.Option(
-        "--channel",
-        help="Look at the lasers in this channel of colour pictures, or difference of two; else as rig.toml says, or "
-        "in the one that shows their light best.",
-        show_default=False,
-    ),
-]
-
-
-AcceptFewPoses = Annotated[
-    bool,
-    typer.Option(
-        "--accept-few-poses", help="Use laser planes even though fewer than half of the target's poses agree with them."
-    ),
-]
-
-
 Exclude = Annotated[
     list[str] | None,
     typer.Option(

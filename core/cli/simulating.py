@@ -19,7 +19,6 @@ from core.cli.language import tr
 from core.cli.options import EPILOG, Json, Panel
 from core.pipeline.taken_over import TAKEN_OVER
 from core.progress import Progress
-from core.scan.method import Method
 from core.second_process import second_process
 from core.simulate.scenario import CAMERA_TARGETS, OBJECTS, PLANE_TARGETS, Scenario
 
@@ -196,7 +195,7 @@ def demo(
         from core.cli import measuring, output
         from core.report.wording import thickness_line
 
-        options = arguments.options(Method.NETWORK, _QUICK_CUT_MM if quick else 0.05, part=_PART)
+        options = arguments.options({"sigma_cut": _QUICK_CUT_MM} if quick else {}, _PART)
         with bar("run") as progress, _sample(progress, quick=quick) as folder:
             result = measuring.run_all(folder, out, options, progress, beside)
     measuring.show_run(result, as_json=json)

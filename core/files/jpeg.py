@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from core.acquire.grey import Channel, is_difference
+from core.acquire.channel import Channel, is_difference
 from core.image.stripes.noise import UNCOMPRESSED, Compression
 from core.messages import Message
 

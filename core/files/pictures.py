@@ -10,7 +10,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.grey import Channel, to_grey
+from core.acquire.channel import Channel
+from core.acquire.grey import to_grey
 from core.errors import InputError
 from core.files import jpeg
 from core.files.atomic import write_bytes

@@ -12,7 +12,6 @@ from pathlib import Path
 from core.errors import Cancelled, InputError, NoThickness
 from core.files.atomic import make_folder, remove
 from core.files.reading import cannot_read, refused_path, resolved
-from core.files.recording.options import Options
 from core.files.recording.recording_set import RIG
 from core.messages import Message, label
 from core.pipeline.executors import THREADS, executor_of, is_to_end
@@ -20,6 +19,7 @@ from core.pipeline.run import RunResult, run
 from core.pipeline.set_result import SetProgress, SetResult
 from core.progress import Progress, silent
 from core.remaining import USUAL_S, Remaining
+from core.settings.options import Options
 
 STOP = ".stop"
 """This file in the batch's folder stops all sets that are being measured, on whatever machine that sees it."""

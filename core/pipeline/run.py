@@ -9,7 +9,6 @@ from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.calibrate.results import CameraCalibration, FanCalibration
 from core.errors import InputError
 from core.files.folder_lock import alone_in
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import (
     CHECK,
@@ -36,6 +35,7 @@ from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.results import FrameRecord
 from core.second_process import SecondProcess
+from core.settings.options import Options
 
 
 @dataclass(frozen=True, eq=False, slots=True)

@@ -19,8 +19,8 @@ from core.progress import Progress, silent
 from core.scan.features.bent_crossings import BentLine, crossed_again
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.straightening import straightened
-from core.scan.method import Method
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import Method, ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
 from core.scan.surface.bends import Bends, bends_of
 from core.scan.surface.sections import Stripe, estimate_light, toward_light

@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import dataclass
 from enum import StrEnum
+
+from core.messages import Message
+
+SIGMA_CUT_MM = 0.05
+"""Points with a larger standard uncertainty of depth are left out, if nothing else is said."""
+MOST_SIGMA_CUT_MM = 10.0
+"""The largest such limit that can be meant."""
 
 
 class Method(StrEnum):
@@ -12,3 +21,29 @@ class Method(StrEnum):
     """All sweeps adjusted together."""
     THREE_CROSSINGS = "three-crossings"
     """Each frame by itself, from its own crossings with the fan: Sun et al. 2023, section 4."""
+
+
+@dataclass(frozen=True, slots=True)
+class ReconstructOptions:
+    """Options of solving a scan.
+
+    `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out. `row_time_us` is the time from
+    one row of a picture to the next, 0 where all are taken at once, None where nothing is stated.
+    """
+
+    method: Method = Method.NETWORK
+    sigma_cut_mm: float = SIGMA_CUT_MM
+    row_time_us: float | None = None
+
+    @property
+    def complaint(self) -> Message | None:
+        """The reason why they cannot be; None if they can."""
+        row_time = 0.0 if self.row_time_us is None else self.row_time_us
+        if 0 < self.sigma_cut_mm <= MOST_SIGMA_CUT_MM and 0 <= row_time < math.inf:
+            return None
+        return Message(
+            "api.no_options",
+            "a σ cut of {cut_mm} mm with {row_time} µs from row to row cannot be",
+            cut_mm=str(self.sigma_cut_mm),
+            row_time=str(self.row_time_us),
+        )

@@ -27,7 +27,7 @@ from core.scan.features.extraction import ScanFeatures
 from core.scan.features.frames import CrossingUse
 from core.scan.features.overexposure import ADVICE, overexposed
 from core.scan.first_cause import Reason, Suspect, cause_first
-from core.scan.method import Method
+from core.scan.method import Method, ReconstructOptions
 from core.scan.network.datum import Datum, datum_of, main_plane, note_on_datum, relief_mm
 from core.scan.network.fan_speckle import FanSpeckle, fan_speckle
 from core.scan.network.read_out import AT_ONCE, ReadOut
@@ -41,10 +41,6 @@ from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines
 from core.scan.sweeps.ghosts import NO_BOUNCES, SecondBounces, find_second_bounces
 from core.scan.sweeps.locate import LocatedSweeps, by_sweep, locate_each, locate_together, number_fan_lines, numbered
 from core.scan.sweeps.moving import hand_notes, read_out_of
-
-SIGMA_CUT_MM = 0.05
-"""Standard uncertainty of depth in mm above which points are left out, unless another is asked for (the method's
-default)."""
 
 MANY_LOST = 0.1
 """Share of the points that are lost to a moving hand from which on it is told."""
@@ -72,19 +68,6 @@ LOCATE_BETTER = Message(
     field=Field("laser_fan.lines"),
 )
 AS_CALIBRATED = Message("scan.advice_as_calibrated", "scan again with the rig as it was at its calibration")
-
-
-@dataclass(frozen=True, slots=True)
-class ReconstructOptions:
-    """Options of solving a scan.
-
-    `method`: how sweeps are located. Points with a σ above `sigma_cut_mm` are left out. `row_time_us` is the time from
-    one row of a picture to the next, 0 where all are taken at once, None where nothing is stated.
-    """
-
-    method: Method = Method.NETWORK
-    sigma_cut_mm: float = SIGMA_CUT_MM
-    row_time_us: float | None = None
 
 
 def reconstruct(

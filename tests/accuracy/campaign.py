@@ -17,7 +17,6 @@ import numpy as np
 
 from core.errors import InputError
 from core.files.recording.recording_set import open_set
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import read_scan
 from core.inspect.gauge import fit_gauge
@@ -25,6 +24,7 @@ from core.pipeline.steps.gauge_step import point_errors
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.scan.method import Method
+from core.settings.options import Options
 from tests.accuracy.cases import Case, calibration_key
 from tests.accuracy.twin import Measured, measure
 from tests.inspect.sphere_fit import fit_sphere
@@ -116,7 +116,7 @@ def _paper(place: Path, measured: Measured) -> Figures:
     shutil.copytree(place / "out", place / "paper")
     work = Workspace.open(open_set(place / "set"), place / "paper")
     try:
-        scan = scan_step(work, ScanSettings(method=Method.THREE_CROSSINGS)).scan
+        scan = scan_step(work, Options(method=Method.THREE_CROSSINGS)).scan
     except InputError as problem:
         return {"why": str(problem)}
     of_sweeps = scan.cloud.sweep >= 0

@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 
 from core.files.recording.recording_set import open_set
-from core.files.recording.step_settings import ScanSettings
 from core.inspect.fit.round import find_sphere
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.scan.method import Method
+from core.settings.options import Options
 from core.simulate.scenario import Scenario
 from tests.accuracy.twin import calibrated_once, measure
 from tests.inspect.sphere_fit import fit_sphere
@@ -62,5 +62,5 @@ def test_a_mask_with_folded_ears_is_reconstructed(calibrated, tmp_path):
 def test_the_papers_own_method_works_on_the_same_recording_and_is_far_less_complete(calibrated, tmp_path):
     network = len(measure(Scenario(seed=8, scale=0.5, frames=30), tmp_path, calibrated).cloud)
     work = Workspace.open(open_set(tmp_path / "set"), tmp_path / "out")
-    paper = len(scan_step(work, ScanSettings(method=Method.THREE_CROSSINGS)).scan.cloud)
+    paper = len(scan_step(work, Options(method=Method.THREE_CROSSINGS)).scan.cloud)
     assert 0 < paper < 0.6 * network

@@ -5,12 +5,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.files.recording.options import StatedTilt
 from core.files.recording.recording_set import open_set
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.workspace import Workspace
+from core.settings.options import StatedTilt
 from core.simulate.effects.laser import LaserEffects
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario

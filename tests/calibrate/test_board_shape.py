@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 
 from core.calibrate.board_shape import BoardShape, BoardTolerance
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.reprojection import parameters_of
 from core.calibrate.results import CameraCalibration
 from tests.calibrate.camera_views import TRUTH, synthetic_views

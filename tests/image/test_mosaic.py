@@ -6,7 +6,8 @@ import cv2
 import numpy as np
 import pytest
 
-from core.acquire.grey import PLAIN_CHANNELS, to_grey
+from core.acquire.channel import PLAIN_CHANNELS
+from core.acquire.grey import to_grey
 from core.image.mosaic import ALL_SITES, colours_of, even_grey, is_interpolated, sites_of
 from core.image.stripes.extraction import choose_settings, extract_centrelines
 from core.image.stripes.noise import estimate_noise

@@ -17,7 +17,6 @@ import pytest
 from core.cli import measuring
 from core.errors import Cancelled, InputError
 from core.files.pictures import read_picture, write_picture
-from core.files.recording.options import Options
 from core.image.stripes.stripe import StripeSettings
 from core.pipeline import batch, executors
 from core.pipeline.batch import STEP, STOP, run_batch, sets_in
@@ -26,6 +25,7 @@ from core.pipeline.run import run
 from core.pipeline.set_result import SetProgress
 from core.remaining import USUAL_S
 from core.scan.method import Method
+from core.settings.options import Options
 from tests.simulated import trisect
 
 

@@ -12,11 +12,11 @@ from core.errors import Cancelled, InputError
 from core.files.project.data import Accepted
 from core.files.project.folder import results_folder
 from core.files.recording.recording_set import open_set
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_file import read_scan
 from core.pipeline.project.details import recall_poses, show_frame, show_pose
 from core.pipeline.project.frame_stages import frame_stages
 from core.pipeline.steps.scan.pictures import look_at_scan
+from core.settings.options import Options
 from core.simulate.effects.sensor import SensorEffects
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
@@ -43,7 +43,7 @@ def test_a_raw_frame_shows_the_centrelines_that_its_sites_of_the_lasers_colour_s
     scenario = Scenario(scale=0.25, frames=4, camera_views=1, plane_poses=1, speckle=0.0, sensor=sensor)
     simulate_set(scenario, tmp_path / "set")
     recording_set = open_set(tmp_path / "set")
-    measured = look_at_scan((recording_set, ScanSettings())).lines
+    measured = look_at_scan((recording_set, Options())).lines
     for frame in measured.frames:
         stages = frame_stages(recording_set, frame.name)
         assert stages.picture.shape == measured.image_size[::-1]

@@ -9,9 +9,9 @@ from contextlib import suppress
 import pytest
 
 from core.errors import Cancelled, InputError
-from core.files.recording.options import Options
 from core.pipeline.run import run
 from core.second_process import SecondProcess
+from core.settings.options import Options
 from tests.simulated import contents
 from tests.test_second_process import ROOT, process_of
 

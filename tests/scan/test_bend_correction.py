@@ -10,7 +10,8 @@ from core.inspect.fit.round import sphere_through
 from core.scan.bend_correction import corrected_for_bends, reconstruct_twice
 from core.scan.features.bent_crossings import BentLine, crossed_again
 from core.scan.features.straightening import straightened
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.scan.surface.sections import LARGEST_SHIFT
 from core.scan.sweeps.fan_lines import FanLines
 from core.simulate.scenario import Scenario

@@ -10,8 +10,8 @@ from core.errors import InputError
 from core.messages import plain
 from core.scan import reconstruct as reconstruct_module
 from core.scan.features.extraction import FeatureOptions, extract_features
-from core.scan.method import Method
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import Method, ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.scan.records import MOVED_FRAME
 from core.simulate.effects.warming import Warming
 from core.simulate.recording import moved_stage, scan_of

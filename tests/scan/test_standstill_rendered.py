@@ -4,7 +4,8 @@ import pytest
 
 from core.image.exclusion import Exclusion
 from core.scan.features.extraction import FeatureOptions, extract_features
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.scan.records import MOVED_FRAME
 from core.simulate.recording import scan_of
 from core.simulate.scan import ScanStage

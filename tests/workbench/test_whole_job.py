@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from core.files.recording.options import Options
 from core.files.results.ply import read_cloud
 from core.files.step_graph import FILES
 from core.pipeline.run import run
+from core.settings.options import Options
 from tests.workbench.technician import Technician
 from tests.workbench.watchdog import Watchdog, slowness, too_long
 

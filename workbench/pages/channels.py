@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from core.acquire.grey import CHANNELS
+from core.acquire.channel import CHANNELS
 from core.image.channel_names import CHANNEL_NAMES
 from core.messages import capital
 from workbench.language import text_of, tr

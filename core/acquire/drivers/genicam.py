@@ -9,9 +9,9 @@ from typing import Any, Protocol
 
 from numpy.typing import NDArray
 
+from core.acquire.channel import Channel
 from core.acquire.drivers.genicam_features import TRIGGER, Features, apply, capabilities_of, is_asked_for, make_grey
 from core.acquire.drivers.pixel_formats import decode
-from core.acquire.grey import Channel
 from core.acquire.source import Capabilities, Frame, Lasers, SourceSettings, Step, Unplugged
 from core.errors import InputError, WrongValue
 from core.messages import Message

@@ -14,7 +14,8 @@ from typing import Any
 import cv2
 import numpy as np
 
-from core.acquire.grey import Channel, to_grey
+from core.acquire.channel import Channel
+from core.acquire.grey import to_grey
 from core.acquire.pace import Pace
 from core.acquire.source import (
     Capabilities,

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.grey import Channel, to_grey
+from core.acquire.channel import Channel
+from core.acquire.grey import to_grey
 from core.acquire.source import Picture
 from core.errors import WrongValue
 from core.messages import Message

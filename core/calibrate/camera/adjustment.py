@@ -6,7 +6,7 @@ The plain least-squares solution and the judgement of views and corners follow e
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from core.calibrate.board_shape import SHAPE_PARAMETERS, Board, BoardTolerance
 from core.calibrate.camera.board_fit import BoardFit
 from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, refine_robustly, residual_lengths
-from core.calibrate.camera.screening import Outliers, Verdict, judge
+from core.calibrate.camera.options import CameraOptions
+from core.calibrate.camera.screening import Verdict, judge
 from core.calibrate.results import CAMERA_PARAMETERS
 
 LEAST_VIEWS = 3
@@ -27,45 +28,10 @@ _SHAPE_SETTLED = 1e-4
 """Step, as a share of the parameters' prior standard deviations, below which the shape is found."""
 
 
-@dataclass(frozen=True)
-class CameraOptions:
-    """Options of a camera calibration: free parameters, and which outliers are left out.
-
-    Parameters
-    ----------
-    skew
-        Whether γ is free; else it is 0. None: it is free only where that predicts views left out better.
-    fixed
-        Those of k1, k2, p1, p2 that are fixed to 0.
-    k3
-        Whether k3 is free; else it is 0. None: it is free only where that predicts views left out better.
-    outliers
-        "keep": every corner of every view counts. "gross": views out of line with the others are left out, and
-        corners that stand out against the plain standard deviation of their view, which they raise themselves. "all":
-        also corners that stand out against the median of their view only.
-
-    Raises
-    ------
-    ValueError
-        If `fixed` names another parameter.
-    """
-
-    skew: bool | None = None
-    fixed: frozenset[str] = frozenset()
-    k3: bool | None = None
-    outliers: Outliers = "gross"
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "fixed", frozenset(self.fixed))
-        unknown = self.fixed - {"k1", "k2", "p1", "p2"}
-        if unknown:
-            raise ValueError(f"only k1, k2, p1 and p2 can be fixed, not {', '.join(sorted(unknown))}")
-
-    @property
-    def free(self) -> NDArray[np.intp]:
-        """Indices of the free parameters in CAMERA_PARAMETERS."""
-        zero = self.fixed | ({"gamma"} if self.skew is False else set()) | (set() if self.k3 else {"k3"})
-        return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
+def free_parameters(options: CameraOptions) -> NDArray[np.intp]:
+    """Return the indices (F,) of the free parameters in CAMERA_PARAMETERS."""
+    zero = options.fixed | ({"gamma"} if options.skew is False else set()) | (set() if options.k3 else {"k3"})
+    return np.array([i for i, name in enumerate(CAMERA_PARAMETERS) if name not in zero], dtype=np.intp)
 
 
 def counted_observations(observed: Sequence[Observed], verdicts: Sequence[Verdict]) -> tuple[list[int], list[Observed]]:
@@ -82,7 +48,7 @@ def solve_judged(start: Bundle, observed: Sequence[Observed], options: CameraOpt
         used = [verdict.used for verdict in verdicts]
         if sum(used) < LEAST_VIEWS:
             break
-        bundle = _fit(bundle, observed, verdicts, options.free)
+        bundle = _fit(bundle, observed, verdicts, free_parameters(options))
         before, verdicts = verdicts, judge(residual_lengths(bundle, observed), used, options.outliers)
         if all(
             a.used == b.used and np.array_equal(a.counted, b.counted) for a, b in zip(before, verdicts, strict=True)
@@ -115,19 +81,19 @@ def with_shape(
     used, counted = counted_observations(observed, verdicts)
     if not len(fit.free) or len(used) < LEAST_VIEWS:
         return fit, flat, verdicts
-    freedom = freedom_of(counted, options.free)
+    freedom = freedom_of(counted, free_parameters(options))
     bundle = flat
     try:
         for _ in range(_SHAPE_STEPS):
             before = fit.values
-            fit = fit.step(bundle.of_views(used), counted, options.free, freedom)
-            bundle = _fit(bundle, fit.shaped(observed), verdicts, options.free)
+            fit = fit.step(bundle.of_views(used), counted, free_parameters(options), freedom)
+            bundle = _fit(bundle, fit.shaped(observed), verdicts, free_parameters(options))
             if (np.abs(fit.values - before)[fit.free] < _SHAPE_SETTLED * tolerance.sd[fit.free]).all():
                 break
         unsure = False
         if tolerance.flatness_mm is None:
-            covariance, _ = fit.covariance(bundle.of_views(used), counted, options.free, freedom)
-            unsure = not fit.shape(covariance, len(options.free)).surely_bowed
+            covariance, _ = fit.covariance(bundle.of_views(used), counted, free_parameters(options), freedom)
+            unsure = not fit.shape(covariance, len(free_parameters(options))).surely_bowed
     except np.linalg.LinAlgError:
         unsure = True
     if unsure:

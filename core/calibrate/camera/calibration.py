@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 from core.calibrate.board_shape import BoardShape, BoardTolerance
 from core.calibrate.camera.adjustment import (
     LEAST_VIEWS,
-    CameraOptions,
     counted_observations,
+    free_parameters,
     freedom_of,
     solve_judged,
     with_shape,
@@ -32,6 +32,7 @@ from core.calibrate.camera.board_fit import BoardFit
 from core.calibrate.camera.bundle import Bundle, Observed, refine_robustly, residual_lengths
 from core.calibrate.camera.covariance import SharedErrorFactors
 from core.calibrate.camera.coverage import coverage, tilt_range
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.quality import cross_validation_mm, notes_on, rms_and_mean, view_qualities, view_without_part
 from core.calibrate.camera.screening import screen
 from core.calibrate.camera.settled import has_settled
@@ -135,17 +136,17 @@ def _calibrated(
     bundle = start_of(homographies, observed, image_size, options)
     progress(_STEP, 1, _STAGES)
     if options.outliers != "keep":
-        bundle = refine_robustly(bundle, observed, options.free)
+        bundle = refine_robustly(bundle, observed, free_parameters(options))
     progress(_STEP, 2, _STAGES)
     bundle, verdicts = solve_judged(bundle, observed, options)
     if options.skew is None:
         used, counted = counted_observations(observed, verdicts)
-        if not skew_helps(bundle.of_views(used), counted, options.free):
+        if not skew_helps(bundle.of_views(used), counted, free_parameters(options)):
             return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress, skew_left_out=True)
     fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
     if options.k3 is None and not options.fixed & {"k1", "k2"}:
         used, counted = counted_observations(observed, verdicts)
-        found = third_radial(bundle.of_views(used), fit.shaped(counted), options.free)
+        found = third_radial(bundle.of_views(used), fit.shaped(counted), free_parameters(options))
         if found is not None:  # the skew is judged again with it
             again = replace(options, skew=None if skew_left_out else options.skew, k3=True)
             calibration = _calibrated(views, image_size, again, tolerance, progress)
@@ -156,13 +157,14 @@ def _calibrated(
     progress(_STEP, 3, _STAGES)
     used, counted = counted_observations(observed, verdicts)
     solved = bundle.of_views(used)
-    covariance, shape, widening = _covariance(solved, counted, options.free, fit)
+    covariance, shape, widening = _covariance(solved, counted, free_parameters(options), fit)
     if skew_left_out:
-        covariance = _with_skew(covariance, solved, counted, options.free, fit)
+        covariance = _with_skew(covariance, solved, counted, free_parameters(options), fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
     qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
-    calibration = replace(_summary(qualities, solved, fit.shaped(counted), covariance, options.free), board=shape)
+    summary = _summary(qualities, solved, fit.shaped(counted), covariance, free_parameters(options))
+    calibration = replace(summary, board=shape)
     calibration = replace(calibration, converged=has_settled(calibration))
     progress(_STEP, _STAGES, _STAGES)
     of_fit = () if calibration.converged else (note_of("camera.not_converged"),)

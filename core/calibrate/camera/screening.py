@@ -9,19 +9,17 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.calibrate.camera.bundle import RAYLEIGH_MEDIAN
+from core.calibrate.camera.options import Outliers
 from core.calibrate.camera.zhang import homography, homography_misfit
 from core.image.exclusion import Excludable, Reason
 from core.image.targets.target_view import TargetView
 from core.messages import Message
 from core.model.arrays import Array
-
-Outliers = Literal["keep", "gross", "all"]
 
 # Which views are screened out; tests/calibrate/camera/test_calibration.py (misfound corners, wrong views) holds them.
 LEAST_CORNERS = 6

@@ -9,11 +9,11 @@ from typing import Annotated, Any
 
 from pydantic import ConfigDict, Field
 
-from core.files.recording.options import Options
 from core.files.recording.rig import Rig, default_rig
 from core.files.tables import Finite, KeptMessage, Time
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.report.template import Paper
+from core.settings.options import Options
 from core.study.artefact_check import Artefact
 from core.translations import languages
 

@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import asdict
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import asdict, fields
 from datetime import datetime
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
-from pydantic import Field
+from pydantic import Field, create_model
 
 from core import __version__
-from core.calibrate.camera.adjustment import CameraOptions
 from core.errors import InputError
 from core.files.complaints import checked_json
 from core.files.json_text import to_json
@@ -31,48 +30,44 @@ from core.files.project.data import (
     Sources,
 )
 from core.files.reading import read_json
-from core.files.recording.options import Options
 from core.files.recording.rig import RigTables, Table, rig_of, rig_tables
 from core.files.results.artefact_register import ArtefactTable
 from core.files.tables import TIME_WORDS, Finite, Time, kept
-from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
-from core.scan.method import Method
-
-_Name = Annotated[str, Field(pattern=r"^(camera|planes|scan)/.")]
-
-
-class CameraOptionsTable(Table):
-    """Under "camera" of the options."""
-
-    skew: bool | None = None
-    fixed: frozenset[Literal["k1", "k2", "p1", "p2"]] = Field(
-        default=frozenset(), description="a list of those of k1, k2, p1, p2 that are fixed to 0"
-    )
-    k3: bool | None = None
-    outliers: Literal["keep", "gross", "all"] = Field(default="gross", description='"keep", "gross" or "all"')
+from core.settings.options import Options
+from core.settings.setting import Choice, Kind, Names, Number, Row, Values, Whether, rows, rows_within
 
 
-class OptionsTable(Table):
-    """Under "options"."""
+def _all_checked(settings: Sequence[Row]) -> dict[str, Any]:
+    return {row.key: _checked(row) for row in settings if row.setting.in_file}
 
-    method: Method = Field(
-        default=Method.NETWORK, strict=False, description=" or ".join(f'"{method}"' for method in Method)
-    )
-    sigma_cut_mm: Annotated[float, Field(gt=0, le=10, allow_inf_nan=False)] = Field(
-        default=0.05, description="a length in mm above 0 and at most 10"
-    )
-    camera: CameraOptionsTable = CameraOptionsTable()
-    part: str = ""
-    stripe: StripeSettings | None = Field(default=None, description="a table of width_px and contrast, or null")
-    excluded: frozenset[_Name] = Field(
-        default=frozenset(),
-        description='a list of pictures as "camera/view00.png", "planes/pose00", "scan/frame0000.png"',
-    )
-    constrain_fan: bool = True
-    adjust_camera: bool = False
-    plane_stripe: StripeSettings | None = Field(default=None, description="a table of width_px and contrast, or null")
-    accept_few_poses: bool = False
+
+def _checked(row: Row) -> tuple[Any, Any]:
+    """What a file may hold of a setting, and how it is told so."""
+    kind = row.setting.kind
+    allowed: Any
+    if isinstance(kind, Values):
+        if kind.optional:
+            return kind.type | None, Field(default=row.default, description=kind.stated)
+        within = create_model(f"{kind.type.__name__}Table", __base__=Table, **_all_checked(rows_within(row)))
+        return within, within()
+    if isinstance(kind, Number):
+        allowed = Annotated[float, Field(gt=kind.above, le=kind.most, allow_inf_nan=False)]
+    elif isinstance(kind, Choice):
+        if kind.type is not None:
+            return kind.type, Field(default=row.default, strict=False, description=kind.stated)
+        if None in kind.values:  # true, false, or as it is best
+            return bool | None, row.default
+        allowed = Literal[kind.values]
+    elif isinstance(kind, Names):
+        allowed = frozenset[Annotated[str, Field(pattern=kind.pattern)]]
+    else:
+        return (bool if isinstance(kind, Whether) else str), row.default
+    return allowed, Field(default=row.default, description=kind.stated)
+
+
+OptionsTable = create_model("OptionsTable", __base__=Table, **_all_checked(rows(Options)))
+"""Under "options"."""
 
 
 class ProjectTables(Table):
@@ -85,7 +80,7 @@ class ProjectTables(Table):
     info: ProjectInfo = Field(description="a table of name, part, …")
     rig: RigTables = Field(description="a table as in rig.toml")
     sources: Sources = Sources()
-    options: OptionsTable = OptionsTable()
+    options: OptionsTable = OptionsTable()  # type: ignore[valid-type]
     accepted: Accepted = Accepted()
     rejected: frozenset[Id] = Field(default=frozenset(), description="a list of ids of calibrations")
     repeats: tuple[Repeat, ...] = ()
@@ -237,15 +232,23 @@ def _project_file(file: ProjectTables, path: Path) -> ProjectFile:
     return ProjectFile(project, file.results, file.created, file.saved)
 
 
-def _options(table: OptionsTable) -> Options:
-    return Options(**{**dict(table), "camera": CameraOptions(**dict(table.camera))})
+def _options(table: Table) -> Options:
+    stated = dict(table)
+    for row in rows(Options):
+        if not row.is_one:
+            stated[row.key] = type(row.default)(**dict(stated[row.key]))
+    return Options(**stated)
 
 
 def _options_table(options: Options) -> dict[str, Any]:
-    table = asdict(options)
-    del table["channel"]  # a project's rig says it
-    table["camera"]["fixed"] = sorted(options.camera.fixed)
-    return {**table, "excluded": sorted(options.excluded)}
+    return {row.key: _kept(row.setting.kind, row.value(options)) for row in rows(Options) if row.setting.in_file}
+
+
+def _kept(kind: Kind, value: Any) -> Any:
+    """A value as a file has it: names in their order."""
+    if isinstance(kind, Values) and value is not None:
+        return {one.name: _kept(kind.settings[one.name].kind, getattr(value, one.name)) for one in fields(kind.type)}
+    return sorted(value) if isinstance(kind, Names) else value
 
 
 def _done_table(done: Done) -> dict[str, Any]:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import hashlib
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import asdict, replace
+from dataclasses import asdict, is_dataclass, replace
 from datetime import datetime
 from typing import Any
 
@@ -18,6 +18,8 @@ from core.files.recording.rig import as_calibrated_with, part_table, rig_tables
 from core.files.step_graph import CALIBRATED, IN_PROJECT
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.messages import label
+from core.settings.options import settings_of
+from core.settings.setting import rows_within
 
 STEPS = tuple(step.name for step in IN_PROJECT)
 """The steps that have a result, in the order of work."""
@@ -159,13 +161,12 @@ def _moved(spec: FeatureSpec, moved: Mapping[str, str]) -> FeatureSpec:
 
 
 def _camera(project: Project) -> dict[str, str]:
-    camera = project.options.camera
     return {
         label("pictures of the camera target"): project.sources.camera,
         label("camera target"): _digest(as_calibrated_with(rig_tables(project.rig)["camera_target"])),
         label("colour channel"): project.rig.channel_of("camera") or "",
         label("left-out views"): _left_out(project, "camera"),
-        label("camera settings"): _digest([camera.skew, camera.k3, sorted(camera.fixed), camera.outliers]),
+        label("camera settings"): _settings(project, "camera"),
         label("accepted camera calibration"): _whether(project.accepted.camera),
     }
 
@@ -201,8 +202,6 @@ def _check(project: Project) -> dict[str, str]:
 
 
 def _scan(project: Project) -> dict[str, str]:
-    options, stripe = project.options, project.options.stripe
-    settings = [options.method, options.sigma_cut_mm, [stripe.width_px, stripe.contrast] if stripe else None]
     tables = rig_tables(project.rig)
     stability, camera, validity = (tables.get(name) for name in ("stability", "camera", "validity"))
     stated = {label("stability of the rig"): _digest(stability)} if stability else {}
@@ -215,7 +214,7 @@ def _scan(project: Project) -> dict[str, str]:
         label("recording"): project.sources.scan,
         label("colour channel"): project.rig.channel_of("scan") or "",
         label("left-out frames"): _left_out(project, "scan"),
-        label("scan settings"): _digest(settings),
+        label("scan settings"): _settings(project, "scan"),
         **stated,
     }
 
@@ -263,6 +262,25 @@ def _report(project: Project) -> dict[str, str]:
 def _printing(report: ReportChoices) -> list[str]:
     """Paper, and what else is not as usual: reports made before there was a choice stay up to date."""
     return [report.paper, *(one for one in (report.language, report.template) if one not in ("en", ""))]
+
+
+def _settings(project: Project, step: str) -> str:
+    """What the project says of a step's settings: those of the first version always, others where they are stated."""
+    options = project.options
+    within = [one for row in settings_of(step) for one in (rows_within(row) if not row.is_one else (row,))]
+    listed = [_plain(one.value(options)) for one in within if one.setting.keyed]
+    stated = {
+        one.key: _plain(one.value(options))
+        for one in within
+        if one.setting.in_file and not one.setting.keyed and one.value(options) != one.default
+    }
+    return _digest([*listed, stated] if stated else listed)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, frozenset):
+        return sorted(value)
+    return [*asdict(value).values()] if is_dataclass(value) and not isinstance(value, type) else value
 
 
 def _left_out(project: Project, part: str) -> str:

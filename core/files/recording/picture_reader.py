@@ -8,8 +8,9 @@ from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
 
+from core.acquire.channel import PLAIN_CHANNELS, Channel, PlainChannel, is_difference
 from core.acquire.folder import read_ahead
-from core.acquire.grey import PLAIN_CHANNELS, Channel, PlainChannel, is_difference, to_grey
+from core.acquire.grey import to_grey
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes

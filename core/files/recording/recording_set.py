@@ -24,7 +24,7 @@ from dataclasses import dataclass, field, replace
 from difflib import get_close_matches
 from pathlib import Path
 
-from core.acquire.grey import Channel
+from core.acquire.channel import Channel
 from core.errors import InputError
 from core.files.reading import file_hash, resolved
 from core.files.recording.recording_log import FolderLog

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal, TypeAlias
 import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from core.acquire.grey import Channel, PlainChannel, is_difference
+from core.acquire.channel import Channel, PlainChannel, is_difference
 from core.calibrate.board_shape import BoardTolerance
 from core.calibrate.change import STABLE, Stability
 from core.calibrate.drift import NO_DRIFT, Air, Drift

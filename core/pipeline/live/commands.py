@@ -6,13 +6,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from core.acquire.source import Lasers, SourceChoice, SourceSettings, Step
-from core.files.recording.options import Options
 from core.files.recording.recorder import Ending
 from core.files.recording.rig import Rig
 from core.files.results.check_file import InterimCheck
 from core.image.targets.kinds import Target
 from core.image.targets.target_view import TargetView
 from core.model import Camera, Fan
+from core.settings.options import Options
 
 
 @dataclass(frozen=True, eq=False, slots=True)

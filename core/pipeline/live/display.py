@@ -8,7 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from core.acquire.grey import Channel, to_grey
+from core.acquire.channel import Channel
+from core.acquire.grey import to_grey
 from core.acquire.source import Picture
 from core.files.recording.rig import Rig
 from core.image.mosaic import Pattern, colours_of

@@ -17,12 +17,12 @@ from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, gather_set
 from core.files.recording.rig import Rig
-from core.files.recording.step_settings import ScanSettings
 from core.model import Camera
 from core.pipeline.steps.kept_features import keep_features
 from core.pipeline.steps.scan.features import crossed_scan
 from core.pipeline.steps.scan.pictures import look_at_scan
 from core.scan.features.extraction import LOOK_AHEAD
+from core.settings.options import Options
 
 LOW_PRIORITY = 10
 """Of the threads that look, where an operating system knows one of a thread; 0 is the usual one."""
@@ -46,7 +46,7 @@ class RecordedFeatures:
     """
 
     def __init__(
-        self, folder: Path, ending: str, rig: Rig, camera: Camera, settings: ScanSettings, written: Callable[[], int]
+        self, folder: Path, ending: str, rig: Rig, camera: Camera, settings: Options, written: Callable[[], int]
     ) -> None:
         self._folder, self._ending, self._written = folder, ending, written
         self._rig, self._camera, self._settings = rig, camera, settings

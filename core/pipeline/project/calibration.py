@@ -73,7 +73,7 @@ def accept_camera(folder: Path, project: Project, calibration: CameraCalibration
     recording_set = project_set(folder, project)
     names = {view.name for view in calibration.views}
     inputs = _hashes(recording_set, (path for path in recording_set.camera if recording_set.name_of(path) in names))
-    return keep_camera(folder, calibration, project.options.for_camera.told, inputs)
+    return keep_camera(folder, calibration, project.options.for_camera.told("camera"), inputs)
 
 
 def find_poses(

@@ -176,7 +176,11 @@ def _settled(results: Path, picture: Path, name: str, project: Project) -> Settl
         record = read_run(run)
         same = record.inputs.get(name) == file_hash(picture)
         told = record.settings.get("scan", {}).get("stripe")
-        return _read_settled(_Version.of(scan)) if same and told == project.options.for_scan.told["stripe"] else None
+        return (
+            _read_settled(_Version.of(scan))
+            if same and told == project.options.for_scan.told("scan")["stripe"]
+            else None
+        )
     except (InputError, OSError):
         return None  # nothing measured yet, or damaged: then the recording alone must tell
 

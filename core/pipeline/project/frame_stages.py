@@ -11,7 +11,6 @@ import numpy as np
 from core.errors import InputError
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.step_settings import ScanSettings
 from core.image.display import in_8_bit, white_level
 from core.image.exclusion import Reason
 from core.image.mosaic import Sites
@@ -31,6 +30,7 @@ from core.scan.features.extraction import (
 from core.scan.preview.frames import Preview, PreviewOptions
 from core.scan.preview.shown import FrameStages, SettledScan
 from core.scan.sweeps.fan_lines import UNASSIGNED, FanLines, possible_fan_lines
+from core.settings.options import Options
 
 STRIPE_AT = 160.0
 """Difference and ridge strength are shown so that a rather faint stripe has this grey level."""
@@ -41,7 +41,7 @@ def frame_stages(
     name: str,
     camera: Camera | None = None,
     fan: Fan | None = None,
-    settings: ScanSettings | None = None,
+    settings: Options | None = None,
     progress: Progress = silent,
     settled: SettledScan | None = None,
 ) -> FrameStages:
@@ -68,7 +68,7 @@ def frame_stages(
         If there is no such frame, it cannot be read or has another size than the reference, or there is no reference
         and no fan line in it.
     """
-    settings = settings or ScanSettings()
+    settings = settings or Options()
     path = recording_set.path_of(name)
     if path not in recording_set.frames:
         raise InputError(Message("project.no_such_frame", "there is no such frame in the recording"), where=name)
@@ -141,12 +141,12 @@ class _Recording:
     stripe: StripeSettings | None
     settled: SettledScan | None
     pictures: PictureReader = field(compare=False)
-    settings: ScanSettings = field(compare=False)
+    settings: Options = field(compare=False)
     progress: Progress = field(compare=False)
 
     @classmethod
     def of(
-        cls, pictures: PictureReader, settings: ScanSettings, settled: SettledScan | None, progress: Progress
+        cls, pictures: PictureReader, settings: Options, settled: SettledScan | None, progress: Progress
     ) -> _Recording:
         recording_set = pictures.recording_set
         reference = recording_set.reference
@@ -175,7 +175,7 @@ def _common(recording: _Recording) -> _Common:
     picture, _ = reference_picture(pictures, None, settings, told.within_step)
     looking = feature_options(settings)
     if settled:
-        looking = feature_options(ScanSettings(stripe=settled.fan_stripe))
+        looking = feature_options(Options(stripe=settled.fan_stripe))
     reference = read_reference(sites.of(picture), at_sites(looking, sites))
     told("reference", 1, 2)
     stripe = sites.stripe_of(settled.sweep_stripe if settled else settings.stripe)

@@ -9,7 +9,6 @@ from core.files.folder_lock import alone_in
 from core.files.project.calibration_store import put_in_place
 from core.files.project.data import Project
 from core.files.project.results import ProfilesSummary
-from core.files.recording.options import StatedTilt
 from core.files.step_graph import FILES
 from core.pipeline.project.measuring import record_calibrations
 from core.pipeline.project.report import with_words
@@ -18,6 +17,7 @@ from core.pipeline.steps.profile_step import profile_step
 from core.pipeline.steps.report_step import report_step
 from core.pipeline.steps.workspace import Workspace, staged
 from core.progress import Progress, silent
+from core.settings.options import StatedTilt
 
 PROFILES = "profiles"
 """The folder in the project that its results go to."""

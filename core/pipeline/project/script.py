@@ -34,6 +34,8 @@ from core.pipeline.steps.artefact_step import frames_id
 from core.pipeline.steps.validity import history_of
 from core.pipeline.steps.workspace import read_calibration
 from core.report.wording import Words
+from core.settings.options import settings_of
+from core.settings.setting import rows_within
 from core.study.artefact_check import ArtefactCheck
 
 SET, OUT, RIG, PLAN = "set", "results", "rig.toml", "plan.toml"
@@ -132,9 +134,7 @@ def _lines(
             yield _Line(("import-camera", told[IMPORTED], "--out", OUT))
     if "camera" in there and IMPORTED not in settings.get("camera", {IMPORTED: ""}):
         told = settings["camera"]
-        skew = () if told.get("skew") is None else ("--skew",) if told["skew"] else ("--no-skew",)
-        k3 = () if told.get("k3") is None else ("--k3",) if told["k3"] else ("--no-k3",)
-        yield _Line(("camera", *at, *skew, *k3, *_excluded(told)), _unsaid(words, _camera_unsaid(told)))
+        yield _Line(("camera", *at, *_flags("camera", told), *_excluded(told)), _unsaid(words, _camera_unsaid(told)))
     if "planes" in there and "planes" in settings:
         told = settings["planes"]
         adjusted = ("--adjust-camera",) if told.get("camera") == "adjusted" else ()
@@ -142,17 +142,15 @@ def _lines(
         unsaid = [] if project.options.constrain_fan else [label("planes not held to one pencil")]
         if "calibrated" in there:
             unsaid.append(label("the planes re-adjusted by a check of the day"))
-        chosen = (*adjusted, *few, *_stripe(told), *channel, *_excluded(told))
+        chosen = (*adjusted, *few, *_flags("profile", told), *channel, *_excluded(told))
         yield _Line(("planes", *at, *chosen), _unsaid(words, unsaid))
     if "cloud" in there and "scan" in settings:
         told = settings["scan"]
-        method = _option("--method", told.get("method", ""))
-        cut = _option("--sigma-cut", told.get("sigma_cut_mm", ""))
-        yield _Line(("scan", *at, *method, *cut, *_stripe(told), *channel, *_excluded(told)))
+        yield _Line(("scan", *at, *_flags("scan", told), *channel, *_excluded(told)))
     if "profile" in there and "profile" in settings:
         told = settings["profile"]
         tilt = (*_option("--stage", told.get("stage") or ""), *_option("--tilt-sd", told.get("tilt_sd_deg") or ""))
-        yield _Line(("profile", *at, *tilt, *_stripe(told), *channel, *_excluded(told)))
+        yield _Line(("profile", *at, *tilt, *_flags("profile", told), *channel, *_excluded(told)))
     elif "gauge" in there:
         yield _Line(("gauge", *at))
     if _inspects(project, there):
@@ -215,12 +213,20 @@ def _camera_unsaid(told: Mapping[str, Any]) -> list[str]:
     return [*fixed, *outliers]
 
 
-def _stripe(told: Mapping[str, Any]) -> tuple[str, ...]:
-    """The stripes' width and contrast, where they were not chosen from the pictures."""
-    stripe = told.get("stripe")
-    if not isinstance(stripe, Mapping):
-        return ()
-    return ("--stripe-width", str(stripe["width_px"]), "--contrast", str(stripe["contrast"]))
+def _flags(step: str, told: Mapping[str, Any]) -> tuple[str, ...]:
+    """The flags of a step's settings as run.json has them, those that were left as they are not among them."""
+    typed: list[str] = []
+    value: Any
+    within = ((row, one) for row in settings_of(step) if row.setting.in_file for one in rows_within(row))
+    for row, one in within:
+        flag, value = one.setting.flag, told
+        for name in one.path if row.is_one else one.path[1:]:
+            value = value.get(name) if isinstance(value, Mapping) else None  # "automatic" says nothing of its width
+        if flag is None or value in (None, ""):
+            continue
+        yes, _, no = flag.name.partition("/")
+        typed += [yes if value else no] if isinstance(value, bool) else [yes, str(value)]
+    return tuple(word for word in typed if word)
 
 
 def _excluded(told: Mapping[str, Any]) -> tuple[str, ...]:

@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from core.acquire.channel import Channel
 from core.acquire.folder import read_ahead
-from core.acquire.grey import Channel
 from core.errors import InputError
 from core.files.pictures import read_picture
 from core.image.mosaic import Pattern

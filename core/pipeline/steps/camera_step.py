@@ -20,7 +20,6 @@ from core.errors import InputError
 from core.files.pictures import Picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_camera
-from core.files.recording.step_settings import CameraSettings
 from core.files.results.camera_file import read_camera, write_camera
 from core.findings.table import note_of
 from core.image.exclusion import Exclusion, Reason
@@ -31,6 +30,7 @@ from core.messages import Field, Message
 from core.model import Pose
 from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
+from core.settings.options import Options
 from core.stage_times import stage
 from core.threads import ordered_map
 
@@ -42,9 +42,7 @@ FEWEST_HOT_SHARE = 3e-5
 """Share of hot pixels that is told: one in thirty of the patches of 31 × 31 px around corners has one."""
 
 
-def camera_step(
-    work: Workspace, settings: CameraSettings | None = None, progress: Progress = silent
-) -> CameraCalibration:
+def camera_step(work: Workspace, settings: Options | None = None, progress: Progress = silent) -> CameraCalibration:
     """Calibrate the camera of a set and write camera.json.
 
     Raises
@@ -52,9 +50,9 @@ def camera_step(
     InputError
         If there are too few views of the target, or they do not determine the camera.
     """
-    settings = settings or CameraSettings()
+    settings = settings or Options()
     with work.step("camera") as log:
-        log.settings.update(settings.told)
+        log.settings.update(settings.told("camera"))
         calibration = solve_camera(
             see_views(log.pictures, progress), settings, progress, work.recording_set.rig.camera_board
         )
@@ -147,7 +145,7 @@ def _require_this_board(
 
 def solve_camera(
     seen: SeenViews,
-    settings: CameraSettings | None = None,
+    settings: Options | None = None,
     progress: Progress = silent,
     tolerance: BoardTolerance | None = None,
 ) -> CameraCalibration:
@@ -160,7 +158,7 @@ def solve_camera(
     InputError
         If there are too few views of the target, or they do not determine the camera.
     """
-    settings = settings or CameraSettings()
+    settings = settings or Options()
     found, size = seen.found, seen.size
     if size is None or len(found) < FEWEST_VIEWS:
         raise _too_few(seen)
@@ -177,7 +175,7 @@ def solve_camera(
             where="camera",
             todo=Message("advice.take_in_again", "take some of them in again, or record more"),
         )
-    calibration = calibrate_camera(found, size, settings.parameters, progress, settings.excluded, tolerance)
+    calibration = calibrate_camera(found, size, settings.camera, progress, settings.excluded, tolerance)
     return _with_hot_pixels(_with_lost(calibration, seen), seen)
 
 

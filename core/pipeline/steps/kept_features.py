@@ -24,11 +24,11 @@ from core.files.recording.features_file import read_poses, read_views, write_pos
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import as_calibrated_with, rig_tables
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_features import FEATURES, read_features, write_features
 from core.model import Camera
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
+from core.settings.options import Options
 from core.sources import text_hash
 
 _SCAN_ROOMS = ("acquire", "image", "scan")
@@ -38,7 +38,7 @@ _SCAN_ROOMS = ("acquire", "image", "scan")
 def kept_features(
     earlier: Path | None,
     pictures: PictureReader,
-    settings: ScanSettings,
+    settings: Options,
     camera: Camera,
     progress: Progress = silent,
 ) -> ScanFeatures | None:
@@ -62,7 +62,7 @@ def _features_in(path: Path, key: str) -> ScanFeatures | None:
         return None  # damaged: the pictures are still there
 
 
-def keep_features(pictures: PictureReader, settings: ScanSettings, camera: Camera, features: ScanFeatures) -> None:
+def keep_features(pictures: PictureReader, settings: Options, camera: Camera, features: ScanFeatures) -> None:
     """Keep the features of a recording beside its frames; the hashes of its pictures must have been taken.
 
     Raises
@@ -74,7 +74,7 @@ def keep_features(pictures: PictureReader, settings: ScanSettings, camera: Camer
     write_features(folder / FEATURES, features, features_key(pictures, settings, camera))
 
 
-def features_key(pictures: PictureReader, settings: ScanSettings, camera: Camera) -> str:
+def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> str:
     """What the features of a scan rest on, in 16 hex digits; the hashes of its pictures must have been taken.
 
     The camera's distortion is one of it: centrelines are crossed without it.
@@ -92,7 +92,7 @@ def features_key(pictures: PictureReader, settings: ScanSettings, camera: Camera
     return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
 
 
-def _pictures(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
+def _pictures(recording_set: RecordingSet, settings: Options) -> list[Path]:
     """The reference and the frames that are not left out by hand."""
     frames = [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
     return recording_set.with_further(frames if recording_set.reference is None else [recording_set.reference, *frames])

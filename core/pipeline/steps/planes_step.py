@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from core.acquire.grey import Channel, is_difference
+from core.acquire.channel import Channel, is_difference
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
@@ -20,7 +20,6 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_planes
 from core.files.recording.rig import Rig
 from core.files.recording.set_listing import FURTHER, PlanePair
-from core.files.recording.step_settings import PlanesSettings, excluded_told, stripe_told
 from core.files.results.camera_file import read_camera
 from core.files.results.planes_file import planes_id, read_planes, write_planes
 from core.image.exclusion import Exclusion
@@ -37,6 +36,7 @@ from core.pipeline.steps.target_sizes import with_compared_sizes
 from core.pipeline.steps.workspace import Workspace, check_size
 from core.progress import Progress, silent
 from core.second_process import SecondProcess, shared_map
+from core.settings.options import STRIPE, Options, excluded_told, told_of
 from core.stage_times import stage
 
 FOLDER = "planes/"
@@ -46,7 +46,7 @@ _EXCHANGE = Message("advice.exchange_names", "give each NAME its NAME_off's name
 
 def planes_step(
     work: Workspace,
-    settings: PlanesSettings | None = None,
+    settings: Options | None = None,
     progress: Progress = silent,
     beside: SecondProcess | None = None,
 ) -> FanCalibration:
@@ -59,15 +59,15 @@ def planes_step(
     InputError
         If camera.json is missing or wrong, the pictures have another size, or the poses do not determine the fan.
     """
-    settings = settings or PlanesSettings()
+    settings = settings or Options()
     require_planes(work.recording_set)
     given = read_camera(work.path("camera"))
     camera = given.camera
     with work.step("planes") as log:
         log.settings.update(planes_told(work.recording_set.rig, settings))
         log.settings.update(log.pictures.laser_channel("planes").settings)
-        poses = measure_poses(log.pictures, camera, progress, settings.stripe, beside)
-        ridges = write_ridges(work, log.pictures, poses, camera, settings.stripe)
+        poses = measure_poses(log.pictures, camera, progress, settings.plane_stripe, beside)
+        ridges = write_ridges(work, log.pictures, poses, camera, settings.plane_stripe)
         try:
             calibration = solve_planes(poses, camera, work.recording_set.rig, settings, progress, given)
         except InputError as error:
@@ -221,7 +221,7 @@ def solve_planes(
     poses: Sequence[PoseFeatures],
     camera: Camera,
     rig: Rig,
-    settings: PlanesSettings | None = None,
+    settings: Options | None = None,
     progress: Progress = silent,
     calibration: CameraCalibration | None = None,
 ) -> FanCalibration:
@@ -235,7 +235,7 @@ def solve_planes(
     InputError
         If the poses do not determine the fan.
     """
-    settings = settings or PlanesSettings()
+    settings = settings or Options()
     excluded = {name.removeprefix(FOLDER) for name in settings.excluded}
     adjusted = calibration.covariance if calibration is not None and settings.adjust_camera else None
     known = fan_options(rig, settings)
@@ -251,19 +251,19 @@ def when_taken(calibration: FanCalibration, recording_set: RecordingSet) -> FanC
     return replace(calibration, taken=taken, notes=(*calibration.notes, *log.notes))
 
 
-def fan_options(rig: Rig, settings: PlanesSettings) -> FanOptions:
+def fan_options(rig: Rig, settings: Options) -> FanOptions:
     """What is known of the laser, and whether its planes may be held to one pencil."""
-    constrained: Constrained = "auto" if settings.constrain else "never"
+    constrained: Constrained = "auto" if settings.constrain_fan else "never"
     return FanOptions(rig.lines, rig.angle or None, constrained, rig.plane_board)
 
 
-def planes_told(rig: Rig, settings: PlanesSettings) -> dict[str, object]:
+def planes_told(rig: Rig, settings: Options) -> dict[str, object]:
     """What the fan's calibration is told, for run.json."""
     fan = fan_options(rig, settings)
     told: dict[str, object] = {"lines": fan.lines, "angle_rad": fan.angle, "constrained": fan.constrained}
     told |= {"scale_sd": fan.target.size_sd, "flatness_mm": fan.target.flatness_sd_mm}
-    if settings.stripe is not None:
-        told["stripe"] = stripe_told(settings.stripe)
+    if settings.plane_stripe is not None:
+        told["stripe"] = told_of(STRIPE, settings.plane_stripe)
     if settings.adjust_camera:
         told["camera"] = "adjusted"
     return {**told, **excluded_told(settings.excluded)}

@@ -10,10 +10,8 @@ import numpy as np
 
 from core.errors import InputError, NoThickness
 from core.files.pictures import compression_of
-from core.files.recording.options import StatedTilt
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import GaugeSpec, part_table
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.gauge_file import write_gauge
 from core.files.results.ply import write_cloud
 from core.files.results.profile_file import PictureStep, write_profiles, write_profiles_csv
@@ -39,6 +37,7 @@ from core.scan.features.picture_faults import mosaic_of
 from core.scan.profiles import Profiles, read_profiles
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangulate import join
+from core.settings.options import Options, StatedTilt
 
 STAGE_SD = float(np.radians(0.1))
 """Standard uncertainty in rad of a stage's normal that a plate lying on it shows: thickness of its paper, burrs under
@@ -58,7 +57,7 @@ class MeasuredProfiles:
 
 def profile_step(
     work: Workspace,
-    settings: ScanSettings | None = None,
+    settings: Options | None = None,
     tilt: StatedTilt | None = None,
     progress: Progress = silent,
 ) -> MeasuredProfiles:
@@ -78,7 +77,7 @@ def profile_step(
     InputError
         If a calibration is missing, a fan of one line is not told how the faces stand, or no picture gives a step.
     """
-    settings, found = settings or ScanSettings(), work.recording_set
+    settings, found = settings or Options(), work.recording_set
     paths = _pictures(found, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     camera, fan = calibration.camera.camera, calibration.fan.fan
@@ -96,9 +95,9 @@ def profile_step(
     part = found.rig.part
     with work.step("profile") as log:
         channel = log.pictures.laser_channel("scan")
-        log.settings.update({**settings.told, **channel.settings, **_tilt_settings(tilt)})
+        log.settings.update({**settings.told("scan"), **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
-        check = check_of_the_day(log.pictures, calibration, settings.check_stripe, progress)
+        check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress)
         logged = found.log("scan")
         change = since_calibration(found, calibration, check, logged.taken(found.frames))
         section, kept = SectionChange(surely=None), kept_poses_of(work, calibration)
@@ -168,7 +167,7 @@ def _within(cloud: Cloud, spec: GaugeSpec) -> Cloud:
     )
 
 
-def _pictures(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
+def _pictures(recording_set: RecordingSet, settings: Options) -> list[Path]:
     if recording_set.reference is not None:
         return [recording_set.reference]
     taken = taken_frames(recording_set, settings)

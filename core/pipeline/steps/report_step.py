@@ -56,6 +56,7 @@ from core.scan.method import Method
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.surface.fused_surface import Mesh
 from core.second_process import SecondProcess
+from core.settings.options import settings_of
 from core.study.artefact_check import ArtefactCheck
 
 METHOD_IN_WORDS: dict[str, str] = {
@@ -280,11 +281,10 @@ def _settings_in_words(record: RunRecord, *, profiled: bool) -> Mapping[str, Mes
     words: dict[str, Message | str] = {}
     scan = {} if profiled else record.settings.get("scan", {})
     camera = record.settings.get("camera", {})
-    if "method" in scan:
-        words[label("Method")] = str(scan["method"])
-    if "sigma_cut_mm" in scan:
-        limit = scan["sigma_cut_mm"]
-        words[label("Points kept")] = Message("report.points_kept", "σ up to {limit_mm:g} mm", limit_mm=limit)
+    for row in settings_of("scan"):
+        if row.setting.reported is not None and row.key in scan:
+            title, worded = row.setting.reported
+            words[title] = worded(scan[row.key])
     if camera and IMPORTED not in camera:
         fixed = {"γ"} - ({"γ"} if camera.get("skew") else set()) | set(camera.get("fixed", ()))
         free = [name for name in ("α", "β", "γ", "u0", "v0", "k1", "k2", "p1", "p2") if name not in fixed]

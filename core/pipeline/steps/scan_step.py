@@ -8,10 +8,9 @@ from functools import partial
 from pathlib import Path
 
 from core.calibrate.fan.poses.pose_features import PoseFeatures
-from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.check_step import check_of_the_day, since_calibration
 from core.pipeline.steps.scan.features import scan_features
-from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan, solving_of
+from core.pipeline.steps.scan.judgement import judged_scan, kept_poses_of, section_since, solved_scan
 from core.pipeline.steps.scan.notes import notes_on_scan
 from core.pipeline.steps.scan.part_light import part_light, plates_of
 from core.pipeline.steps.scan.pictures import SeenScan, require_frames
@@ -22,11 +21,12 @@ from core.pipeline.steps.workspace import Workspace
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview
 from core.second_process import SecondProcess
+from core.settings.options import Options
 
 
 def scan_step(
     work: Workspace,
-    settings: ScanSettings | None = None,
+    settings: Options | None = None,
     progress: Progress = silent,
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,
@@ -57,16 +57,17 @@ def scan_step(
     InputError
         If a calibration is missing or wrong, there are no usable frames, or no sweep can be located.
     """
-    settings, recording_set = settings or ScanSettings(), work.recording_set
+    settings, recording_set = settings or Options(), work.recording_set
     require_frames(recording_set, settings)
     calibration = with_size_by_artefact(work, work.calibration())
     with work.step("scan") as log:
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
-        log.settings.update({**settings.told, **log.pictures.laser_channel("scan").settings})
-        solved = solved_scan(features, calibration, solving_of(settings, recording_set.rig), progress)
+        log.settings.update({**settings.told("scan"), **log.pictures.laser_channel("scan").settings})
+        solving = settings.solving(recording_set.rig.row_time_us)
+        solved = solved_scan(features, calibration, solving, progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (
-            check_of_the_day(log.pictures, calibration, settings.check_stripe, progress) if check is None else check
+            check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress) if check is None else check
         )
         logged = recording_set.log("scan")
         change_by = partial(since_calibration, recording_set, calibration, checked, logged.taken(recording_set.frames))

@@ -41,12 +41,12 @@ RELOCATION = 8
 class PreviewOptions:
     """Options of a preview.
 
-    Points up to `sigma_cut_mm` are shown (twenty times the result's cut: a frame alone is less sure), every `thin`-th
+    Points up to `largest_sigma_mm` are shown (twenty times the result's: a frame alone is less sure), every `thin`-th
     of a stripe; of a long scan fewer, of all its frames alike, so that the sweeps' stripes have no more than
     `most_points`, which a window can draw while a scan runs.
     """
 
-    sigma_cut_mm: float = 1.0
+    largest_sigma_mm: float = 1.0
     thin: int = 3
     most_points: int = 200_000
     window: CrossingWindow = field(default_factory=CrossingWindow)
@@ -285,7 +285,7 @@ class Preview:
 
     def _worth_showing(self, depth: Array, sigma: Array) -> NDArray[np.bool_]:
         near, far = self._limits
-        return np.asarray((sigma <= self._options.sigma_cut_mm) & (depth > near) & (depth < far))
+        return np.asarray((sigma <= self._options.largest_sigma_mm) & (depth > near) & (depth < far))
 
 
 def _depth_limits(fan: Sequence[PreviewCloud]) -> tuple[float, float]:

@@ -15,6 +15,7 @@ from core.files.atomic import make_folder, write_bytes, write_text
 from core.files.json_text import rounded, to_json
 from core.messages import Message, as_json
 from core.progress import Progress, silent
+from core.settings.options import Options
 from core.wings.rig_planning.plan_map import plan_map_png
 from core.wings.rig_planning.prediction.bounds import Bound, bounds_of
 from core.wings.rig_planning.prediction.changes import Effect, advice, compare
@@ -51,7 +52,7 @@ def plan(
     *,
     scans: int = 2,
     changes: bool = True,
-    sigma_cut_mm: float = 0.05,
+    options: Options | None = None,
     bounds: bool = False,
     progress: Progress = silent,
 ) -> PlanResult:
@@ -63,8 +64,8 @@ def plan(
         How many scans are drawn for the prediction; changes are compared on the first of them.
     changes
         Whether to try which change helps most.
-    sigma_cut_mm
-        Points with a larger σ are left out, as in a scan.
+    options
+        What the scan is told of it; None: what is usual.
     bounds
         Whether to say also what no program could do better.
 
@@ -75,7 +76,7 @@ def plan(
     """
     design = read_design(rig)
     part, stability = read_stated(rig)
-    planner = Planner(progress, sigma_cut_mm, part, stability)
+    planner = Planner(progress, (options or Options()).for_plan.solving(), part, stability)
     predictions = tuple(planner.predict(design, height, scans) for height in design.heights_mm)
     base = max(predictions, key=lambda prediction: prediction.height_mm)
     effects = compare(planner, design, base, progress=progress) if changes else ()

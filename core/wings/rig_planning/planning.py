@@ -11,6 +11,7 @@ from core.errors import InputError
 from core.messages import Message
 from core.progress import Progress
 from core.report.wording import Words
+from core.settings.options import Options
 from core.wings.rig_planning.plan_step import plan, plan_values, write_plan
 from core.wings.rig_planning.plan_words import plan_rows
 
@@ -21,7 +22,7 @@ def run_plan(
     *,
     scans: int,
     changes: bool,
-    sigma_cut: float,
+    options: Options,
     bounds: bool = False,
     progress: Progress,
 ) -> Shown:
@@ -32,12 +33,6 @@ def run_plan(
             where="--scans",
             todo=Message("advice.give_one_or_more", "give 1 or more"),
         )
-    if not sigma_cut > 0:
-        raise InputError(
-            Message("design.cut_too_small", "{sigma_cut:g} mm cuts every point", sigma_cut=sigma_cut),
-            where="--sigma-cut",
-            todo=Message("advice.give_length_above_zero", "give a length above 0"),
-        )
-    result = plan(rig, scans=scans, changes=changes, sigma_cut_mm=sigma_cut, bounds=bounds, progress=progress)
+    result = plan(rig, scans=scans, changes=changes, options=options, bounds=bounds, progress=progress)
     files: Mapping[str, Path] = {} if out is None else write_plan(result, out)
     return Shown(plan_rows(result, Words(spoken())), plan_values(result), files=files)

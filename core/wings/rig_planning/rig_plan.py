@@ -14,7 +14,6 @@ from core.files.atomic import write_text
 from core.files.project.data import Project
 from core.files.recording.recording_set import CHECK, RIG
 from core.files.recording.rig import rig_tables
-from core.files.recording.step_settings import SIGMA_CUT_MM
 from core.files.toml_text import toml_text
 from core.inspect.results import GaugeResult
 from core.model import Camera, Fan
@@ -24,6 +23,7 @@ from core.pipeline.project.results import load_results
 from core.pipeline.project.workspace import project_set, rig_in_its_air
 from core.progress import Progress, silent
 from core.report.wording import Words
+from core.settings.options import Options
 from core.wings.rig_planning.plan_step import PlanResult, plan, write_plan
 from core.wings.rig_planning.plan_words import plan_rows
 from core.wings.rig_planning.prediction.design import RANGES
@@ -57,9 +57,7 @@ class ForetoldRig:
     rig: str = ""
 
 
-def foretell_rig(
-    rig: Path, language: str, progress: Progress = silent, *, sigma_cut_mm: float = SIGMA_CUT_MM
-) -> ForetoldRig:
+def foretell_rig(rig: Path, language: str, progress: Progress = silent, options: Options | None = None) -> ForetoldRig:
     """Plan the rig of a rig.toml; the same as `trisect plan RIG`.
 
     Raises
@@ -67,7 +65,7 @@ def foretell_rig(
     InputError
         If the file cannot be read, or the rig cannot measure a block.
     """
-    result = plan(rig, sigma_cut_mm=sigma_cut_mm, progress=progress)
+    result = plan(rig, options=options, progress=progress)
     sigma = result.largest.sigma
     return ForetoldRig(
         plan_rows(result, Words.of(language)), np.hypot(sigma.own, sigma.common), result.design.pixels, result
@@ -89,7 +87,7 @@ def foretell_project(folder: Path, project: Project, language: str, progress: Pr
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as place:
         file = Path(place) / RIG
         write_text(file, text, sync=False)
-        foretold = foretell_rig(file, language, progress, sigma_cut_mm=project.options.sigma_cut_mm)
+        foretold = foretell_rig(file, language, progress, project.options)
     return replace(foretold, rig=text)
 
 

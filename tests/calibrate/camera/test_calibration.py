@@ -5,9 +5,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.covariance import principal_deviations
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.reprojection import linearise, moved, parameters_of
 from core.calibrate.results import CAMERA_PARAMETERS, CameraCalibration
 from core.errors import Cancelled, InputError

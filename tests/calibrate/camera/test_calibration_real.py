@@ -4,8 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.options import CameraOptions
 from core.image.targets.target_view import TargetView
 from tests.shared import REAL_SETS
 

@@ -6,10 +6,10 @@ import numpy as np
 import pytest
 from scipy.spatial import Delaunay
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.bundle import Bundle, Observed, refine, residuals
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.camera.expected_error import expected_error, residual_field
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.reprojection import camera_of, parameters_of
 from core.image.exclusion import Exclusion
 from core.model import Pose

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.picture_residuals import bad_fit
 from core.calibrate.results import CameraCalibration
 from tests.calibrate.camera_views import TRUTH, changed, synthetic_views

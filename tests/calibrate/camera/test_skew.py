@@ -5,8 +5,8 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.skew import FEWEST_VIEWS
 from tests.calibrate.camera_views import TRUTH, board, changed, random_pose, synthetic_views
 

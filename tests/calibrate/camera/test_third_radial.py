@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from core.calibrate.camera.adjustment import CameraOptions
 from core.calibrate.camera.bundle import NO_PARAMETERS, Bundle, Observed, refine, residual_lengths
 from core.calibrate.camera.calibration import calibrate_camera
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.camera.skew import FEWEST_VIEWS
 from core.calibrate.camera.third_radial import K3, left_out_misfits, third_radial
 from core.image.targets import Checkerboard

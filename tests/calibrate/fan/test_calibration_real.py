@@ -9,7 +9,7 @@ import cv2
 import numpy as np
 import pytest
 
-from core.acquire.grey import Channel
+from core.acquire.channel import Channel
 from core.calibrate.camera.calibration import calibrate_camera
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose

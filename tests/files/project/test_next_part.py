@@ -16,12 +16,12 @@ from core.files.project.folder import create_project, read_project
 from core.files.project.keys import finished, left_to_do, up_to_date
 from core.files.project.next_part import drawn_in_picture, next_part
 from core.files.project.people import Rules, person, read_rules, write_rules
-from core.files.recording.options import Options
 from core.inspect.conformity import Limits
 from core.inspect.plan.feature_spec import Deviation, FaceAt, FeatureSpec, Polygon, Section
 from core.inspect.plan.inspection_plan import InspectionPlan
 from core.inspect.uncertainty.part import Part
 from core.messages import plain
+from core.settings.options import Options
 from tests.simulated import trisect
 
 HEIGHT = FeatureSpec("block", "thickness", limits=(("thickness", Limits(50.0, -0.1, 0.1)),))

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from core.calibrate.board_shape import BoardTolerance
-from core.calibrate.camera.adjustment import CameraOptions
+from core.calibrate.camera.options import CameraOptions
 from core.calibrate.change import Stability
 from core.calibrate.drift import Air, Drift
 from core.errors import InputError
@@ -27,7 +27,6 @@ from core.files.project.data import (
 )
 from core.files.project.folder import create_project, read_project
 from core.files.project.json_form import SCHEMA, project_text
-from core.files.recording.options import Options
 from core.files.recording.rig import (
     Channels,
     GaugeSpec,
@@ -47,6 +46,7 @@ from core.inspect.plan.inspection_plan import InspectionPlan, PartFrame
 from core.inspect.uncertainty.part import Part, TargetTemperature
 from core.messages import Message, plain
 from core.model.certificate import Certificate
+from core.settings.options import Options
 from core.study.artefact_check import Artefact
 
 AT = datetime(2026, 1, 31, 12, 30, 15, 250_000, timezone(timedelta(hours=2)))

@@ -11,8 +11,8 @@ from core.files.recording.laser_channel import LaserChannel, LitPicture, laser_c
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import default_rig, rig_to_toml
-from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.kept_features import features_key
+from core.settings.options import Options
 from tests import paper
 
 
@@ -95,11 +95,11 @@ def test_what_a_command_says_goes_before_rig_toml_and_leaves_the_target(tmp_path
 
 def test_kept_features_are_those_of_the_channel_that_was_chosen(tmp_path):
     found, camera = colour_set(tmp_path / "set"), paper.HALF
-    chosen = features_key(PictureReader(found), ScanSettings(), camera)
-    assert chosen == features_key(PictureReader(found.seen_in("red")), ScanSettings(), camera)
-    assert chosen != features_key(PictureReader(found.seen_in("red-green")), ScanSettings(), camera)
+    chosen = features_key(PictureReader(found), Options(), camera)
+    assert chosen == features_key(PictureReader(found.seen_in("red")), Options(), camera)
+    assert chosen != features_key(PictureReader(found.seen_in("red-green")), Options(), camera)
     assert chosen != features_key(
-        PictureReader(replace(found, rig=replace(found.rig, mosaic="RGGB"))), ScanSettings(), camera
+        PictureReader(replace(found, rig=replace(found.rig, mosaic="RGGB"))), Options(), camera
     )
 
 

@@ -10,7 +10,6 @@ import pytest
 
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import gather_set
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.scan_features import FEATURES
 from core.pipeline.live import scan as live_scan
 from core.pipeline.live.recorded_features import RecordedFeatures
@@ -18,10 +17,11 @@ from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.features import crossed_scan
 from core.pipeline.steps.scan.pictures import look_at_scan
 from core.scan.features.extraction import LOOK_AHEAD
+from core.settings.options import Options
 from tests.pipeline.live.test_scan import RIG, Stage, scan, swept
 from tests.pipeline.live_bench import Window
 
-SETTINGS = ScanSettings()
+SETTINGS = Options()
 
 
 @pytest.fixture(scope="module")
@@ -72,7 +72,7 @@ def test_they_are_not_taken_for_other_pictures_settings_or_camera(monkeypatch, t
     folder = tmp_path / "scan"
     other = replace(stage.camera, distortion=2 * stage.camera.distortion)
     assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, other) is None
-    excluded = ScanSettings(excluded=frozenset({"scan/frame00003.png"}))
+    excluded = Options(excluded=frozenset({"scan/frame00003.png"}))
     assert kept_features(None, PictureReader(recorded(folder)), excluded, stage.camera) is None
     shutil.copy(folder / "frame00002.png", folder / "frame00003.png")
     assert kept_features(None, PictureReader(recorded(folder)), SETTINGS, stage.camera) is None

@@ -6,7 +6,6 @@ import pytest
 
 from core.acquire.source import Lasers
 from core.files.pictures import read_picture
-from core.files.recording.options import Options
 from core.files.recording.rig import Rig
 from core.image.stripes.stripe import StripeSettings
 from core.image.targets import BlackSquare, Checkerboard, detect
@@ -16,6 +15,7 @@ from core.pipeline.live import session as live
 from core.pipeline.live.commands import Auto, Capture, Discard, LookFor, Stop
 from core.pipeline.live.events import LiveAnswered, LiveAsk, LiveNotice, LiveStarted, LiveTaken, LiveView
 from core.pipeline.live.pose import find_pose
+from core.settings.options import Options
 from core.simulate.calibration import CalibrationPictures
 from core.simulate.rays import ray_map
 from core.simulate.recording import scenario_rig

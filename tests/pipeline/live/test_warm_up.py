@@ -20,7 +20,7 @@ def compiled():
 """
 
 SCAN = """
-from core.files.recording.step_settings import ScanSettings
+from core.settings.options import Options
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
 from core.pipeline.live.warm_up import stages
@@ -28,14 +28,14 @@ from core.pipeline.live.warm_up import stages
 for stage in stages():
     stage()
 before = compiled()
-scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), ScanSettings(sigma_cut_mm=0.3))
+scan_step(Workspace.open(open_set(Path(sys.argv[1])), Path(sys.argv[2])), Options(sigma_cut_mm=0.3))
 """
 
 LIVE = """
 import numpy as np
 from core.acquire.source import Frame
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.step_settings import ScanSettings
+from core.settings.options import Options
 from core.pipeline.live.preview import ScanPreviewer
 from core.pipeline.live.warm_up import get_ready_for_live
 from core.pipeline.steps.workspace import Workspace

@@ -9,7 +9,6 @@ from core.errors import Cancelled, InputError
 from core.files.project.calibration_store import history, keep_camera, keep_planes
 from core.files.project.data import Accepted
 from core.files.project.folder import project_from_set
-from core.files.recording.step_settings import CameraSettings
 from core.files.results.check_file import read_check
 from core.inspect.plan.feature_spec import FeatureSpec
 from core.inspect.plan.inspection_plan import InspectionPlan
@@ -26,6 +25,7 @@ from core.pipeline.project.interim_check import (
 )
 from core.pipeline.project.workspace import project_set
 from core.pipeline.steps.workspace import read_calibration
+from core.settings.options import Options
 from core.study.artefact_check import Artefact
 from tests.pipeline.steps.test_check_step import RIG, prepared
 from tests.simulated import copy_of
@@ -44,7 +44,7 @@ def turned(tmp_path_factory):
 def opened(made, folder):
     """A project on that set with its calibrations accepted."""
     known = read_calibration(made / "out")
-    camera = keep_camera(folder, known.camera, CameraSettings().told)
+    camera = keep_camera(folder, known.camera, Options().told("camera"))
     fan = keep_planes(folder, known.fan, known.camera.camera, ())
     project = project_from_set(made / "set", "Block")
     return replace(project, accepted=Accepted(camera, fan))

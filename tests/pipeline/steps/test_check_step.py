@@ -16,7 +16,6 @@ from core.calibrate.board_shape import SUSPECTED_SCALE, BoardTolerance
 from core.calibrate.change import DEFAULT_STABILITY, PROVES_NOTHING, STABLE, displaced_fan
 from core.errors import InputError
 from core.files.recording.features_file import read_poses, write_poses
-from core.files.recording.options import Options
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.rig import Validity
@@ -49,6 +48,7 @@ from core.pipeline.steps.validity import facts_of_the_day
 from core.pipeline.steps.workspace import Workspace
 from core.report.wording import decision_sentence, verdict_sentence
 from core.scan.part_light import blur_of
+from core.settings.options import Options
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from core.study.artefact_check import Artefact

@@ -12,7 +12,6 @@ from core.files.pictures import read_picture
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.files.recording.set_listing import pictures_in
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.ply import read_cloud
 from core.files.results.scan_file import read_scan
 from core.image.exclusion import Exclusion
@@ -21,9 +20,10 @@ from core.pipeline.steps.check_step import measure_check
 from core.pipeline.steps.planes_step import measure_poses, planes_step
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace, read_calibration
+from core.settings.options import Options
 from tests.simulated import copy_of
 
-COARSE = ScanSettings(sigma_cut_mm=0.3)
+COARSE = Options(sigma_cut_mm=0.3)
 
 
 def measured(folder: Path, out: Path):

@@ -8,13 +8,13 @@ import pytest
 from core.errors import InputError
 from core.files.pictures import read_picture, write_picture
 from core.files.recording.recording_set import open_set
-from core.files.recording.step_settings import PlanesSettings
 from core.image.stripes.stripe import StripeSettings
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.workspace import RIDGES, Workspace
+from core.settings.options import Options
 from tests.simulated import copy_of
 
-TOO_FAINT = PlanesSettings(StripeSettings(8.0, 1000.0))
+TOO_FAINT = Options(plane_stripe=StripeSettings(8.0, 1000.0))
 
 
 @pytest.fixture

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 
 from core.model import LightPlane
+from core.scan.method import ReconstructOptions
 from core.scan.network.datum import datum_of, main_plane, note_on_datum
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.reconstruct import reconstruct
 from core.scan.sweeps.fan_lines import FanLines
 from core.scan.sweeps.locate import by_sweep, locate_together
 from core.simulate.scenario import Scenario

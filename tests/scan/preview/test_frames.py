@@ -13,11 +13,12 @@ from core.scan.features.extraction import (
     extract_features,
     read_reference,
 )
+from core.scan.method import ReconstructOptions
 from core.scan.preview import frames as preview_module
 from core.scan.preview.frames import Preview, PreviewOptions
 from core.scan.preview.hints import HandState, HintLimits, hints_for
 from core.scan.preview.shown import CrossingStatus
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.reconstruct import reconstruct
 from core.scan.surface.coverage_map import CoverageMap
 from core.scan.sweeps import tracking
 from core.scan.sweeps.tracking import movement_px

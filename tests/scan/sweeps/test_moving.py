@@ -10,7 +10,8 @@ from core.inspect.gauge import fit_gauge
 from core.inspect.uncertainty.budget import combined
 from core.inspect.uncertainty.point_errors import PointErrors
 from core.scan.features.extraction import FeatureOptions, extract_features
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.simulate.recording import moving_sheets, scan_of, scenario_rig
 from core.simulate.scenario import Scenario
 from core.simulate.truth import Truth

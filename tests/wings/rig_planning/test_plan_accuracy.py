@@ -6,12 +6,13 @@ import numpy as np
 import pytest
 
 from core.files.recording.recording_set import open_set
-from core.files.recording.step_settings import ScanSettings
 from core.pipeline.steps.camera_step import camera_step
 from core.pipeline.steps.gauge_step import gauge_step
 from core.pipeline.steps.planes_step import planes_step
 from core.pipeline.steps.scan_step import scan_step
 from core.pipeline.steps.workspace import Workspace
+from core.scan.method import ReconstructOptions
+from core.settings.options import Options
 from core.simulate.recording import simulate_set
 from core.simulate.scenario import Scenario
 from core.wings.rig_planning.prediction.design import Design
@@ -42,7 +43,7 @@ def measured(design: Design, seed: int, folder):
     work = Workspace.open(open_set(folder / "set"), folder / "out")
     camera_step(work)
     planes_step(work)
-    scan = scan_step(work, ScanSettings(sigma_cut_mm=CUT_MM)).scan
+    scan = scan_step(work, Options(sigma_cut_mm=CUT_MM)).scan
     gauge = gauge_step(work)
     return gauge.u_mm, gauge.thickness_mm - HEIGHT, float(np.median(scan.cloud.sigma))
 
@@ -51,7 +52,7 @@ def measured(design: Design, seed: int, folder):
 @pytest.mark.parametrize("name", RIGS)
 def test_the_twin_delivers_the_uncertainty_that_was_planned(name, tmp_path):
     design = RIGS[name]
-    planned = Planner(sigma_cut_mm=CUT_MM).predict(design, HEIGHT, scans=2)
+    planned = Planner(solving=ReconstructOptions(sigma_cut_mm=CUT_MM)).predict(design, HEIGHT, scans=2)
     u, error, sigma = measured(design, seed=1, folder=tmp_path)
     own = float(np.nanmedian(planned.sigma.own))
     print(f"{name}: planned u {planned.u_mm:.4f} mm, delivered {u:.4f} mm (error {error:+.4f} mm)")

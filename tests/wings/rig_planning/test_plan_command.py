@@ -7,6 +7,7 @@ import pytest
 from core.calibrate.change import DEFAULT_STABILITY
 from core.errors import InputError
 from core.files.pictures import read_picture
+from core.settings.options import Options
 from core.wings.rig_planning import planning, rig_plan
 from core.wings.rig_planning.plan_map import plan_map_png
 from core.wings.rig_planning.plan_step import plan, write_plan
@@ -35,7 +36,7 @@ def told(rig):
 
 @pytest.fixture(scope="module")
 def result(rig):
-    return plan(rig, scans=1, changes=False, sigma_cut_mm=CUT_MM)
+    return plan(rig, scans=1, changes=False, options=Options(sigma_cut_mm=CUT_MM))
 
 
 def test_every_height_gets_its_u_and_a_budget(told):
@@ -66,7 +67,7 @@ def test_what_is_known_of_the_part_beforehand_is_in_the_budget(rig, told, tmp_pa
         TOML.replace("[40, 50]", "[50]") + '[part]\nmaterial = "aluminium"\ncelsius = 22.0\nu_celsius = 0.5\n'
         "spray_mm = 0.01\nspray_sd_mm = 0.003\n"
     )
-    after = plan(stated, scans=1, changes=False, sigma_cut_mm=CUT_MM)
+    after = plan(stated, scans=1, changes=False, options=Options(sigma_cut_mm=CUT_MM))
     rows = {row.words.code: row.u_mm for row in after.largest.budget}
     assert rows["inspection.cause_part_temperature"] == pytest.approx(50 * 23e-6 * 0.5)
     assert rows["inspection.cause_part_expansion"] == pytest.approx(50 * 0.9e-6 * 2.0)
@@ -106,8 +107,8 @@ def test_people_are_told_in_lines(rig, result, monkeypatch):
     said = trisect("plan", rig, "--scans", 1, "--no-changes", "--sigma-cut", CUT_MM, "--bounds")
 
     assert said.code == 0
-    assert {key: asked[0][key] for key in ("scans", "changes", "bounds", "sigma_cut_mm")} == {
-        "scans": 1, "changes": False, "bounds": True, "sigma_cut_mm": CUT_MM,
+    assert {key: asked[0][key] for key in ("scans", "changes", "bounds", "options")} == {
+        "scans": 1, "changes": False, "bounds": True, "options": Options(sigma_cut_mm=CUT_MM),
     }  # fmt: skip
     assert "block 40 mm" in said.out and "U = 0." in said.out
     assert "common to the scan" in said.out

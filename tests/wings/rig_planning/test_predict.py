@@ -6,6 +6,7 @@ import pytest
 from core.errors import Cancelled, InputError
 from core.inspect.causes import Cause
 from core.messages import plain
+from core.scan.method import ReconstructOptions
 from core.wings.rig_planning.prediction.bounds import bounds_of
 from core.wings.rig_planning.prediction.changes import CHANGES, Change, Effect, advice, compare
 from core.wings.rig_planning.prediction.predict import Planner
@@ -16,7 +17,7 @@ HEIGHT = 50.0
 
 @pytest.fixture(scope="module")
 def planner():
-    return Planner(sigma_cut_mm=CUT_MM)
+    return Planner(solving=ReconstructOptions(sigma_cut_mm=CUT_MM))
 
 
 @pytest.fixture(scope="module")
@@ -55,7 +56,7 @@ def test_the_map_shows_sigma_where_block_and_table_are_seen(base):
 
 @pytest.mark.accuracy  # that it writes the same bytes is in test_plan_command.py
 def test_the_same_plan_gives_the_same_figures(base):
-    again = Planner(sigma_cut_mm=CUT_MM).predict(SMALL, HEIGHT, scans=1)
+    again = Planner(solving=ReconstructOptions(sigma_cut_mm=CUT_MM)).predict(SMALL, HEIGHT, scans=1)
 
     assert again.each_u_mm == base.each_u_mm[:1]
     assert np.array_equal(again.sigma.own, base.sigma.own, equal_nan=True)

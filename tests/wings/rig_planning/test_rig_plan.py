@@ -13,6 +13,7 @@ from core.files.project.data import Project, new_project
 from core.files.project.folder import read_project
 from core.pipeline.project.details import accepted_calibration
 from core.pipeline.project.workspace import project_set
+from core.settings.options import Options
 from core.simulate.rig import pencil_fan
 from core.wings.rig_planning import rig_plan
 from core.wings.rig_planning.prediction.design import Design
@@ -27,8 +28,8 @@ def planned(monkeypatch: pytest.MonkeyPatch) -> list[Design]:
     """Planning takes no time: the designs that were asked for."""
     asked: list[Design] = []
 
-    def plan(rig: Path, *_: Any, sigma_cut_mm: float) -> ForetoldRig:
-        assert sigma_cut_mm == CUT_MM, "points are left out as in the project's scan"
+    def plan(rig: Path, language: str, progress: Any, options: Options) -> ForetoldRig:
+        assert options.sigma_cut_mm == CUT_MM, "points are left out as in the project's scan"
         asked.append(read_design(rig))
         return ForetoldRig([], np.zeros((1, 1)), (1, 1), None)  # type: ignore[arg-type]
 

@@ -17,9 +17,9 @@ from core.calibrate.results import CameraCalibration
 from core.errors import InputError
 from core.files.pictures import write_picture
 from core.files.project.data import Accepted, Project, new_project
-from core.files.recording.options import Options
 from core.messages import plain
 from core.pipeline.steps.camera_step import solve_camera
+from core.settings.options import Options
 from tests.calibrate.camera_views import TRUTH, synthetic_views
 from tests.workbench.hand_lane import HandLane
 from tests.workbench.pages import scan_cases

@@ -10,6 +10,7 @@ from workbench.pages.calibration.page import Result
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.camera import words
 from workbench.pages.camera.presenter import CameraPresenter
+from workbench.pages.setting_fields import add_settings
 from workbench.pages.words import show_facts
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import muted, say
@@ -80,21 +81,7 @@ class CameraModelForm(SettingsForm):
     def __init__(self, presenter: CameraPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        where = [
-            (None, tr("free where it helps")),
-            (True, tr("free")),
-            (False, tr("zero")),
-        ]
-        self.add_choice("skew", tr("Skew γ"), where, tr("Whether the pixel's axes may be out of square."))
-        self.add_choice(
-            "k3", tr("Radial k₃"), where, tr("For strongly distorting lenses; else it makes the rest less sure.")
-        )
-        choices = [
-            ("gross", tr("leave out gross ones")),
-            ("all", tr("leave out all that stand out")),
-            ("keep", tr("keep all")),
-        ]
-        self.add_choice("outliers", tr("Misfits"), choices, tr("Views and corners that do not fit the others."))
+        add_settings(self, "camera")
         self.edited.connect(presenter.set_model)
 
     def refresh(self) -> None:

@@ -21,6 +21,7 @@ from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.camera.work import CameraWork
+from workbench.pages.settings import changed_options, values_of
 from workbench.work import jobs
 
 
@@ -101,14 +102,11 @@ class CameraPresenter(CalibrationPresenter):
 
     def model_values(self) -> dict[str, Any]:
         """Which parameters are free, and what is done with what does not fit."""
-        camera = self.project.options.camera
-        return {"skew": camera.skew, "k3": camera.k3, "outliers": camera.outliers}
+        return values_of("camera", self.project.options)
 
     def set_model(self, field: str, value: Any) -> None:
         """Change one of `model_values`; undoable, and solved again at once."""
-        options = self.project.options
-        changed: dict[str, Any] = {field: value}
-        after = replace(options, camera=replace(options.camera, **changed))
+        after = changed_options("camera", self.project.options, None, field, value)
         self.model.edit(tr("change the camera model"), replace(self.project, options=after))
 
     # ---- views

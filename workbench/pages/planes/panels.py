@@ -16,7 +16,7 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.channels import add_channel
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
-from workbench.pages.stripes import add_stripe, set_stripe_editable
+from workbench.pages.setting_fields import add_settings, set_stripe_editable
 from workbench.pages.words import show_facts
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
@@ -111,12 +111,7 @@ class LaserForm(SettingsForm):
             NumberRange(0.1, 45, decimals=3, step=0.1, unit="°", none_text=tr("not stated"), first=5.0),
             tr("Between neighbouring lines, as its maker states it."),
         )
-        self.add_check(
-            "constrain",
-            tr("Hold the planes to one pencil"),
-            tr("Steadier; used only where the free planes agree with it."),
-        )
-        add_stripe(self, tr("Width and contrast of the stripes are taken from each pose's own pictures."))
+        add_settings(self, "planes")
         add_channel(self)
         self.edited.connect(self._tell)
 
@@ -128,14 +123,13 @@ class LaserForm(SettingsForm):
             {
                 "lines": rig.lines,
                 "angle": angle,
-                "constrain": options.constrain_fan,
                 "channel": rig.channel_of("planes") or "",
-                **self._presenter.stripe_values(),
+                **self._presenter.option_values(),
             }
         )
         set_stripe_editable(self, options.plane_stripe is None)
         one = tr("One line has no neighbour.") if rig.lines == 1 else ""
-        for key in ("angle", "constrain"):
+        for key in ("angle", "constrain_fan"):
             self.set_editable(key, not one, one)
 
     def _tell(self, key: str, value: Any) -> None:

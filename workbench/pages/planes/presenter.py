@@ -8,6 +8,7 @@ from typing import Any
 
 from core.calibrate.fan.poses.pose_features import usual_stripe
 from core.calibrate.results import PlanePose
+from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import finished
 from core.files.results.planes_file import planes_id
@@ -18,13 +19,13 @@ from core.model import Camera, Fan
 from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
-from workbench.pages import stripe_settings
 from workbench.pages.calibration.history import PlanesHistory
 from workbench.pages.calibration.presenter import CalibrationPresenter
 from workbench.pages.calibration.stage import Stage
 from workbench.pages.calibration.target import TargetChoice
 from workbench.pages.planes.current_pose import CurrentPose
 from workbench.pages.planes.work import PlanesCamera, PlanesWork
+from workbench.pages.settings import changed_options, values_of
 from workbench.work import jobs
 
 PAIRS = "live/planes/pairs"
@@ -118,22 +119,19 @@ class PlanesPresenter(CalibrationPresenter):
     # ---- laser
 
     def set_laser(self, field: str, value: Any) -> None:
-        """Change "lines", "angle" (rad; None: not stated), "constrain", "channel" ("": found) or one of
-        `workbench.pages.stripe_settings.FIELDS`; undoable. What cannot be is refused with a sentence.
+        """Change "lines", "angle" (rad; None: not stated), "channel" ("": found) or one of `option_values`; undoable.
+
+        What cannot be is refused with a sentence.
         """
         project = self.project
-        if field in stripe_settings.FIELDS:
+        if field in self.option_values():
             try:
-                stripe = stripe_settings.changed_stripe(
-                    project.options.plane_stripe, self._found_stripe(), field, value
-                )
-            except ValueError as error:
+                options = changed_options("planes", project.options, self._found_stripe(), field, value)
+            except (InputError, ValueError) as error:
                 self.bench.notices.failed(error)
                 self.changed.emit()
                 return
-            after = replace(project, options=replace(project.options, plane_stripe=stripe))
-        elif field == "constrain":
-            after = replace(project, options=replace(project.options, constrain_fan=bool(value)))
+            after = replace(project, options=options)
         elif field == "channel":
             after = replace(project, rig=project.rig.with_channel("planes", value or None))
         else:
@@ -141,9 +139,9 @@ class PlanesPresenter(CalibrationPresenter):
             after = replace(project, rig=replace(project.rig, **changes))
         self.model.edit(tr("change the laser"), after, f"laser {field}")
 
-    def stripe_values(self) -> dict[str, Any]:
-        """Width and contrast of the stripes as given, or as they are in the poses measured."""
-        return stripe_settings.stripe_values(self.project.options.plane_stripe, self._found_stripe())
+    def option_values(self) -> dict[str, Any]:
+        """How the planes are calibrated; width and contrast of the stripes as given, or as in the poses measured."""
+        return values_of("planes", self.project.options, self._found_stripe())
 
     def _found_stripe(self) -> StripeSettings | None:
         return usual_stripe(self.work.poses or ())

@@ -12,17 +12,17 @@ from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QLabel, QLineEdit, QProgressBar, QPushButton, QWidget
 
 from core.errors import InputError
-from core.files.recording.options import Options
 from core.files.results.export_list import EXPORTS
 from core.messages import capital
 from core.pipeline.set_result import SET_COLUMNS, SetProgress, SetResult, set_cells
 from core.remaining import Remaining, in_words
+from core.settings.options import Options
 from core.states import SET_STATES
 from workbench.bench import Bench
 from workbench.language import joined, named, text_of, tr
-from workbench.pages.scan_form import add_scan_settings
-from workbench.pages.scan_settings import changed_options, values_of
-from workbench.pages.stripes import set_stripe_editable
+from workbench.pages.channels import add_channel
+from workbench.pages.setting_fields import add_settings, set_stripe_editable
+from workbench.pages.settings import changed_options, values_of
 from workbench.pages.words import wording
 from workbench.theme import icon, shades
 from workbench.views import ask
@@ -105,7 +105,8 @@ class ManySetsWindow(QWidget):
         self.out.setAccessibleName(tr("Results folder"))
         self.settings, self.form = QPushButton(icon("mdi6.tune-variant"), tr("Settings")), SettingsForm()
         self.settings.setCheckable(True)
-        add_scan_settings(self.form)
+        add_settings(self.form, "scan")
+        add_channel(self.form)
         self._beside = UpAndDown(self.form, SETTINGS_WIDTH)
         self.table, self.reason, self.problem = DataTable(), muted(), QLabel()
         self.problem.setWordWrap(True)
@@ -235,7 +236,7 @@ class ManySetsWindow(QWidget):
             if field == "channel":
                 changed = replace(self._options, channel=value or None)
             else:
-                changed = changed_options(self._options, None, field, value)
+                changed = changed_options("scan", self._options, None, field, value)
                 changed = replace(changed, plane_stripe=changed.stripe)
         except (InputError, ValueError) as error:
             self._say(text_of(error))
@@ -315,7 +316,7 @@ class ManySetsWindow(QWidget):
         enable(self.add, running, tr("Choose a recording set, or a folder with recording sets in it"))
         enable(self.browse, running, tr("Choose the folder for the results"))
         self.out.setReadOnly(bool(running))
-        self.form.set_values({**values_of(self._options, None), "channel": self._options.channel or ""})
+        self.form.set_values({**values_of("scan", self._options), "channel": self._options.channel or ""})
         self.form.setEnabled(not running)
         set_stripe_editable(self.form, self._options.stripe is None)
         enable(self.settings, "", tr("How the sets are measured: method, largest σ, stripes, colour"))

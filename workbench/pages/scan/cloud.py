@@ -41,7 +41,7 @@ class ScanCloud(QWidget):
         p = self._presenter
         if p.stage in (Stage.LIVE, Stage.MEASURING) or p.work.frames is None:
             return  # what is there grows, or stands until it is clear what comes next
-        look, limit = p.work.look, p.project.options.sigma_cut_mm
+        look, limit = p.work.look, p.largest_sigma_mm
         if look is None or not len(look):
             if self._look is not None or self._growing or not self._said(self._message()):
                 self._look, self._growing = None, False

@@ -15,12 +15,12 @@ from core.scan.preview.hints import HintLimits
 from core.scan.preview.shown import ShownScan
 from core.states import STEP_STATES
 from workbench.language import sentences, text_of, tr
+from workbench.pages.channels import add_channel
 from workbench.pages.scan import words
 from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
 from workbench.pages.scan.stability import STABILITY, drift_key, usual_per_kelvin
 from workbench.pages.scan.stage import Stage
-from workbench.pages.scan_form import add_scan_settings
-from workbench.pages.stripes import set_stripe_editable
+from workbench.pages.setting_fields import add_settings, set_stripe_editable
 from workbench.pages.whole import EVERYTHING
 from workbench.pages.words import count, show_facts, sigma
 from workbench.views.forms.editors import NumberRange
@@ -118,7 +118,8 @@ class SettingsPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.form = form = SettingsForm()
-        add_scan_settings(form)
+        add_settings(form, "scan")
+        add_channel(form)
         form.add_section(tr("Shutter of the camera"))
         form.add_number(
             "row_time_us",

@@ -126,7 +126,7 @@ class ScanPicture(QWidget):
         if self.wanted is View.CROSSINGS:
             overlays.show_crossings(self.image, stages.seen)
         if self.wanted is View.POINTS:
-            overlays.show_points(self.image, *points, self._presenter.project.options.sigma_cut_mm)
+            overlays.show_points(self.image, *points, self._presenter.largest_sigma_mm)
 
     def _begin(self, kind: str) -> None:
         """Layers of another kind of picture are no longer true."""

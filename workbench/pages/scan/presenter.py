@@ -12,13 +12,13 @@ from core.calibrate.sitting import Taken, hours_of_sitting
 from core.errors import InputError
 from core.files.project.data import Project
 from core.files.project.keys import changed, inputs_of
-from core.files.recording.options import Options
 from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
 from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.pipeline.live.rig_check import rig_check
 from core.scan.features.frames import FrameRecord
+from core.settings.options import Options
 from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
@@ -33,7 +33,7 @@ from workbench.pages.scan.scrub import FrameScrub
 from workbench.pages.scan.stage import Facts, Stage, WhyNot, buttons_of, stage_of
 from workbench.pages.scan.thumbnails import FrameThumbnails
 from workbench.pages.scan.work import ScanWork
-from workbench.pages.scan_settings import changed_options, values_of
+from workbench.pages.settings import changed_options, values_of
 from workbench.pages.sources import folder_of, put_source, scan_begins_live
 from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
@@ -248,11 +248,16 @@ class ScanPresenter(StepPresenter):
         """Width and contrast as the last measurement took them."""
         return None if self.work.look is None else self.work.look.stripe
 
+    @property
+    def largest_sigma_mm(self) -> float:
+        """The σ of depth up to which points are kept."""
+        return self.project.options.sigma_cut_mm
+
     def settings(self) -> dict[str, Any]:
         """How the scan is measured, as the fields of a form."""
         rig = self.project.rig
         return {
-            **values_of(self.project.options, self._stripe_found),
+            **values_of("scan", self.project.options, self._stripe_found),
             **stability.rig_shown(rig),
             **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
             "row_time_us": rig.row_time_us,
@@ -279,7 +284,7 @@ class ScanPresenter(StepPresenter):
             self.model.edit(tr("change how long calibration and check hold"), after, f"scan {field}")
             return
         try:
-            options = changed_options(self.project.options, self._stripe_found, field, value)
+            options = changed_options("scan", self.project.options, self._stripe_found, field, value)
         except (InputError, ValueError) as error:
             self.bench.notices.failed(error)
             self.changed.emit()

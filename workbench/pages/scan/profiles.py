@@ -10,9 +10,9 @@ from PySide6.QtGui import QDesktopServices, QResizeEvent
 from PySide6.QtWidgets import QPushButton, QVBoxLayout, QWidget
 
 from core.files.project.results import ProfilesSummary
-from core.files.recording.options import StatedTilt
 from core.report.facts.of_gauge import gauge_facts, pictures_fact
 from core.report.facts.pictures import left_out
+from core.settings.options import StatedTilt
 from workbench.bench import Bench
 from workbench.language import text_of, tr
 from workbench.pages.scan.stage import ProfilesFacts, why_not_profiles

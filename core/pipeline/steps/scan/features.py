@@ -7,7 +7,6 @@ from dataclasses import replace
 from pathlib import Path
 
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.step_settings import ScanSettings
 from core.model import Camera, Fan
 from core.pipeline.steps.kept_features import kept_features
 from core.pipeline.steps.scan.pictures import SeenScan, look_at_scan
@@ -16,12 +15,13 @@ from core.progress import Progress, silent
 from core.scan.features.extraction import FeatureOptions, FrameFeatures, ReferenceFeatures, ScanFeatures, crossed
 from core.scan.preview.frames import Preview
 from core.scan.preview.shown import FramePreview
+from core.settings.options import Options
 
 
 def scan_features(
     pictures: PictureReader,
     calibration: Calibration,
-    settings: ScanSettings,
+    settings: Options,
     progress: Progress,
     watch: Callable[[FramePreview], None] | None = None,
     earlier: Path | None = None,

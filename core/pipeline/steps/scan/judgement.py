@@ -11,8 +11,6 @@ from core.calibrate.deviations import UNEXPLAINED, Deviation, calibration_deviat
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
 from core.files.recording.features_file import read_poses
-from core.files.recording.rig import Rig
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.planes_file import planes_id
 from core.findings.proof import ScanFacts, notes_of
 from core.image.stripes.centreline import Centreline
@@ -26,8 +24,7 @@ from core.scan.common_errors import CommonErrors, solve_common
 from core.scan.features.extraction import ScanFeatures
 from core.scan.features.picture_faults import at_fault
 from core.scan.first_cause import Causes, cause_first
-from core.scan.method import Method
-from core.scan.reconstruct import ReconstructOptions
+from core.scan.method import Method, ReconstructOptions
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 
@@ -88,11 +85,6 @@ class Judgement:
     def notes(self) -> tuple[Message, ...]:
         """The most likely cause, what changed, and why nothing measured is proof."""
         return (*self.likely, *self.change.notes, *self.section.notes, *notes_of(self.facts.doubts))
-
-
-def solving_of(settings: ScanSettings, rig: Rig) -> ReconstructOptions:
-    """Give the options by which a scan of this rig is solved."""
-    return ReconstructOptions(settings.method, settings.sigma_cut_mm, rig.row_time_us)
 
 
 def solved_scan(

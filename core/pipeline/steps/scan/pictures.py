@@ -14,7 +14,6 @@ from core.files.recording.laser_channel import LaserChannel
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet, require_scan
 from core.files.recording.set_listing import FURTHER
-from core.files.recording.step_settings import ScanSettings
 from core.findings.table import note_of
 from core.image.exclusion import Exclusion, Reason
 from core.image.mosaic import Sites
@@ -42,6 +41,7 @@ from core.scan.features.overexposure import notes_on_shine
 from core.scan.features.picture_faults import faults_of, mosaic_of
 from core.scan.features.reference import quantile_reference, sample_indices
 from core.second_process import SecondProcess
+from core.settings.options import Options
 from core.stage_times import StageTimes
 
 FEWEST_FOR_QUANTILE = 3
@@ -67,7 +67,7 @@ class SeenScan:
 
 
 def look_at_scan(
-    job: tuple[RecordingSet, ScanSettings],
+    job: tuple[RecordingSet, Options],
     /,
     *,
     progress: Progress = silent,
@@ -127,7 +127,7 @@ def look_at_scan(
 
 
 def begin_looking(
-    recording_set: RecordingSet, settings: ScanSettings, progress: Progress, beside: SecondProcess | None
+    recording_set: RecordingSet, settings: Options, progress: Progress, beside: SecondProcess | None
 ) -> Callable[[], SeenScan] | None:
     """Have the pictures of a scan looked at `beside` while camera and planes are calibrated; what waits for it.
 
@@ -166,7 +166,7 @@ def _fan_seen(reference: ReferenceFeatures) -> Exposure:
 
 
 def _further_exposures(
-    pictures: PictureReader, settings: ScanSettings, looking: FeatureOptions, first: ReferenceFeatures
+    pictures: PictureReader, settings: Options, looking: FeatureOptions, first: ReferenceFeatures
 ) -> dict[int, FurtherExposures]:
     """The further exposures of the frames by their number, those with a picture of the fan alone to go with them.
 
@@ -177,7 +177,7 @@ def _further_exposures(
 
 
 def _exposures(
-    pictures: PictureReader, settings: ScanSettings, looking: FeatureOptions, first: ReferenceFeatures, number: int
+    pictures: PictureReader, settings: Options, looking: FeatureOptions, first: ReferenceFeatures, number: int
 ) -> FurtherExposures | None:
     """Those of one number; None if there are none, or no picture of the fan alone."""
     recording_set = pictures.recording_set
@@ -207,14 +207,14 @@ def _exposures(
     return FurtherExposures(reference, stripe, read)
 
 
-def feature_options(settings: ScanSettings) -> FeatureOptions:
+def feature_options(settings: Options) -> FeatureOptions:
     """How the pictures of a scan are looked at."""
     return FeatureOptions(sweep_stripe=settings.stripe, fan_stripe=settings.stripe)
 
 
 def stream_frames(
     pictures: PictureReader,
-    settings: ScanSettings,
+    settings: Options,
     times: StageTimes | None = None,
     coming: Iterable[Path] | None = None,
 ) -> Iterator[Frame]:
@@ -233,7 +233,7 @@ def stream_frames(
         yield name, picture
 
 
-def require_frames(recording_set: RecordingSet, settings: ScanSettings) -> None:
+def require_frames(recording_set: RecordingSet, settings: Options) -> None:
     """InputError if there are no frames, or all are left out by hand."""
     require_scan(recording_set)
     if not taken_frames(recording_set, settings):
@@ -246,13 +246,13 @@ def require_frames(recording_set: RecordingSet, settings: ScanSettings) -> None:
         )
 
 
-def taken_frames(recording_set: RecordingSet, settings: ScanSettings) -> list[Path]:
+def taken_frames(recording_set: RecordingSet, settings: Options) -> list[Path]:
     """The frames that are not left out by hand."""
     return [path for path in recording_set.frames if recording_set.name_of(path) not in settings.excluded]
 
 
 def reference_picture(
-    pictures: PictureReader, camera: Camera | None, settings: ScanSettings, progress: Progress = silent
+    pictures: PictureReader, camera: Camera | None, settings: Options, progress: Progress = silent
 ) -> tuple[Picture, list[Message]]:
     """The picture with the fan alone, taken or made from the frames, and a note on how it was made.
 

@@ -7,7 +7,6 @@ from dataclasses import dataclass
 import numpy as np
 
 from core.files.recording.picture_reader import PictureReader
-from core.files.recording.step_settings import ScanSettings
 from core.files.results.ply import write_cloud, write_mesh
 from core.files.results.scan_file import ScanFile, write_scan
 from core.pipeline.steps.kept_features import features_key
@@ -19,6 +18,7 @@ from core.scan.network.adjustment import SILENCED
 from core.scan.part_light import PartLight
 from core.scan.results import FrameRecord, ScanResult
 from core.scan.surface.fused_surface import Mesh
+from core.settings.options import Options
 from core.stage_times import StageTimes, stage
 
 
@@ -51,7 +51,7 @@ def scan_file(
     judgement: Judgement,
     calibration: Calibration,
     pictures: PictureReader,
-    settings: ScanSettings,
+    settings: Options,
     light: PartLight | None,
 ) -> ScanFile:
     """What scan.npz is to hold of a scan; the hashes of its pictures must have been taken."""

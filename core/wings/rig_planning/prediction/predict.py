@@ -30,7 +30,8 @@ from core.model.arrays import Array
 from core.progress import Progress, StepProgress, silent
 from core.scan.common_errors import solve_common
 from core.scan.features.extraction import ScanFeatures
-from core.scan.reconstruct import ReconstructOptions, reconstruct
+from core.scan.method import ReconstructOptions
+from core.scan.reconstruct import reconstruct
 from core.scan.results import ScanResult
 from core.scan.scan_evidence import scan_evidence
 from core.scan.surface.cloud import Cloud
@@ -105,13 +106,13 @@ class Prediction:
 class Planner:
     """Predicts, and remembers what plans that differ in little have in common.
 
-    Of the `part` what its temperature, expansion and surface make uncertain is known before any picture; None leaves
-    it out. `stability` is how far the rig may change between calibration and scan: None assumes the default, as a
-    measurement does.
+    A scan is solved as `solving` says. Of the `part` what its temperature, expansion and surface make uncertain is
+    known before any picture; None leaves it out. `stability` is how far the rig may change between calibration and
+    scan: None assumes the default, as a measurement does.
     """
 
     progress: Progress = silent
-    sigma_cut_mm: float = ReconstructOptions().sigma_cut_mm
+    solving: ReconstructOptions = field(default_factory=ReconstructOptions)
     part: Part | None = None
     stability: Stability | None = STABLE
     _known: dict[tuple[object, ...], object] = field(default_factory=dict)
@@ -149,9 +150,7 @@ class Planner:
         told = StepProgress(self.progress)
         camera, fan = self._calibrations(design, seed)
         features = self._features(design, height_mm, seed)
-        scan = reconstruct(
-            features, camera.camera, fan.fan, ReconstructOptions(sigma_cut_mm=self.sigma_cut_mm), told.within_step
-        )
+        scan = reconstruct(features, camera.camera, fan.fan, self.solving, told.within_step)
         deviations = self._deviations(design, seed, (camera, fan), features, scan)
         common = solve_common(features, scan, camera.camera, fan.fan, deviations, progress=told.within_step)
         cloud = replace(scan.cloud, sigma_common=common.sigma(scan.cloud))

@@ -257,7 +257,7 @@ def test_angles_are_shown_held_and_free_with_the_verdict(solved: PlanesPage, qtb
     assert rows.text_of("Off one axis").endswith(" mm")
     assert solved.result.verdict.text().startswith("One common axis and angles of 5°: this suits the laser")
     solved.setup_folds[1].expand(animate=False)
-    click(qtbot, solved.laser.editor("constrain"))
+    click(qtbot, solved.laser.editor("constrain_fan"))
     settled(qtbot, solved)
     assert "the freely fitted planes are used, as asked" in solved.result.verdict.text()
 

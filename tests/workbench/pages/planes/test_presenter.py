@@ -272,7 +272,7 @@ def test_the_plates_temperature_comes_and_goes_with_its_uncertainty(page: Planes
         (lambda p: p.set_laser("lines", 2), lambda p: p.project.rig.lines),
         (lambda p: p.set_laser("angle", math.radians(4.0)), lambda p: p.project.rig.angle),
         (lambda p: p.set_laser("angle", None), lambda p: p.project.rig.angle),
-        (lambda p: p.set_laser("constrain", False), lambda p: p.project.options.constrain_fan),
+        (lambda p: p.set_laser("constrain_fan", False), lambda p: p.project.options.constrain_fan),
         (lambda p: p.set_laser("automatic", False), lambda p: p.project.options.plane_stripe),
         (lambda p: p.set_laser("width_px", 9.0), lambda p: p.project.options.plane_stripe),
         (lambda p: p.target.set_target("size_mm", 55.0), lambda p: p.project.rig.plane_target.side_mm),
@@ -297,7 +297,7 @@ def test_another_laser_is_solved_at_once_from_the_same_poses(
     found: PlanesPresenter, planes: Planes, qtbot: Any
 ) -> None:
     ran, before = list(planes.measuring.ran), found.candidate
-    found.set_laser("constrain", False)
+    found.set_laser("constrain_fan", False)
     settled(qtbot, found)
     assert found.candidate != before
     assert found.work.calibration is not None

@@ -12,11 +12,11 @@ from PySide6.QtCore import QUrl
 from PySide6.QtGui import QDesktopServices
 from PySide6.QtWidgets import QMainWindow
 
-from core.files.recording.options import Options
 from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.pipeline.set_result import SetProgress, SetResult
 from core.scan.method import Method
+from core.settings.options import Options
 from tests.workbench.hand_lane import HandLane
 from workbench.bench import Bench
 from workbench.pages.project.many_sets import ManySets, ManySetsWindow

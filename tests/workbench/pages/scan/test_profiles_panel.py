@@ -12,11 +12,11 @@ import pytest
 
 from core.files.project.data import new_project
 from core.files.project.results import ProfilesSummary
-from core.files.recording.options import StatedTilt
 from core.files.results.profile_file import PictureStep
 from core.inspect.results import Face, GaugeResult
 from core.messages import plain
 from core.model import LightPlane
+from core.settings.options import StatedTilt
 from workbench.bench import Bench
 from workbench.pages.scan.profiles import ProfilesPanel
 

@@ -1,0 +1,189 @@
+"""What the program knows of a setting besides what it does: the entries of `core.settings.options`.
+
+All of it is data that takes no time to import: project.json is checked by it, the commands get their flags and the
+pages of the window their forms from it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import MISSING, dataclass, fields, replace
+from typing import Any, TypeAlias, TypeVar
+
+from core.messages import Message
+
+T = TypeVar("T")
+_KEY = "setting"
+"""Where a field of a dataclass keeps its setting."""
+
+
+@dataclass(frozen=True, slots=True)
+class Number:
+    """A number above `above` and at most `most`; `stated` is what a file that holds another one is told it must be.
+
+    In a form it is entered from `least` to `largest`, with so many `decimals`; the arrow keys go on by `step`.
+    """
+
+    above: float
+    most: float
+    stated: str
+    unit: str
+    least: float
+    largest: float
+    decimals: int
+    step: float
+
+
+@dataclass(frozen=True, slots=True)
+class Choice:
+    """One of `values`, or None where that is one of them; `shown` are their words in a form, `stated` as of a Number.
+
+    `type` makes the value of what a file holds: an enumeration.
+    """
+
+    values: tuple[Any, ...]
+    shown: tuple[str, ...] = ()
+    stated: str = ""
+    type: Callable[[Any], Any] | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class Whether:
+    """Yes or no."""
+
+
+@dataclass(frozen=True, slots=True)
+class Text:
+    """A line of text."""
+
+
+@dataclass(frozen=True, slots=True)
+class Names:
+    """A set of names that match a `pattern`; `stated` as of a Number."""
+
+    pattern: str
+    stated: str
+
+
+@dataclass(frozen=True, slots=True)
+class Values:
+    """An object of several settings by their names, of the class `type`; `optional`: or None."""
+
+    type: type
+    settings: Mapping[str, Setting]
+    optional: bool = False
+    stated: str | None = None
+
+
+Kind: TypeAlias = Number | Choice | Whether | Text | Names | Values
+
+
+@dataclass(frozen=True, slots=True)
+class Flag:
+    """How the command line calls a setting: its names, as "--skew/--no-skew", and what its value is called in help."""
+
+    name: str
+    help: str
+    value: str | None = None
+    none: Any = None
+    """What is typed, or left, where nothing is stated."""
+
+    @property
+    def word(self) -> str:
+        """The first name as a parameter of a function: "stripe_width"."""
+        return self.name.partition("/")[0].removeprefix("--").replace("-", "_")
+
+
+@dataclass(frozen=True, slots=True)
+class Setting:
+    """One setting. Texts are English words that the readers translate.
+
+    Parameters
+    ----------
+    kind
+        What its value is.
+    steps
+        Those whose result rests on it, and whose commands take its flag.
+    title, help
+        In forms: what it is called, what it does. Without a title it is in none.
+    flag
+        On the command line; None: it cannot be typed.
+    refused
+        The complaint about a value out of range.
+    reported
+        What the report calls it, and how it words its value; None: the report does not tell it.
+    in_file
+        Whether project.json holds it.
+    keyed
+        Whether the key of the step's result holds it even where it is as usual, as it did from the first version on.
+    """
+
+    kind: Kind
+    steps: tuple[str, ...] = ()
+    title: str = ""
+    help: str = ""
+    flag: Flag | None = None
+    refused: Callable[[Any], Message] | None = None
+    reported: tuple[str, Callable[[Any], Message | str]] | None = None
+    in_file: bool = True
+    keyed: bool = False
+
+    def complaint(self, value: Any) -> Message | None:
+        """The reason why it cannot have this value; None if it can."""
+        possible = True
+        if isinstance(self.kind, Number):
+            possible = self.kind.above < value <= self.kind.most
+        elif isinstance(self.kind, Choice):
+            possible = value is None or value in self.kind.values
+        return None if possible or self.refused is None else self.refused(value)
+
+
+def described(kind: Kind, **known: Any) -> Mapping[str, Setting]:
+    """Make the metadata of a dataclass's field that is a setting; `known` as `Setting` has it."""
+    return {_KEY: Setting(kind, **known)}
+
+
+@dataclass(frozen=True, slots=True)
+class Row:
+    """A setting by its place in a table, as ("camera", "skew") in the options, and what it is as long as not stated."""
+
+    path: tuple[str, ...]
+    setting: Setting
+    default: Any
+
+    @property
+    def key(self) -> str:
+        """Its own name, as forms know it."""
+        return self.path[-1]
+
+    @property
+    def is_one(self) -> bool:
+        """Whether files know it as one value, not by what it consists of."""
+        return not isinstance(self.setting.kind, Values) or self.setting.kind.optional
+
+    def value(self, table: Any) -> Any:
+        """What it is in a table; None within what is None."""
+        for name in self.path:
+            table = None if table is None else getattr(table, name)
+        return table
+
+    def changed(self, table: T, value: Any) -> T:
+        """The table with it being `value`."""
+        first, *within = self.path
+        if within:
+            value = replace(getattr(table, first), **{within[0]: value})
+        return replace(table, **{first: value})  # type: ignore[type-var]
+
+
+def rows(table: type) -> tuple[Row, ...]:
+    """All settings of a dataclass, in its order; those within others are not among them."""
+    return tuple(Row((one.name,), one.metadata[_KEY], one.default) for one in fields(table) if _KEY in one.metadata)
+
+
+def rows_within(row: Row) -> tuple[Row, ...]:
+    """The settings that one consists of; itself if it is one value."""
+    kind = row.setting.kind
+    if not isinstance(kind, Values):
+        return (row,)
+    usual = {one.name: None if one.default is MISSING else one.default for one in fields(kind.type)}
+    return tuple(Row((*row.path, name), one, usual[name]) for name, one in kind.settings.items())
