@@ -46,7 +46,7 @@ from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.model.robust import huber_weights
+from core.model.robust import Schedule
 from core.scan.between_frames import Between, between
 from core.scan.fan_watch import LEAST_NOISE_PX, fan_shifts
 from core.scan.features.crossings import CrossingTable, Index
@@ -62,8 +62,8 @@ from core.scan.scan_evidence import change_of_misclosures
 from core.scan.standstill import LEAST_SEEN_SHARE, movements_of
 from core.scan.sweeps.locate import by_sweep, numbered, some_sweeps, sweeping_frames
 
-ROUNDS = 5
-"""Rounds of reweighting by Huber, as before the test for a movement."""
+WEIGHTS = Schedule(5, huber_at=HUBER_AT)
+"""Of reweighting, as before the test for a movement."""
 LEAST_SHARE = 0.02
 """Share of what is too large below which a further cause is not worth a word."""
 
@@ -142,10 +142,9 @@ def compare_causes(
     equations = Adjustment(
         table, CrossingRays.of(table, camera), line, straight, len(frames), LineErrors.of(table), read_out
     )
-    solution, kept = equations.start(), ~scan.second_bounces.among(crossings)
-    for last in [False] * ROUNDS + [True]:  # many mirrored pieces would make the planes fall together
-        weights = huber_weights(solution.residuals, HUBER_AT)
-        solution = equations.improve(solution, weights if last else weights * kept)
+    kept = ~scan.second_bounces.among(crossings)
+    solution = equations.weighted(WEIGHTS, kept=kept)  # many mirrored pieces would make the planes fall together
+    solution = equations.weighted(replace(WEIGHTS, rounds=1), solution)
     if has_collapsed(equations, solution.pis):
         return ()
     seen, shifts, noise_px = fan_shifts(features)

@@ -22,7 +22,7 @@ from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.model.robust import huber_weights, mad_sd
+from core.model.robust import Schedule
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable
 from core.scan.network.adjustment import HUBER_AT
@@ -45,8 +45,8 @@ EVALUATIONS = 80
 """Solutions of the network at most for one change."""
 SURELY = 20.0
 """Difference of the sums of squares that two changes leave, from which on they are told apart."""
-ROUNDS = 4
-"""Rounds of reweighting of each: the planes have settled by then as far as the misfit tells."""
+WEIGHTS = Schedule(4, huber_at=HUBER_AT)
+"""Of reweighting of each: the planes have settled by then as far as the misfit tells."""
 LARGE = 5.0
 """Residual in standard deviations beyond which a crossing counts no more: a wrong one, whatever has changed."""
 
@@ -211,9 +211,6 @@ def _misfit(equations: Adjustment) -> float:
 
     None is rejected, so that it changes steadily with camera and fan.
     """
-    solution = equations.start()
-    for _ in range(ROUNDS):
-        size = np.abs(solution.residuals) / max(1.0, mad_sd(solution.residuals))
-        solution = equations.improve(solution, huber_weights(size, HUBER_AT))
+    solution = equations.weighted(WEIGHTS, scaled=True)
     squares = np.minimum(solution.residuals**2, LARGE**2).sum() + solution.cells @ solution.cells
     return float(squares) / len(equations.crossings)

@@ -33,7 +33,7 @@ from core.findings.table import note_of
 from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
-from core.model.robust import huber_weights
+from core.model.robust import Schedule
 from core.progress import Progress, silent
 from core.scan.between_frames import Between, between
 from core.scan.features.crossings import CrossingTable, Index
@@ -56,8 +56,8 @@ LEAST_SEEN_SHARE = 1e-3
 which follow it as far as they can, is not to be seen."""
 _NEIGHBOURS = 12
 """Points from which a surface normal is taken."""
-_ROUNDS = 5
-"""Rounds of reweighting by Huber before the test."""
+_WEIGHTS = Schedule(5, huber_at=HUBER_AT)
+"""Of reweighting before the test."""
 _PLACES = 40
 """Places tried, about, in a long scan; then those about the best. Chosen by the time it takes."""
 
@@ -95,9 +95,7 @@ def find_movement(
     table = by_sweep(crossings, frames)
     geometry = CrossingRays.of(crossings, camera)
     equations = Adjustment(table, geometry, line, fan, len(frames), LineErrors.of(crossings), read_out)
-    solution = equations.start()
-    for _ in range(_ROUNDS):
-        solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
+    solution = equations.weighted(_WEIGHTS)
     scores = _Scores.of(equations, solution)
     first, last = SWEEPS_ASIDE, len(frames) - SWEEPS_ASIDE
     stride = max(1, len(frames) // _PLACES)

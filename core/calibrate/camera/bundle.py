@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from core.calibrate.camera.reprojection import all_moved, camera_of, linearise_turned, parameters_of
 from core.model import Camera, Pose
 from core.model.arrays import Array
-from core.model.robust import huber_weights
+from core.model.robust import Schedule, Weigh, irls
 
 RAYLEIGH_MEDIAN = 1.1774100225154747
 """Median length of a residual vector whose two components have standard deviation 1: √(2 ln 2)."""
@@ -34,8 +34,7 @@ _LEAST_DAMPING, _MOST_DAMPING = 1e-12, 1e10  # beyond the largest no step lowers
 _MOST_ITERATIONS = 60  # mostly ten
 
 # The robust start among outliers; tests/calibrate/camera/test_calibration.py (misfound corners, wrong views) holds it.
-_HUBER_LIMIT = 2.5  # standard deviations by the median residual
-_HUBER_ROUNDS = 6  # of reweighting
+_HUBER = Schedule(6, huber_at=2.5)  # standard deviations by the median residual
 _HUBER_TOLERANCE = 1e-6  # gain as a share of the cost at which a round ends: the next one has other weights
 _LEAST_SCALE_PX = 1e-9  # of the residuals: exact views have none
 
@@ -200,16 +199,17 @@ def refine(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp], tol
 
 def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.intp]) -> Bundle:
     """Minimise with Huber's weights about a scale from the median residual: a start among outliers for `refine`."""
-    current = start
-    for _ in range(_HUBER_ROUNDS):
+
+    def improve(current: Bundle, weigh: Weigh) -> Bundle:
         lengths = residual_lengths(current, views)
-        limit = _HUBER_LIMIT * max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, _LEAST_SCALE_PX)
+        scale = max(float(np.median(np.concatenate(lengths))) / RAYLEIGH_MEDIAN, _LEAST_SCALE_PX)
         weighted = [
-            replace(view, weights=view.weights * huber_weights(length, limit))
+            replace(view, weights=view.weights * weigh(length, scale))
             for view, length in zip(views, lengths, strict=True)
         ]
-        current = refine(current, weighted, free, tolerance=_HUBER_TOLERANCE)
-    return current
+        return refine(current, weighted, free, tolerance=_HUBER_TOLERANCE)
+
+    return irls(start, improve, _HUBER)
 
 
 def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:

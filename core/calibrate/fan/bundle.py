@@ -19,6 +19,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from typing import TypeAlias
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from core.calibrate.fan.pose_equations import PoseEquations, inverse
 from core.calibrate.levenberg import Solution, minimise
 from core.model import Camera, Pose
 from core.model.arrays import Array
-from core.model.robust import huber_weights
+from core.model.robust import Schedule, Weigh, irls
 
 PRIOR_FREEDOM = 6.0
 """Belief in the stated uncertainties, counted in residuals: few residuals cannot overthrow them."""
@@ -108,6 +109,10 @@ class Bundle:
         return float(self.extra[0] / np.sqrt(2))
 
 
+_Found: TypeAlias = tuple[ObservationWeights, Solution[State, PoseEquations]]
+"""A solution, and what it was weighted by."""
+
+
 def solve(
     planes: PlaneSet,
     poses: Sequence[BundlePose],
@@ -136,12 +141,16 @@ def solve(
     bow = np.zeros(0) if plate is None else plate.bow
     state = State(planes, tuple(pose.pose for pose in poses), bow, np.zeros(PARAMETERS))
     trust = _at_first(seen, state)
-    solution = minimise(state, partial(seen.linearise, trust=trust), seen.move)
-    for _ in range(rounds):
-        before, trust = trust, _improved(trust, seen, solution)
-        solution = minimise(solution.state, partial(seen.linearise, trust=trust), seen.move)
-        if _settled(before, trust):
-            break
+
+    def improve(found: _Found, weigh: Weigh) -> _Found:
+        trust, solution = found
+        trust = _improved(trust, seen, solution, weigh)
+        return trust, minimise(solution.state, partial(seen.linearise, trust=trust), seen.move)
+
+    start = trust, minimise(state, partial(seen.linearise, trust=trust), seen.move)
+    trust, solution = irls(
+        start, improve, Schedule(rounds, huber_at=HUBER), lambda before, now: _settled(before[0], now[0])
+    )
     return _result(seen, solution, trust)
 
 
@@ -152,7 +161,7 @@ def _at_first(seen: Observations, state: State) -> ObservationWeights:
 
 
 def _improved(
-    trust: ObservationWeights, seen: Observations, solution: Solution[State, PoseEquations]
+    trust: ObservationWeights, seen: Observations, solution: Solution[State, PoseEquations], weigh: Weigh
 ) -> ObservationWeights:
     """The standard deviations and the stripes' weights again, from residuals and redundancies."""
     residuals, share = solution.linear.residuals, solution.linear.leverages()
@@ -165,7 +174,7 @@ def _improved(
         factor = _variance_factor(residuals[rows], share[rows])
         extra[part] = np.sqrt(max(factor * extra[part] ** 2 + (factor - 1) * own, 0.0))
     trust = replace(trust, corner_scale=scale, extra=extra)
-    return replace(trust, weight=huber_weights(_errors(seen, solution.state, trust), HUBER))
+    return replace(trust, weight=weigh(_errors(seen, solution.state, trust)))
 
 
 def _settled(before: ObservationWeights, after: ObservationWeights) -> bool:

@@ -11,7 +11,7 @@ from scipy.ndimage import map_coordinates, spline_filter
 
 from core.image.targets.picture import Picture
 from core.model.arrays import Array
-from core.model.robust import mad_sd, median, tukey_weights
+from core.model.robust import Schedule, Weigh, irls, mad_sd, median
 
 STEP = 0.5
 """Distance of a profile's samples, in pixels."""
@@ -19,6 +19,8 @@ STEP = 0.5
 FILTER = 1.5
 """σ of the Gaussian derivative along the profile, in pixels: less leaves 0.02 px of pixel phase on sharp pictures."""
 
+_WEIGHTS = Schedule(15, huber=0, tukey_at=4.7)
+"""Of reweighting, from a start that half of the points cannot spoil."""
 _REACH = round(3 * FILTER / STEP)
 """Samples on either side that the filter takes in."""
 
@@ -129,17 +131,23 @@ def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line
     if len(chosen) < 10:
         return None
     xy = points[chosen]
-    middle, normal = _least_median(xy)
-    weight = np.ones(len(xy))
-    for _ in range(15):
+
+    def too_few(weight: Array) -> bool:
+        return bool(np.count_nonzero(weight) < 10)
+
+    def improve(line: tuple[Array, Array, Array], weigh: Weigh) -> tuple[Array, Array, Array]:
+        middle, normal, _ = line
         distance = (xy - middle) @ normal
         scale = max(mad_sd(distance - median(distance)), floor)
-        weight = tukey_weights(distance, 4.7 * scale)
-        if np.count_nonzero(weight) < 10:
-            return None
+        weight = weigh(distance, scale)
+        if too_few(weight):
+            return middle, normal, weight
         middle = weight @ xy / weight.sum()
         centred = xy - middle
-        normal = np.linalg.eigh((centred * weight[:, None]).T @ centred)[1][:, 0]
+        return middle, np.linalg.eigh((centred * weight[:, None]).T @ centred)[1][:, 0], weight
+
+    start = (*_least_median(xy), np.ones(len(xy)))
+    middle, normal, weight = irls(start, improve, _WEIGHTS, lambda _, line: too_few(line[2]))
     used = weight > 0
     if used.sum() < max(10, 0.25 * len(points)):
         return None

@@ -32,7 +32,7 @@ from core.inspect.uncertainty.error_sources import Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.model.arrays import Array
 from core.model.directions import square_to
-from core.model.robust import huber_weights, mad_sd, tukey_weights
+from core.model.robust import Schedule, Weigh, irls, mad_sd
 from core.scan.surface.cloud import Cloud
 from core.scan.surface.triangulate import join
 
@@ -40,6 +40,8 @@ LINE_LIKE = 0.03
 """Faces whose points spread across less than this share of their spread along are taken for lines."""
 INNER = 0.8
 """Spreads are judged by this share of the points, so that wrong points do not make a plane of a line."""
+_WEIGHTS = Schedule(40, huber=8, counts_from=9)
+"""Of reweighting: Huber's weights have one solution, near which Tukey's then start."""
 LARGEST_WEIGHT = 16.0
 """No point weighs more than this many times the median one: stated σ are not known better than to a factor 4."""
 
@@ -182,22 +184,24 @@ def _robust(
         raise ValueError(f"a plane needs at least 3 points, not {len(points)}")
     noise = np.ones(len(points)) if sigma is None else np.asarray(sigma, dtype=np.float64)
     line_like = _line_like(points, face, faces)
-    weights = _capped(noise)
-    solution = _solve(points, weights, face, faces, reference, line_like)
-    scale = 1.0
-    for step in range(40):
+
+    def improve(found: tuple[_Solution, Array, float], weigh: Weigh) -> tuple[_Solution, Array, float]:
+        solution = found[0]
         along = noise if sigma is None else noise * np.maximum(np.abs(points @ solution.normal / points[:, 2]), 0.1)
         base = _capped(along)
         residual = (points @ solution.normal - solution.distances[face]) * np.sqrt(base)
         scale = mad_sd(residual)
-        relative = np.abs(residual) / max(scale, 1e-9)
-        robust = huber_weights(relative) if step < 8 else tukey_weights(relative)
-        previous, weights = solution, base * robust
-        solution = _solve(points, weights, face, faces, reference, line_like)
-        moved = np.abs(solution.distances - previous.distances).max()
-        if step > 8 and moved < 1e-7 and np.abs(solution.normal - previous.normal).max() < 1e-9:
-            break
-    return solution, weights, scale
+        weights = base * weigh(np.abs(residual) / max(scale, 1e-9))
+        return _solve(points, weights, face, faces, reference, line_like), weights, scale
+
+    weights = _capped(noise)
+    start = _solve(points, weights, face, faces, reference, line_like), weights, 1.0
+    return irls(start, improve, _WEIGHTS, lambda before, now: _settled(before[0], now[0]))
+
+
+def _settled(before: _Solution, now: _Solution) -> bool:
+    moved = np.abs(now.distances - before.distances).max()
+    return bool(moved < 1e-7 and np.abs(now.normal - before.normal).max() < 1e-9)
 
 
 def _capped(sigma: Array) -> Array:

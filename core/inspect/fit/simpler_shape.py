@@ -29,7 +29,7 @@ from core.inspect.uncertainty.error_sources import Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.messages import Message
 from core.model.arrays import Array
-from core.model.robust import huber_weights
+from core.model.robust import Schedule, irls
 from core.scan.surface.cloud import Cloud
 
 _FLAT: Mapping[type[Sphere | Cylinder], Message] = {
@@ -40,10 +40,10 @@ _FLAT: Mapping[type[Sphere | Cylinder], Message] = {
         "surface.flat_no_cylinder", "these points are flat within their noise: no cylinder can be told from them"
     ),
 }
-_ROUNDS = 6
-"""Of the fits: shapes are all but linear so near to their place."""
 _BEYOND = 3.0
 """Standard deviations from which on a stretch counts for less."""
+_WEIGHTS = Schedule(5, huber_at=_BEYOND)
+"""Of the fits after the first: shapes are all but linear so near to their place."""
 _FREE = 1e-12
 """Share of a parameter's information that is added to it, so that those which nothing fixes stay where they are."""
 
@@ -91,8 +91,9 @@ def _explained(shape: Shape, cloud: Cloud, errors: PointErrors) -> _Explained:
     outward = shape.outward(cloud.points, part)
     sources = Sources.of(cloud, outward, np.ones(len(cloud)), part, patches(cloud.uv, part), errors)
     shared = np.hstack([sources.explained, sources.speckle, sources.sweeps])
-    weights, left = np.ones(len(sources.own)), np.inf
-    for _ in range(_ROUNDS):
+
+    def solved(shape: Shape, weights: Array) -> tuple[Shape, Array, float]:
+        """The shape moved, and residuals and what is left before that."""
         design = sources.mean(shape.design(cloud.points, part))
         misfit = sources.mean(shape.misfit(cloud.points, part)) / sources.own
         columns = np.hstack([design, shared]) / sources.own[:, None]
@@ -104,9 +105,12 @@ def _explained(shape: Shape, cloud: Cloud, errors: PointErrors) -> _Explained:
         residuals = misfit - columns @ solution
         of_shared = solution[design.shape[1] :]
         left = float(np.sum(_loss(residuals)) + of_shared @ of_shared)
-        weights = huber_weights(residuals, _BEYOND)
-        shape = shape.moved(solution[: design.shape[1]])
-    return _Explained(left, design.shape[1], len(sources.own))
+        return shape.moved(solution[: design.shape[1]]), residuals, left
+
+    start = solved(shape, np.ones(len(sources.own)))
+    moved, _, left = irls(start, lambda found, weigh: solved(found[0], weigh(found[1])), _WEIGHTS)
+    parameters = moved.design(cloud.points[:1], part[:1]).shape[1]
+    return _Explained(left, parameters, len(sources.own))
 
 
 def _loss(residuals: Array) -> Array:

@@ -37,7 +37,7 @@ from core.inspect.uncertainty.error_sources import GRAZING, Sources
 from core.inspect.uncertainty.point_errors import PointErrors, patches
 from core.messages import Message
 from core.model.arrays import Array
-from core.model.robust import TUKEY, huber_weights, mad_sd, tukey_weights
+from core.model.robust import TUKEY, Schedule, Weigh, irls, mad_sd
 from core.scan.surface.cloud import Cloud
 
 S = TypeVar("S", bound=Shape)
@@ -188,8 +188,9 @@ def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) ->
     parameters = shape.design(points[:1], part[:1]).shape[1] if len(points) else 0
     if len(points) < max(FEWEST, parameters):
         raise too_few(len(points))
-    robust = np.ones(len(points))
-    for round_ in range(ROUNDS):
+
+    def improve(found: tuple[S, Array, float], weigh: Weigh) -> tuple[S, Array, float]:
+        shape = found[0]
         outward = shape.outward(points, part)
         slant = np.maximum(np.abs((outward * points).sum(axis=1)) / points[:, 2], GRAZING)
         base = np.maximum(sigma * slant, 1e-6) ** -2.0
@@ -197,13 +198,14 @@ def _robust(points: Array, sigma: Array, shape: S, part: Parts, tukey: float) ->
         misfit = shape.misfit(points, part)
         relative = np.abs(misfit) * np.sqrt(base)
         relative /= max(mad_sd(relative), 1e-9)
-        robust = huber_weights(relative) if round_ < HUBER_ROUNDS else tukey_weights(relative, tukey)
+        robust = weigh(relative)
         design = shape.design(points, part)
         scaled = design * (base * robust)[:, None]
         step = np.linalg.lstsq(scaled.T @ design, scaled.T @ misfit, rcond=None)[0]
-        shape = shape.moved(step)
-        if round_ > HUBER_ROUNDS and np.abs(step).max() < 1e-8:
-            break
+        return shape.moved(step), robust, float(np.abs(step).max())
+
+    schedule = Schedule(ROUNDS, HUBER_ROUNDS, tukey_at=tukey, counts_from=HUBER_ROUNDS + 1)
+    shape, robust, _ = irls((shape, np.ones(len(points)), np.inf), improve, schedule, lambda _, now: now[2] < 1e-8)
     return shape, robust
 
 

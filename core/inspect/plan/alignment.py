@@ -23,7 +23,7 @@ from core.messages import Message
 from core.model import Pose
 from core.model.arrays import Array
 from core.model.directions import square_to
-from core.model.robust import MAD_TO_SD, TUKEY, mad_sd, tukey_weights
+from core.model.robust import MAD_TO_SD, TUKEY, Schedule, Weigh, irls, mad_sd
 from core.progress import Progress, silent
 from core.scan.surface.triangles import ProximityQuery, Triangles
 
@@ -187,16 +187,18 @@ def _fitted(
 
     `exact` is for a pose that is good already: nearest places without compromise, and no wide cut at first.
     """
-    scale, widest = np.inf, 0.0 if exact else FIRST_CUT * query.size_mm
-    for round_ in range(rounds):
+    widest = 0.0 if exact else FIRST_CUT * query.size_mm
+
+    def improve(found: tuple[Pose, float, bool], weigh: Weigh) -> tuple[Pose, float, bool]:
+        pose = found[0]
         moved = pose.apply(points)
         near = query.nearest(moved, exact_within=0.0 if exact else -np.inf)
         scale = max(mad_sd(near.distance), 1e-6)
         away = moved - near.foot
         length = np.linalg.norm(away, axis=1)
         direction = np.where(length[:, None] > 1e-6, away / np.maximum(length, 1e-6)[:, None], near.normal)
-        cut = max(TUKEY * scale, widest * NARROWER**round_)
-        weight = tukey_weights(length, cut)
+        cut = max(TUKEY * scale, widest * NARROWER**weigh.round)
+        weight = weigh(length, cut)
         middle = moved.mean(axis=0)
         arms = (moved - middle) / query.size_mm
         design = np.hstack([direction, np.cross(arms, direction)])
@@ -207,8 +209,10 @@ def _fitted(
         turn = Rotation.from_rotvec(step[3:]).as_matrix()
         pose = Pose(turn, middle + step[:3] - turn @ middle) @ pose
         settled = np.abs(step[:3]).max() < 1e-5 and np.abs(step[3:]).max() < 1e-7
-        if settled and cut <= TUKEY * scale:
-            break
+        return pose, scale, bool(settled and cut <= TUKEY * scale)
+
+    by_cut = Schedule(rounds, huber=0, tukey_at=1.0)
+    pose, scale, _ = irls((pose, np.inf, False), improve, by_cut, lambda _, now: now[2])
     return pose, scale / MAD_TO_SD
 
 

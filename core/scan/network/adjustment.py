@@ -19,7 +19,7 @@ import numpy as np
 
 from core.model import Fan
 from core.model.arrays import Array
-from core.model.robust import huber_weights, mad_sd, tukey_weights
+from core.model.robust import Schedule
 from core.progress import Progress, silent, steps
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.equations import GRADIENT_FLOOR, Adjustment, Solution
@@ -39,6 +39,8 @@ _SETTLED = 0.02
 """Change from one round to the next below which residuals will change no more."""
 ROUNDS = 12
 """Rounds of reweighting at most: half of them by Huber, half by Tukey, unless they settle sooner."""
+_HUBER_ONLY = Schedule(ROUNDS, huber_at=HUBER_AT)
+_REDESCENDING = Schedule(ROUNDS, ROUNDS // 2, HUBER_AT, REJECT_AT, early=True, settles=2)
 
 # Shares, held by the same tests.
 SILENCED = 0.05
@@ -155,19 +157,12 @@ def solve_planes(equations: Adjustment, progress: Progress = silent) -> tuple[So
 
 def _adjust(equations: Adjustment, progress: Progress, *, redescend: bool) -> Solution:
     """Iterate: the rig's geometry first, then Huber's weights, and only then, if at all, rejection."""
-    solution = equations.start()
-    settled = 0
-    for step in steps(range(ROUNDS), progress, "adjustment", ROUNDS):
-        if settled > redescend:
-            continue
-        size = np.abs(solution.residuals) / max(1.0, mad_sd(solution.residuals))
-        if redescend and (settled or step >= ROUNDS // 2):
-            weights = tukey_weights(size, REJECT_AT)
-        else:
-            weights = huber_weights(size, HUBER_AT)
-        before, solution = solution, equations.improve(solution, weights)
-        settled += bool(np.abs(solution.residuals - before.residuals).max() < _SETTLED)
-    return solution
+    return equations.weighted(
+        _REDESCENDING if redescend else _HUBER_ONLY,
+        scaled=True,
+        settled=lambda before, now: bool(np.abs(now.residuals - before.residuals).max() < _SETTLED),
+        watched=lambda rounds: steps(rounds, progress, "adjustment", ROUNDS),
+    )
 
 
 def _share_silenced(crossings: CrossingTable, weights: Array) -> float:

@@ -20,16 +20,19 @@ Koch, K.-R., Parameter Estimation and Hypothesis Testing in Linear Models (1999)
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.linalg import cho_factor, cho_solve
 from scipy.sparse import csr_array, diags_array, hstack
 
 from core.model import Fan
 from core.model.arrays import Array, set_field
 from core.model.positive_definite import inverse_by
+from core.model.robust import Schedule, Weigh, irls, mad_sd
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.network.geometry import CrossingRays, floored, inverse_depth_gradient, noise_gains
 from core.scan.network.line_errors import LineErrors
@@ -134,6 +137,29 @@ class Adjustment:
         count = len(self.crossings)
         gains = np.full((count, 2), self.typical_gradient)
         return self._solve(np.ones(count), gains, self.geometry.rays, np.zeros(count))
+
+    def weighted(
+        self,
+        schedule: Schedule,
+        start: Solution | None = None,
+        *,
+        kept: NDArray[np.bool_] | None = None,
+        scaled: bool = False,
+        settled: Callable[[Solution, Solution], bool] | None = None,
+        watched: Callable[[range], Iterable[int]] = iter,
+    ) -> Solution:
+        """Solve by robust weights of the residuals: see `irls`.
+
+        Crossings not `kept` (M,) have no weight. `scaled`: residuals count in their own standard deviation where that
+        is above 1, so that noise larger than stated silences none.
+        """
+
+        def improve(found: Solution, weigh: Weigh) -> Solution:
+            size = np.abs(found.residuals) / max(1.0, mad_sd(found.residuals)) if scaled else found.residuals
+            weights = weigh(size)
+            return self.improve(found, weights if kept is None else weights * kept)
+
+        return irls(self.start() if start is None else start, improve, schedule, settled, watched)
 
     def improve(self, before: Solution, weights: Array) -> Solution:
         """Solve one round of the Gauss–Helmert model: gains from `before`, equations taken at the adjusted crossings.

@@ -32,7 +32,7 @@ from core.messages import Message
 from core.model import Camera, Fan
 from core.model.arrays import Array
 from core.model.residuals import over_picture
-from core.model.robust import huber_weights, mad_sd
+from core.model.robust import Schedule, mad_sd
 from core.scan.features.crossings import CrossingTable, Index
 from core.scan.features.frames import FrameFeatures, FrameRecord
 from core.scan.network.adjustment import HUBER_AT, has_collapsed
@@ -53,8 +53,8 @@ FIRM = 5.0
 """Noise of crossings by which they spread beside a straight line at least, or their sheet may turn about it."""
 GRID = (16, 12)
 """Columns and rows of the parts of a picture in which the light of sweeps is compared."""
-_ROUNDS = 6
-"""Rounds of reweighting by Huber: wrong crossings are few among bright pieces."""
+_WEIGHTS = Schedule(6, huber_at=HUBER_AT)
+"""Of reweighting: wrong crossings are few among bright pieces."""
 
 
 Piece = tuple[int, int]
@@ -181,9 +181,7 @@ def _judged(
     equations = Adjustment(
         renumbered, CrossingRays.of(bright, camera), bright_line, fan, len(frames), LineErrors.of(renumbered)
     )
-    solution = equations.start()
-    for _ in range(_ROUNDS):
-        solution = equations.improve(solution, huber_weights(solution.residuals, HUBER_AT))
+    solution = equations.weighted(_WEIGHTS)
     if has_collapsed(equations, solution.pis):  # the part is dark: the bright pieces know nothing of depth
         return np.zeros(len(table)), np.zeros(len(table), dtype=np.bool_)
     covariance = equations.covariance(solution)[0].reshape(len(frames), 3, len(frames), 3)

@@ -12,12 +12,13 @@ free, as on a flat face, the other sweeps fix it.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
-from core.model.robust import huber_weights, tukey_weights
+from core.model.robust import Schedule, irls, tukey_weights
 from core.scan.features.crossings import CrossingTable
 from core.scan.network.adjustment import HUBER_AT, REJECT_AT
 from core.scan.network.equations import GRADIENT_FLOOR
@@ -25,10 +26,9 @@ from core.scan.network.geometry import CrossingRays, floored, inverse_depth_grad
 from core.scan.network.line_errors import SIGMA_FLOOR_PX
 from core.scan.network.sweep_plane import PRIOR_SD, plane_condition
 
-ROUNDS = 5
-"""Of reweighting: by Huber first, by Tukey from _REJECT_FROM on; tests/scan/sweeps/test_one_sweep.py holds them."""
-_REJECT_FROM = 3
-"""Round from which on outliers lose all their weight."""
+_WEIGHTS = Schedule(4, 2, HUBER_AT, REJECT_AT)
+"""Of reweighting: by Huber first, by Tukey when the plane is about right; tests/scan/sweeps/test_one_sweep.py holds
+it."""
 _LEAST_WEIGHT = 1e-4
 """Weight that a crossing keeps at least, so that its variance stays finite."""
 
@@ -71,14 +71,10 @@ def locate_one(crossings: CrossingTable, geometry: CrossingRays, known: KnownPla
     if len(crossings) < 3:
         raise ValueError(f"{len(crossings)} crossings cannot determine a plane")
     equations = _Equations(crossings, geometry, known)
-    own, weights = equations.variances(None), np.ones(len(crossings))
-    for step in range(ROUNDS):
-        pi, covariance = equations.solve(own / np.maximum(weights, _LEAST_WEIGHT))
-        own = equations.variances(pi)
-        residuals = equations.residuals(pi, own)
-        if step < ROUNDS - 1:
-            weights = _weights(residuals, reject=step >= _REJECT_FROM - 1)
-    return OneSweep(pi, covariance, weights, residuals, _condition(geometry, known, weights))
+    first = equations.found(equations.variances(None), np.ones(len(crossings)))
+    found = irls(first, lambda one, weigh: equations.found(one.own, weigh(one.residuals)), _WEIGHTS)
+    condition = _condition(geometry, known, found.weights)
+    return OneSweep(found.pi, found.covariance, found.weights, found.residuals, condition)
 
 
 def judge_plane(
@@ -87,8 +83,18 @@ def judge_plane(
     """Judge a plane that the network has given by the sweep's `crossings`: their weights and residuals."""
     equations = _Equations(crossings, geometry, known)
     residuals = equations.residuals(pi, equations.variances(pi))
-    weights = _weights(residuals, reject=True)
+    weights = tukey_weights(residuals, REJECT_AT)
     return OneSweep(pi, covariance, weights, residuals, _condition(geometry, known, weights))
+
+
+class _Found(NamedTuple):
+    """A plane by the `weights` (M,) of its crossings; their variances and residuals (M,) from it."""
+
+    pi: Array
+    covariance: Array
+    weights: Array
+    own: Array
+    residuals: Array
 
 
 class _Equations:
@@ -111,6 +117,12 @@ class _Equations:
         gradient = inverse_depth_gradient(pi - self._pis, self._jacobians)
         gain_a, gain_b = noise_gains(self._crossings, floored(gradient, GRADIENT_FLOOR * self._typical))
         return np.asarray((gain_a * self._sigma_a) ** 2 + (gain_b * self._sigma_b) ** 2)
+
+    def found(self, variances: Array, weights: Array) -> _Found:
+        """Solve by the variances and weights (M,) of the crossings."""
+        pi, covariance = self.solve(variances / np.maximum(weights, _LEAST_WEIGHT))
+        own = self.variances(pi)
+        return _Found(pi, covariance, weights, own, self.residuals(pi, own))
 
     def solve(self, variances: Array) -> tuple[Array, Array]:
         """π (3,) and its covariance (3, 3)."""
@@ -136,10 +148,3 @@ def _shared(rays: Array, known: KnownPlanes) -> Array:
     among = known.covariance[np.ix_(columns, columns)].reshape(len(rows), 3, len(rows), 3)
     shared[np.ix_(rows, rows)] = np.einsum("mnj,nj->mn", np.einsum("mi,minj->mnj", rays[rows], among), rays[rows])
     return shared
-
-
-def _weights(residuals: Array, *, reject: bool) -> Array:
-    """Huber's weights first, Tukey's from when the plane is about right."""
-    if reject:
-        return tukey_weights(residuals, REJECT_AT)
-    return huber_weights(residuals, HUBER_AT)

@@ -17,7 +17,7 @@ from core.calibrate.camera.reprojection import ray_changes
 from core.image.stripes.centreline import Centreline
 from core.model import Camera
 from core.model.arrays import Array
-from core.model.robust import huber_weights, mad_sd
+from core.model.robust import Schedule, Weigh, irls, mad_sd
 
 CHUNK = 24
 """Neighbouring points judged as one piece: longer than any speckle grain, shorter than any stripe of use."""
@@ -31,8 +31,8 @@ SEEDS = 48
 """A line is searched for through any two of this many chunks."""
 STRAIGHT_PX = 1.5
 """How far in pixels a chunk may be off its line when lines are searched for."""
-HUBER = 2.0
-"""Points further than this many standard deviations from their line lose weight."""
+_WEIGHTS = Schedule(9, huber_at=2.0)
+"""Of reweighting: points further than this many standard deviations from their line lose weight."""
 REJECT = 4.0
 """Points further than this many standard deviations from their line are not on it."""
 
@@ -182,14 +182,17 @@ def _fit(chunks: _Chunks, members: NDArray[np.intp], camera: Camera, shortest: i
     xy, uv = chunks.xy[chosen], chunks.uv[chosen]
     # a floor keeps a few points that claim to be perfect from ruling the line
     sigma = np.maximum(chunks.sigma[chosen], 0.3 * np.median(chunks.sigma[chosen]))
-    weight = 1 / sigma**2
-    for _ in range(10):
-        centre, along, spread = _moments(xy, weight)
-        across = np.array([-along[1], along[0]])
-        off = (xy - centre) @ across
-        scaled = off / (sigma * max(mad_sd(off / sigma), 1e-9))
-        weight = huber_weights(scaled, HUBER) / sigma**2
-    good = np.abs(scaled) < REJECT
+
+    def scaled_by(weight: Array) -> Array:
+        """Distances from the line by these weights, in their standard deviations."""
+        centre, along, _ = _moments(xy, weight)
+        off = (xy - centre) @ np.array([-along[1], along[0]])
+        return np.asarray(off / (sigma * max(mad_sd(off / sigma), 1e-9)))
+
+    def improve(scaled: Array, weigh: Weigh) -> Array:
+        return scaled_by(weigh(scaled) / sigma**2)
+
+    good = np.abs(irls(scaled_by(1 / sigma**2), improve, _WEIGHTS)) < REJECT
     if good.sum() < shortest:
         return None
     xy, uv, sigma, owner = xy[good], uv[good], sigma[good], chunks.owner[chosen][good]
