@@ -10,6 +10,7 @@ from core.errors import InputError
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
 from core.files.project.calibration_store import (
+    FOLDER,
     READJUSTED_FROM,
     keep_planes,
     put_in_place,
@@ -53,7 +54,7 @@ def check_rig(folder: Path, project: Project, progress: Progress = silent) -> In
     out = make_folder(folder / CHECK)
     with alone_in(out), staged(out, "check", FILES) as beside:
         put_in_place(folder, project.accepted, beside)
-        work = Workspace.open(project_set(folder, project), beside, part_name(project))
+        work = Workspace.open(project_set(folder, project), beside, part_name(project), folder / FOLDER)
         air = project.info.air_celsius if project.rig.air.checked is None else None
         return check_step(work, project.options.plane_stripe, progress, air)
 

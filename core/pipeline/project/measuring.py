@@ -11,7 +11,7 @@ from core.errors import InputError
 from core.files.atomic import make_inner_folder
 from core.files.folder_lock import alone_in
 from core.files.json_text import to_json
-from core.files.project.calibration_store import StoredCalibration, put_in_place, read_stored
+from core.files.project.calibration_store import FOLDER, StoredCalibration, put_in_place, read_stored
 from core.files.project.data import Project
 from core.files.project.folder import RESULTS
 from core.files.project.results import ScanSummary
@@ -74,7 +74,7 @@ def measure_scan(
     results = make_inner_folder(folder, RESULTS)
     with noting_results(folder), alone_in(results), staged(results, "scan", _OF_A_SCAN) as new:
         put_in_place(folder, project.accepted, new)
-        work = Workspace.open(recording_set, new, part_name(project))
+        work = Workspace.open(recording_set, new, part_name(project), folder / FOLDER)
         record_calibrations(work, folder, project)
         settings, earlier = project.options.for_scan, _earlier(recording_set, results, project)
         measured = scan_step(work, settings, progress, watch, earlier, seen=seen, beside=beside)

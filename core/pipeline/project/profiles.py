@@ -6,7 +6,7 @@ from pathlib import Path
 
 from core.files.atomic import make_folder
 from core.files.folder_lock import alone_in
-from core.files.project.calibration_store import put_in_place
+from core.files.project.calibration_store import FOLDER, put_in_place
 from core.files.project.data import Project
 from core.files.project.results import ProfilesSummary
 from core.files.step_graph import FILES
@@ -38,7 +38,7 @@ def measure_profiles(
     found, results = project_set(folder, project), folder / PROFILES
     with alone_in(make_folder(results)), staged(results, "profile", FILES) as beside:
         put_in_place(folder, project.accepted, beside)
-        work = Workspace.open(found, beside, part_name(project))
+        work = Workspace.open(found, beside, part_name(project), folder / FOLDER)
         record_calibrations(work, folder, project)
         measured = profile_step(work, project.options.for_scan, tilt, progress)
         report_step(work, progress, lambda content: with_words(content, folder, project))

@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from datetime import datetime
+from functools import partial
 from pathlib import Path
 from typing import NamedTuple
 
@@ -43,6 +44,7 @@ from core.image.stripes.stripe import StripeSettings
 from core.messages import Message
 from core.model import Camera
 from core.model.arrays import Array
+from core.pipeline.steps.kept_features import poses_once
 from core.pipeline.steps.planes_step import measure_poses
 from core.pipeline.steps.stated_change import (
     StatedChange,
@@ -110,7 +112,7 @@ def check_step(
         )
     with work.step("check") as log:
         pictures = log.pictures.of(recording_set)
-        seen = measure_check(pictures, camera, stripe, progress) if poses is None else poses
+        seen = measure_check(pictures, camera, stripe, progress, kept=work.kept) if poses is None else poses
         deviations, evidence, checked, change = judged(recording_set, calibration, seen)
         reasons = [pose.located.reason for pose in checked if pose.located.reason is not None]
         if len(reasons) == len(checked) and not any(pose.misses_fan for pose in checked):
@@ -381,8 +383,11 @@ def check_of_the_day(
     calibration: Calibration,
     stripe: StripeSettings | None = None,
     progress: Progress = silent,
+    kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
     """Target and stripes of the poses of the interim check, () where it says nothing of the day of the scan.
+
+    They are looked for in the folder `kept` first, as by `measure_check`.
 
     Raises
     ------
@@ -392,7 +397,7 @@ def check_of_the_day(
     fresh = fresh_check(pictures.recording_set, calibration.fan)
     if not fresh.check or _days_apart(fresh) > SAME_DAY:
         return ()
-    return measure_check(pictures.of(fresh), calibration.camera.camera, stripe, progress)
+    return measure_check(pictures.of(fresh), calibration.camera.camera, stripe, progress, kept=kept)
 
 
 def measure_check(
@@ -401,8 +406,11 @@ def measure_check(
     stripe: StripeSettings | None = None,
     progress: Progress = silent,
     beside: SecondProcess | None = None,
+    kept: Path | None = None,
 ) -> tuple[PoseFeatures, ...]:
     """Target and stripes of every pose of the interim check; the process `beside` takes some of them.
+
+    Those in the folder `kept` are taken if they are of these very pictures; else they are kept there.
 
     Raises
     ------
@@ -410,7 +418,8 @@ def measure_check(
         If their pictures have another size than the camera's.
     """
     checked = replace(pictures.recording_set, planes=pictures.recording_set.check)
-    return measure_poses(pictures.of(checked), camera, progress, stripe, beside)
+    reader = pictures.of(checked)
+    return poses_once(kept, reader, camera, stripe, partial(measure_poses, reader, camera, progress, stripe, beside))
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

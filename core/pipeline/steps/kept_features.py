@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import asdict
 from pathlib import Path
@@ -17,7 +17,7 @@ from typing import Any
 from core.calibrate.camera.views import SeenViews
 from core.calibrate.fan.poses.pose_features import PoseFeatures
 from core.errors import InputError
-from core.files.atomic import make_inner_folder
+from core.files.atomic import make_folder, make_inner_folder
 from core.files.project.calibration_store import FOLDER
 from core.files.project.data import Project
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
@@ -25,6 +25,7 @@ from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
 from core.files.recording.rig import as_calibrated_with, rig_tables
 from core.files.results.scan_features import FEATURES, read_features, write_features
+from core.image.stripes.stripe import StripeSettings
 from core.model import Camera
 from core.progress import Progress, silent
 from core.scan.features.extraction import ScanFeatures
@@ -89,7 +90,7 @@ def features_key(pictures: PictureReader, settings: Options, camera: Camera) -> 
         "frames": [recording_set.name_of(path) for path in recording_set.frames],
         "pictures": pictures.named_hashes(_pictures(recording_set, settings)),
     }
-    return hashlib.sha256(json.dumps(rests_on).encode()).hexdigest()[:16]
+    return _hash_of(rests_on)
 
 
 def _pictures(recording_set: RecordingSet, settings: Options) -> list[Path]:
@@ -136,6 +137,46 @@ def kept_poses(
         return ()
 
 
+def poses_once(
+    folder: Path | None,
+    pictures: PictureReader,
+    camera: Camera,
+    stripe: StripeSettings | None,
+    measure: Callable[[], tuple[PoseFeatures, ...]],
+) -> tuple[PoseFeatures, ...]:
+    """What the plate's pictures of an interim check showed, kept in a `folder`; measured and kept where it is not.
+
+    `measure` has the `camera` and the `stripe` as well. In a folder that cannot be written to, it is not kept.
+    """
+    if folder is None:
+        return measure()
+    recording_set = pictures.recording_set
+    paths = _pose_pictures(recording_set)
+    pictures.take_hashes(paths)
+    rests_on = {
+        "program": text_hash(_CALIBRATION_ROOMS),
+        "target": as_calibrated_with(rig_tables(recording_set.rig)["plane_target"]),
+        "channel": pictures.laser_channel(recording_set.part_of(paths[0])).channel,
+        "mosaic": recording_set.rig.mosaic,
+        "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
+        "stripe": asdict(stripe) if stripe else None,
+        "pictures": pictures.named_hashes(paths),
+    }
+    key, path = _hash_of(rests_on), folder / "check-found.npz"
+    with suppress(InputError):  # damaged: the pictures are still there
+        if poses := read_poses(path, key):
+            return poses
+    poses = measure()
+    with suppress(InputError):
+        make_folder(folder)
+        write_poses(path, key, poses)
+    return poses
+
+
+def _hash_of(rests_on: dict[str, Any]) -> str:
+    return hashlib.sha256(json.dumps(rests_on, default=str).encode()).hexdigest()[:16]
+
+
 def _path(project_folder: Path, step: str) -> Path:
     return project_folder / FOLDER / f"{step}-found.npz"
 
@@ -164,4 +205,4 @@ def _key(project: Project, step: str, pictures: PictureReader, paths: Sequence[P
     stripe = project.options.plane_stripe
     if step == "planes" and stripe is not None:
         rests_on["stripe"] = [stripe.width_px, stripe.contrast]
-    return hashlib.sha256(json.dumps(rests_on, default=str).encode()).hexdigest()[:16]
+    return _hash_of(rests_on)

@@ -97,7 +97,7 @@ def profile_step(
         channel = log.pictures.laser_channel("scan")
         log.settings.update({**settings.told("scan"), **channel.settings, **_tilt_settings(tilt)})
         looking = replace(feature_options(settings), compression=compression_of(paths[0], channel.channel))
-        check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress)
+        check = check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
         logged = found.log("scan")
         change = since_calibration(found, calibration, check, logged.taken(found.frames))
         section, kept = SectionChange(surely=None), kept_poses_of(work, calibration)

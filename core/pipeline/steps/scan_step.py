@@ -67,7 +67,9 @@ def scan_step(
         solved = solved_scan(features, calibration, solving, progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (
-            check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress) if check is None else check
+            check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
+            if check is None
+            else check
         )
         logged = recording_set.log("scan")
         change_by = partial(since_calibration, recording_set, calibration, checked, logged.taken(recording_set.frames))

@@ -80,17 +80,21 @@ class StepLog:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Workspace:
-    """A recording set and the folder its results go to; `part` names the part if it is not named like the set."""
+    """A recording set and the folder its results go to; `part` names the part if it is not named like the set.
+
+    What the pictures of an interim check showed is kept in the folder `kept`, if there is one.
+    """
 
     recording_set: RecordingSet
     out: Path
     part: str = ""
+    kept: Path | None = None
 
     @classmethod
-    def open(cls, recording_set: RecordingSet, out: Path, part: str = "") -> Workspace:
+    def open(cls, recording_set: RecordingSet, out: Path, part: str = "", kept: Path | None = None) -> Workspace:
         """Make the folder if need be; InputError if nothing can be written there."""
         require_outside(recording_set, out)
-        return cls(recording_set, make_folder(out), part)
+        return cls(recording_set, make_folder(out), part, kept)
 
     def path(self, name: str) -> Path:
         """Where the result `name`, a key of FILES, lies."""

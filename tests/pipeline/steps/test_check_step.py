@@ -25,6 +25,7 @@ from core.files.results.inspection_file import InspectionFile, read_inspection
 from core.files.results.planes_file import planes_id
 from core.files.results.rig_history import QUIET_DAYS, history_file, keep_check, read_history
 from core.files.results.scan_file import read_scan
+from core.image.stripes.stripe import StripeSettings
 from core.inspect.causes import Cause
 from core.inspect.characteristic import Characteristic, thickness_characteristic
 from core.inspect.conformity import Verdict
@@ -120,6 +121,43 @@ def test_the_same_pictures_have_the_same_id_whoever_has_looked_at_them(unchanged
     assert check_step(here).pictures_id == check_step(before, poses=poses).pictures_id
     for work in (here, before):
         assert {name: work.record().inputs.get(name) for name in hashes} == hashes, "and stand among the inputs"
+
+
+def test_what_the_pictures_show_is_kept_and_not_looked_for_again(unchanged, tmp_path, monkeypatch):
+    poses, hashes = check_seen_in(unchanged)
+    work, looks = work_in(unchanged, tmp_path), []
+
+    def look(pictures, *_):
+        looks.append(1)
+        pictures.learn(hashes, {})
+        return poses
+
+    monkeypatch.setattr("core.pipeline.steps.check_step.measure_poses", look)
+    camera = work.calibration().camera.camera
+    other = replace(camera, distortion=2 * camera.distortion)
+
+    def seen(camera, stripe=None, kept=tmp_path / "kept"):
+        pictures = PictureReader(work.recording_set)
+        return measure_check(pictures, camera, stripe, kept=kept), pictures.hashes
+
+    first, again = seen(camera), seen(camera)
+    assert len(looks) == 1 and first[1] == again[1] == hashes, "the hashes of the pictures are known all the same"
+    for before, now in zip(poses, again[0], strict=True):
+        assert (now.name, now.exclusion, now.notes, now.gain) == (
+            before.name, before.exclusion, before.notes, before.gain,
+        )  # fmt: skip
+        assert np.array_equal(now.view.uv, before.view.uv) and np.array_equal(
+            now.view.covariance, before.view.covariance
+        )
+        for mine, theirs in zip(now.centrelines, before.centrelines, strict=True):
+            assert mine.uv.tobytes() == theirs.uv.tobytes() and mine.sigma.tobytes() == theirs.sigma.tobytes()
+    seen(other)
+    seen(camera, StripeSettings(4.0, 80.0))
+    assert len(looks) == 3, "by another camera, or with another stripe, they show something else"
+    seen(camera, kept=None)
+    (tmp_path / "kept" / "check-found.npz").write_bytes(b"torn")
+    seen(camera)
+    assert len(looks) == 5
 
 
 def changed_since(recording_set, calibration):
