@@ -212,7 +212,7 @@ def test_residuals_of_a_view_without_a_pose_are_left_out(qtbot):
 
 def test_a_run_is_told_on_hover_with_its_uncertainty(qtbot):
     plot = shown(qtbot, filled(RunChart))
-    assert plot._tip(1.1, 50.0) == "1: 50.0100 ± 0.0300 mm (k = 2)"
+    assert plot._tip(1.1, 50.0) == "1: 50.010 ± 0.030 mm (k = 2)"
     assert "k = 2" in plot.axis_text("left")
 
 
