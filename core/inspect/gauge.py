@@ -122,7 +122,7 @@ def fit_gauge(
             todo=Message("gauge.advice_exchange_faces", "exchange upper_polygon_px and lower_polygon_px"),
         )
     faces = fit_faces(upper, lower, robust, errors)
-    free = free_faces(cloud, pair, faces.planes, errors)
+    free = free_faces(cloud, pair, faces.planes, errors, progress)
     return GaugeFit(faces, robust, pair, *free, angle_of(*free), _budget(faces, errors))
 
 

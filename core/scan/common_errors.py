@@ -27,6 +27,8 @@ from core.scan.network.read_out import row_planes
 from core.scan.results import ScanResult
 from core.scan.surface.cloud import FAN, Cloud
 from core.scan.sweeps.locate import locate_each, numbered, planes_together
+from core.stage_times import stage
+from core.threads import ordered_map
 
 
 @dataclass(frozen=True, eq=False, slots=True)
@@ -66,9 +68,11 @@ class CommonErrors:
 
     def changes(self, uv: Array, sweep: Index) -> Iterator[Array]:
         """Yield the changes (N, 3) in mm of the points seen at `uv` (N, 2) px in `sweep` (N,) by each displacement."""
-        here = self._points(0, uv, sweep)
+        rays = self._rays(0, uv)
+        here = self._points(0, uv, sweep, rays)
         for row in range(1, 1 + len(self.sources)):
-            yield self._points(row, uv, sweep) - here
+            same = np.array_equal(self.cameras[row], self.cameras[0])
+            yield self._points(row, uv, sweep, rays if same else self._rays(row, uv)) - here
 
     def sigma(self, cloud: Cloud) -> Array:
         """Standard uncertainty (N,) in mm of the depths of a cloud that is due to the calibrations."""
@@ -94,8 +98,10 @@ class CommonErrors:
         coefficients = np.concatenate([still, sweeps])[sweep + len(fan)]
         return row_planes(coefficients, uv[:, 1], self.image_size[1])
 
-    def _points(self, row: int, uv: Array, sweep: Index) -> Array:
-        rays = camera_of(self.cameras[row], self.image_size).rays(uv)
+    def _rays(self, row: int, uv: Array) -> Array:
+        return camera_of(self.cameras[row], self.image_size).rays(uv)
+
+    def _points(self, row: int, uv: Array, sweep: Index, rays: Array) -> Array:
         pis = self.planes(uv, sweep, row)
         if self.bends is not None and self.bends[row].any():
             mine = sweep < 0
@@ -140,10 +146,16 @@ def solve_common(
     crossings, line = numbered(features.crossings, scan.fan_lines)
     crossings, line = crossings.select(scan.of_solved), line[scan.of_solved]
     sweeps = [scan.pis]
-    for number, one in enumerate(deviations):
-        again = solve(crossings, line, one.camera, one.fan, progress=reported.within_step)
-        sweeps.append(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
-        reported("calibration uncertainty", number + 1, len(deviations))
+
+    def solved(one: Deviation) -> Array:
+        with stage(progress, "calibration uncertainty"):
+            again = solve(crossings, line, one.camera, one.fan)
+        return np.asarray(again.pis[np.searchsorted(again.frames, scan.sweep_frames)])
+
+    idle = partial(reported.within_step, "calibration uncertainty", 0, len(deviations))
+    for pis in ordered_map(solved, deviations, idle=idle):
+        sweeps.append(pis)
+        reported("calibration uncertainty", len(sweeps) - 1, len(deviations))
     of_fan = CommonErrors.of_fan(camera, fan, deviations)
     return replace(of_fan, image_size=features.image_size, sweeps=np.array(sweeps))
 

@@ -12,9 +12,11 @@ from core.image.stripes.centreline import Centreline
 from core.pipeline.live.events import ScanDetail
 from core.pipeline.project.calibration import accepted_camera
 from core.pipeline.project.measuring import measure_scan
+from core.pipeline.taken_over import MAKES_SURFACES
 from core.progress import Progress, silent
 from core.scan.preview.shown import FramePreview, cloud_of
 from core.scan.surface.coverage_map import CoverageMap
+from core.second_process import second_process
 
 Watch = Callable[[ScanDetail], None]
 
@@ -29,9 +31,9 @@ def measure_watched(
     InputError
         As `measure_scan`.
     """
-    if watch is None:
-        return measure_scan(folder, project, progress)
-    return measure_scan(folder, project, progress, WatchReporter(accepted_camera(folder, project).image_size, watch))
+    watching = None if watch is None else WatchReporter(accepted_camera(folder, project).image_size, watch)
+    with second_process(MAKES_SURFACES) as beside:  # it starts while the network is solved
+        return measure_scan(folder, project, progress, watching, beside=beside)
 
 
 class WatchReporter:
