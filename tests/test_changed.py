@@ -236,7 +236,7 @@ def test_windows_are_not_tried_on_a_second_python():
 
 
 @pytest.fixture(scope="module")
-def proofs() -> dict[Path, set[str]]:
+def proofs(syntax_trees) -> dict[Path, set[str]]:
     """Those of this project, each with what it rests on."""
     tree = Tree(Path(__file__).parents[1])
     return {path: tree.proof(path) for path in proofs_of()}
