@@ -4,8 +4,8 @@ Draws so many module constants and so many comparisons of `core` at random, by t
 a copy of the checkout, and runs the tests that import its module until one fails: the nearest first, for so many
 seconds at most. A constant is doubled (0 becomes 1), a comparison turned into its opposite.
 
-One seed draws the same from two checkouts whose `core` is the same, so `--root` compares their tests. What is not
-noticed within the time is counted as not noticed: both have the same.
+One seed draws the same from two checkouts whose `core` is the same, so `--root` compares their tests. Where time was
+not enough for all of them, that is told apart from a change that they do not notice.
 """
 
 from __future__ import annotations
@@ -110,7 +110,13 @@ def tests_of(tree: Tree, closures: dict[Path, set[str]], module: str) -> list[Pa
 
 
 def noticed(root: Path, change: Change, tests: list[Path], seconds: float) -> str | None:
-    """The first test that fails by a change, which is made in `root` and taken back; None where none does in time."""
+    """The first test that fails by a change, which is made in `root` and taken back; None where none does.
+
+    Raises
+    ------
+    subprocess.TimeoutExpired
+        If that takes longer.
+    """
     path, end = root / change.path, time.monotonic() + seconds
     text = path.read_text(encoding="utf-8")
     lines = text.split("\n")
@@ -118,10 +124,9 @@ def noticed(root: Path, change: Change, tests: list[Path], seconds: float) -> st
     path.write_text("\n".join(lines), encoding="utf-8")
     try:
         for files in (tests[:NEAREST], tests[NEAREST:]):
-            if files and end > time.monotonic():
-                failed = _first_failure(root, files, end - time.monotonic())
-                if failed:
-                    return failed
+            failed = _first_failure(root, files, end - time.monotonic()) if files else None
+            if failed:
+                return failed
         return None
     finally:
         path.write_text(text, encoding="utf-8")
@@ -130,10 +135,7 @@ def noticed(root: Path, change: Change, tests: list[Path], seconds: float) -> st
 def _first_failure(root: Path, files: list[Path], seconds: float) -> str | None:
     words = (sys.executable, "-m", "pytest", "-x", "-q", "--tb=no", "-p", "no:cacheprovider", *map(str, files))
     around = {**os.environ, "PYTHONPATH": str(root), "QT_QPA_PLATFORM": "offscreen"}
-    try:
-        run = subprocess.run(words, cwd=root, env=around, capture_output=True, text=True, timeout=seconds)
-    except subprocess.TimeoutExpired:
-        return None
+    run = subprocess.run(words, cwd=root, env=around, capture_output=True, text=True, timeout=max(seconds, 0.1))
     if run.returncode in (PASSED, NO_TESTS):
         return None
     said = re.search(r"^(?:FAILED|ERROR) (\S+)", run.stdout, re.MULTILINE)
@@ -148,7 +150,7 @@ def main() -> None:
     asked.add_argument("--seconds", type=float, default=120.0, help="for the tests of one change")
     asked.add_argument("--root", type=Path, default=ROOT, help="the checkout")
     given = asked.parse_args()
-    found = {"constant": 0, "comparison": 0}
+    found, late = {"constant": 0, "comparison": 0}, 0
     of = drawn(given.root, given.seed, given.count)
     with tempfile.TemporaryDirectory(prefix="trisect-mutations-") as folder:
         copy = Path(folder)
@@ -161,11 +163,17 @@ def main() -> None:
         closures = {path: tree.proof(path) for path in files_of_tests(copy)}
         for change in of:
             module = ".".join(change.path.with_suffix("").parts).removesuffix(".__init__")
-            by = noticed(copy, change, tests_of(tree, closures, module), given.seconds)
+            try:
+                by = noticed(copy, change, tests_of(tree, closures, module), given.seconds)
+            except subprocess.TimeoutExpired:
+                late += 1
+                print(f"NO ANSWER IN TIME {change}", flush=True)
+                continue
             found[change.kind] += by is not None
             print(f"{'noticed' if by else 'NOT NOTICED'} {change}" + (f"  by {by}" if by else ""), flush=True)
     for kind, count in found.items():
         print(f"{kind}s: {count} of {sum(one.kind == kind for one in of)} noticed")
+    print(f"no answer in {given.seconds:.0f} s: {late}")
 
 
 if __name__ == "__main__":
