@@ -19,9 +19,11 @@ _KEY = "setting"
 
 @dataclass(frozen=True, slots=True)
 class Number:
-    """A number above `above` and at most `most`; `stated` is what a file that holds another one is told it must be.
+    """A number above `above`, or `also_at` it, and at most `most`.
 
-    In a form it is entered from `least` to `largest`, with so many `decimals`; the arrow keys go on by `step`.
+    `stated` is what a file that holds another one is told that it must be. In a form it is entered from `least` to
+    `largest`, with so many `decimals`; the arrow keys go on by `step`. Where it may be left out, `none` are the words
+    for that, and `first` is where it begins when one is wanted.
     """
 
     above: float
@@ -32,6 +34,9 @@ class Number:
     largest: float
     decimals: int
     step: float
+    none: str = ""
+    first: float | None = None
+    also_at: bool = False
 
 
 @dataclass(frozen=True, slots=True)

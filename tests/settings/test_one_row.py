@@ -1,6 +1,7 @@
 """One row of the table makes a setting: in project.json, on the command line, in run.json, in the form of its page."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -13,8 +14,11 @@ from core.errors import InputError
 from core.files.project.data import ProjectFile, new_project
 from core.files.project.json_form import project_tables, project_text, read_project_text
 from core.files.project.keys import inputs_of
+from core.files.recording.rig import read_rig_tables
+from core.files.toml_text import toml_text
 from core.settings import options
 from core.settings.options import Options, settings_of
+from core.settings.rig import RIG
 from core.settings.setting import Number, rows, rows_within
 
 ROW = """
@@ -162,3 +166,20 @@ def test_settings_that_more_steps_share_stand_behind_a_steps_own():
 def test_a_value_out_of_range_is_refused_wherever_options_are_made():
     with pytest.raises(InputError, match="sigma-cut: 11 is not above 0"):
         replace(Options(), sigma_cut_mm=11)
+
+
+@pytest.mark.parametrize(("table", "key"), [(table, key) for table, settings in RIG.items() for key in settings])
+def test_rig_toml_takes_what_the_form_of_a_setting_lets_one_enter_and_no_more_than_its_row_says(tmp_path, table, key):
+    kind = RIG[table][key].kind
+    beside = {"lines": 3, "angle_deg": 5.0} if table == "laser_fan" else {}
+    beside |= {"nominal_mm": 50.0, "tolerance_mm": 0.2} if table == "gauge" else {}
+
+    def read(value):
+        path = tmp_path / "rig.toml"
+        path.write_text(toml_text({table: {**beside, key: value if kind.decimals else int(value)}}), encoding="utf-8")
+        return getattr(getattr(read_rig_tables(path), table), key)
+
+    assert [read(value) for value in (kind.least, kind.largest, kind.most)] == [kind.least, kind.largest, kind.most]
+    for value in (kind.most + 1, kind.above - (1 if kind.also_at else 0)):
+        with pytest.raises(InputError, match=re.escape(f"not {kind.stated}")):
+            read(value)

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from core.messages import capital
 from core.settings.options import settings_of
-from core.settings.setting import Choice, Number, Row, Setting, Values, rows_within
+from core.settings.rig import RIG
+from core.settings.setting import Choice, Number, Setting, Values, rows_within
 from workbench.language import tr
 from workbench.pages.settings import AUTOMATIC
 from workbench.views.forms.editors import NumberRange
@@ -17,7 +19,13 @@ def add_settings(form: SettingsForm, step: str) -> None:
             form.add_check(AUTOMATIC, tr(row.setting.title), tr(row.setting.help))
         for one in rows_within(row):
             if one.setting.title:
-                _add(form, one, one.setting)
+                add_setting(form, one.key, one.setting)
+
+
+def add_rig_settings(form: SettingsForm, table: str) -> None:
+    """Add a field for each setting of a table of rig.toml."""
+    for key, one in RIG[table].items():
+        add_setting(form, key, one)
 
 
 def set_stripe_editable(form: SettingsForm, automatic: bool) -> None:
@@ -27,14 +35,16 @@ def set_stripe_editable(form: SettingsForm, automatic: bool) -> None:
         form.set_editable(key, not automatic, why)
 
 
-def _add(form: SettingsForm, row: Row, one: Setting) -> None:
-    title, help = tr(one.title), tr(one.help)
+def add_setting(form: SettingsForm, key: str, one: Setting) -> None:
+    """Add the field of one setting."""
+    title, help = capital(tr(one.title)), tr(one.help)
     if isinstance(one.kind, Number):
         kind = one.kind
-        allowed = NumberRange(kind.least, kind.largest, kind.decimals, kind.step, tr(kind.unit))
-        form.add_number(row.key, title, allowed, help)
+        none = tr(kind.none) if kind.none else None
+        allowed = NumberRange(kind.least, kind.largest, kind.decimals, kind.step, tr(kind.unit), none, kind.first)
+        form.add_number(key, title, allowed, help)
     elif isinstance(one.kind, Choice):
         values = (getattr(value, "value", value) for value in one.kind.values)
-        form.add_choice(row.key, title, list(zip(values, map(tr, one.kind.shown), strict=True)), help)
+        form.add_choice(key, title, list(zip(values, map(tr, one.kind.shown), strict=True)), help)
     else:
-        form.add_check(row.key, title, help)
+        form.add_check(key, title, help)

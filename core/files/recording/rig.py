@@ -27,6 +27,8 @@ from core.inspect.uncertainty.part import MATERIALS, Part, TargetTemperature
 from core.messages import Message, label
 from core.model.arrays import Array, frozen_array, set_field
 from core.model.certificate import Certificate
+from core.settings.rig import RIG
+from core.settings.setting import Number
 
 _WRITE_ONE = Message("advice.write_as_in_manual", "write one as the manual shows, page Recording sets and files")
 _MISSING = Message("rig.missing", "the file is missing; it says what the targets and the laser are")
@@ -51,6 +53,16 @@ _UOfAlpha = Annotated[float, Field(ge=0, le=1e-3, allow_inf_nan=False)]
 _A_TEMPERATURE = label("a temperature in °C from −50 to 200")
 _A_TEMPERATURE_DIFFERENCE = label("a temperature, 0 to 200 K")
 _AN_ALPHA = label("an expansion coefficient in 1/K, as 11.5e-6")
+
+
+def _stated(table: str, key: str, default: Any = None) -> Any:
+    """The field of a number that is a row of the settings; without a `default` it must be there."""
+    kind = RIG[table][key].kind
+    assert isinstance(kind, Number)
+    limits: dict[str, Any] = {"ge" if kind.also_at else "gt": kind.above, "le": kind.most}
+    if kind.decimals:
+        limits["allow_inf_nan"] = False
+    return Field(default, description=kind.stated, **limits)
 
 
 class Table(BaseModel):
@@ -190,10 +202,8 @@ TargetTable: TypeAlias = Annotated[_Checkerboard | _Charuco | _CircleGrid | _Bla
 
 
 class _LaserFan(Table):
-    lines: int = Field(ge=1, le=20, description="a whole number from 1 to 20")
-    angle_deg: float | None = Field(
-        None, gt=0, le=45, allow_inf_nan=False, description="an angle between neighbouring lines above 0 and at most 45"
-    )
+    lines: int = _stated("laser_fan", "lines", ...)
+    angle_deg: float | None = _stated("laser_fan", "angle_deg")
 
     @model_validator(mode="after")
     def _angle_of_a_pencil(self) -> _LaserFan:
@@ -211,8 +221,8 @@ class _LaserFan(Table):
 class GaugeTable(Table):
     """[gauge]."""
 
-    nominal_mm: _Length | None = Field(None, description=_A_LENGTH)
-    tolerance_mm: _Length | None = Field(None, description=_A_LENGTH)
+    nominal_mm: float | None = _stated("gauge", "nominal_mm")
+    tolerance_mm: float | None = _stated("gauge", "tolerance_mm")
     upper_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
     lower_polygon_px: _Polygon | None = Field(None, description=_A_POLYGON)
 
@@ -348,9 +358,7 @@ class _Air(Table):
 class _Camera(Table):
     """[camera]: what the camera's data sheet says."""
 
-    row_time_us: float = Field(
-        ge=0, le=1e5, allow_inf_nan=False, description="a time in µs from one row to the next, 0 to 100000"
-    )
+    row_time_us: float = _stated("camera", "row_time_us", ...)
 
 
 class _Channels(Table):
@@ -361,16 +369,14 @@ class _Channels(Table):
     scan: Channel | None = Field(None, description=_A_CHANNEL)
 
 
-_DAYS = Annotated[float, Field(gt=0, le=36500, allow_inf_nan=False)]
 _HOURS = Annotated[float, Field(ge=0, le=24, allow_inf_nan=False)]
-_A_TIME_IN_DAYS = label("a number of days above 0")
 
 
 class _Validity(Table):
     """[validity]: how long a calibration holds, and how long a check of it."""
 
-    calibration_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
-    check_days: _DAYS | None = Field(None, description=_A_TIME_IN_DAYS)
+    calibration_days: float | None = _stated("validity", "calibration_days")
+    check_days: float | None = _stated("validity", "check_days")
     fresh_hours: _HOURS | None = Field(None, description=label("a number of hours, 0 to 24"))
 
 

@@ -31,6 +31,7 @@ from workbench.pages.inspect.part import MATERIAL_NAMES, WITH_U
 from workbench.pages.inspect.picks import Mode, Pick, Span
 from workbench.pages.inspect.presenter import InspectPresenter
 from workbench.pages.inspect.stage import PicksFacts, picks_buttons
+from workbench.pages.setting_fields import add_rig_settings
 from workbench.pages.words import show_facts, wording
 from workbench.step_state import State
 from workbench.theme import icon
@@ -99,19 +100,7 @@ class FacesPanel(QWidget):
         super().__init__(parent)
         self._presenter = presenter
         self.form = SettingsForm()
-        none = tr("none")
-        self.form.add_number(
-            "nominal_mm",
-            tr("Nominal thickness"),
-            NumberRange(0.001, 5000, decimals=4, step=1.0, unit="mm", none_text=none),
-            tr("What the part should be; empty: no verdict."),
-        )
-        self.form.add_number(
-            "tolerance_mm",
-            tr("Tolerance ±"),
-            NumberRange(0.0001, 5000, decimals=4, step=0.01, unit="mm", none_text=none),
-            tr("Largest permitted deviation, to either side."),
-        )
+        add_rig_settings(self.form, "gauge")
         self.form.edited.connect(presenter.faces.set_number)
         self.states = {face: QLabel() for face in FACES}
         self.tools: dict[tuple[str, str], QToolButton] = {}

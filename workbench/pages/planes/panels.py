@@ -16,9 +16,8 @@ from workbench.pages.calibration.stage import Stage
 from workbench.pages.channels import add_channel
 from workbench.pages.planes import words
 from workbench.pages.planes.presenter import PlanesPresenter
-from workbench.pages.setting_fields import add_settings, set_stripe_editable
+from workbench.pages.setting_fields import add_rig_settings, add_settings, set_stripe_editable
 from workbench.pages.words import show_facts
-from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.forms.live_panel import LivePanel
 from workbench.views.layouts import enable, heading, in_column, muted, say
@@ -104,13 +103,7 @@ class LaserForm(SettingsForm):
     def __init__(self, presenter: PlanesPresenter, parent: QWidget | None = None) -> None:
         super().__init__(parent)
         self._presenter = presenter
-        self.add_number("lines", tr("Lines"), NumberRange(1, 9), tr("How many lines the fixed laser draws."))
-        self.add_number(
-            "angle",
-            tr("Angle"),
-            NumberRange(0.1, 45, decimals=3, step=0.1, unit="°", none_text=tr("not stated"), first=5.0),
-            tr("Between neighbouring lines, as its maker states it."),
-        )
+        add_rig_settings(self, "laser_fan")
         add_settings(self, "planes")
         add_channel(self)
         self.edited.connect(self._tell)
@@ -122,18 +115,20 @@ class LaserForm(SettingsForm):
         self.set_values(
             {
                 "lines": rig.lines,
-                "angle": angle,
+                "angle_deg": angle,
                 "channel": rig.channel_of("planes") or "",
                 **self._presenter.option_values(),
             }
         )
         set_stripe_editable(self, options.plane_stripe is None)
         one = tr("One line has no neighbour.") if rig.lines == 1 else ""
-        for key in ("angle", "constrain_fan"):
+        for key in ("angle_deg", "constrain_fan"):
             self.set_editable(key, not one, one)
 
     def _tell(self, key: str, value: Any) -> None:
-        self._presenter.set_laser(key, math.radians(value) if key == "angle" and value is not None else value)
+        if key == "angle_deg":
+            key, value = "angle", None if value is None else math.radians(value)
+        self._presenter.set_laser(key, value)
 
 
 class PlanesResult(Result):

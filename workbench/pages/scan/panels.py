@@ -17,10 +17,10 @@ from core.states import STEP_STATES
 from workbench.language import sentences, text_of, tr
 from workbench.pages.channels import add_channel
 from workbench.pages.scan import words
-from workbench.pages.scan.presenter import VALIDITY, ScanPresenter
+from workbench.pages.scan.presenter import ScanPresenter
 from workbench.pages.scan.stability import STABILITY, drift_key, usual_per_kelvin
 from workbench.pages.scan.stage import Stage
-from workbench.pages.setting_fields import add_settings, set_stripe_editable
+from workbench.pages.setting_fields import add_rig_settings, add_settings, set_stripe_editable
 from workbench.pages.whole import EVERYTHING
 from workbench.pages.words import count, show_facts, sigma
 from workbench.views.forms.editors import NumberRange
@@ -121,12 +121,7 @@ class SettingsPanel(QWidget):
         add_settings(form, "scan")
         add_channel(form)
         form.add_section(tr("Shutter of the camera"))
-        form.add_number(
-            "row_time_us",
-            tr("Time from row to row"),
-            NumberRange(0.0, 1e5, decimals=2, step=1.0, unit="µs", none_text=tr("assumed"), first=0.0),
-            tr("0: a global shutter. Empty: not known, a global one is assumed."),
-        )
+        add_rig_settings(form, "camera")
         form.add_section(tr("Since its calibration the rig may have changed by"))
         for one in STABILITY:
             allowed = NumberRange(
@@ -142,13 +137,7 @@ class SettingsPanel(QWidget):
             form.add_number(one.key, tr(one.name), allowed, tip)
         self._add_drift(form)
         form.add_section(tr("How long calibration and check hold"))
-        for key, label, usual in VALIDITY:
-            form.add_number(
-                key,
-                capital(tr(label)),
-                NumberRange(0.1, 36500.0, decimals=1, step=1.0, unit=tr("days"), none_text=tr("no limit"), first=usual),
-                tr("What is recorded later proves nothing; empty: no limit."),
-            )
+        add_rig_settings(form, "validity")
         form.edited.connect(presenter.set_setting, Qt.ConnectionType.QueuedConnection)
         in_column(form, on=self)
 

@@ -14,11 +14,11 @@ from core.files.project.data import Project
 from core.files.project.keys import changed, inputs_of
 from core.files.recording.recording_set import CHECK
 from core.image.stripes.stripe import StripeSettings
-from core.messages import label
 from core.pipeline.live.events import LiveEnded, LiveView, ScanDetail
 from core.pipeline.live.rig_check import rig_check
 from core.scan.features.frames import FrameRecord
 from core.settings.options import Options
+from core.settings.rig import RIG
 from core.states import OUT_OF_DATE
 from workbench.bench import Bench
 from workbench.language import tr
@@ -37,12 +37,6 @@ from workbench.pages.settings import changed_options, values_of
 from workbench.pages.sources import folder_of, put_source, scan_begins_live
 from workbench.pages.whole import MeasuringAll
 from workbench.step_state import State
-
-VALIDITY: tuple[tuple[str, str, float], ...] = (
-    ("calibration_days", label("Calibration"), 30.0),
-    ("check_days", label("check"), 1.0),
-)
-"""Key, name, and where it starts when a limit is first stated, in days."""
 
 
 class ScanPresenter(StepPresenter):
@@ -259,7 +253,7 @@ class ScanPresenter(StepPresenter):
         return {
             **values_of("scan", self.project.options, self._stripe_found),
             **stability.rig_shown(rig),
-            **{key: getattr(rig.validity, key) for key, *_ in VALIDITY},
+            **{key: getattr(rig.validity, key) for key in RIG["validity"]},
             "row_time_us": rig.row_time_us,
             "channel": rig.channel_of("scan") or "",
         }
@@ -278,7 +272,7 @@ class ScanPresenter(StepPresenter):
             after = replace(self.project, rig=replace(self.project.rig, row_time_us=value))
             self.model.edit(tr("change what is known of the camera's shutter"), after, f"scan {field}")
             return
-        if any(field == key for key, *_ in VALIDITY):
+        if field in RIG["validity"]:
             rig = self.project.rig
             after = replace(self.project, rig=replace(rig, validity=replace(rig.validity, **{field: value})))
             self.model.edit(tr("change how long calibration and check hold"), after, f"scan {field}")

@@ -325,16 +325,16 @@ def test_the_laser_is_changed_in_its_form_and_undone(page: PlanesPage, qtbot: An
     page.refreshing.at_once()
     assert page.presenter.project.rig.lines == 1
     page.refreshing.at_once()
-    assert not page.laser.editor("angle").isEnabled()
-    assert page.laser.editor("angle").toolTip() == "One line has no neighbour."
+    assert not page.laser.editor("angle_deg").isEnabled()
+    assert page.laser.editor("angle_deg").toolTip() == "One line has no neighbour."
     page.presenter.model.undo_stack.undo()
     page.refreshing.at_once()
     assert page.laser.values()["lines"] == 3
-    assert page.laser.editor("angle").isEnabled()
-    page.laser.edited.emit("angle", None)
+    assert page.laser.editor("angle_deg").isEnabled()
+    page.laser.edited.emit("angle_deg", None)
     page.refreshing.at_once()
     assert page.presenter.project.rig.angle == 0.0
-    assert page.laser.values()["angle"] is None
+    assert page.laser.values()["angle_deg"] is None
 
 
 def test_the_plate_is_chosen_in_its_form(page: PlanesPage, qtbot: Any) -> None:
