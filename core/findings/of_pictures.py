@@ -43,6 +43,11 @@ ROWS = (
             "shines there (gloss), or the exposure is too long. Nothing is measured there, and points beside it may "
             "be off: expose {stops:g} EV less, add second exposures that much shorter (NAME@2.png beside NAME.png), "
             "or spray the part matt."),
+    Finding("scan.bright_in_part", Weight.CAUTION, Effect.NONE,
+            "{fan:.1f} % of the fan's points and {sweeps:.1f} % of the hand-held laser's are saturated, here and there "
+            "along stripes that are bright all over: the exposure is too long for what is nearest to the laser or "
+            "faces it. Nothing is measured there: expose {stops:g} EV less, or add second exposures that much shorter "
+            "(NAME@2.png beside NAME.png)."),
     Finding("scan.brightness_changed", Weight.CAUTION, Effect.NONE,
             "The brightness of {n} of {all} frames, the first {name}, differs from that of the reference by up to "
             "{percent:.0f} %, as with automatic exposure or a laser that is not steady: taken off by the fan's light. "

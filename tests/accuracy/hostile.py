@@ -106,10 +106,10 @@ def _measured(case: HostileCase, place: Path, folder: Path) -> Figures:
         scan_step(work)
         gauge_step(work)
     except InputError as refused:
-        first = list(dict.fromkeys([*codes_in(refused.what), *_told(out)]))
+        first = list(dict.fromkeys([*codes_in(refused.what), *told_codes(out)]))
         return {"refused": refused.code, "told": sorted(first), "first": first}
     gauge = read_gauge(work.path("gauge"), read_cloud(work.path("cloud")).cloud)
-    first = _told(out)
+    first = told_codes(out)
     return {
         "error": gauge.thickness_mm - scenario.height_mm,
         "U": gauge.U_mm,
@@ -130,7 +130,7 @@ def codes_in(what: Message) -> list[str]:
     return found
 
 
-def _told(out: Path) -> list[str]:
+def told_codes(out: Path) -> list[str]:
     """Codes of the notes of all steps whose results are in the folder `out`, the gravest first, as they are read."""
     notes = gravest_first(note for notes in read_run(out / "run.json").notes.values() for note in notes)
     return list(dict.fromkeys(code for note in notes for code in (*_compared(note), note.code)))

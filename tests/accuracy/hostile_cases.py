@@ -223,7 +223,7 @@ CAUSES: Mapping[str, tuple[str, ...]] = {
     "a shadow that passes": (LIGHT,),
     "the rig warms within the scan": (*CHANGED, *DRIFT, "scan.fan_shifted"),
     "the rig warmed since its calibration": CHANGED,
-    "exposed too long, blooming": ("scan.overexposed", "fan.saturated_stripes"),
+    "exposed too long, blooming": ("scan.overexposed", "scan.bright_in_part", "fan.saturated_stripes"),
     "automatic exposure": ("scan.brightness_changed", "fan.brightness_changed"),
     "camera's target bowed": ("camera.bowed_target", "fan.bow_not_as_camera"),
     "plane target bowed": ("fan.bowed_target", "fan.bow_or_bend", "fan.bow_beyond_flatness"),

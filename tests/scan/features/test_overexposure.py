@@ -79,5 +79,14 @@ def test_sweeps_that_saturate_where_they_cross_the_fan_are_not_said_to_shine():
     assert notes_on_shine(seen.fan, sweeps, 255.0) == ()
 
 
+def test_a_stripe_that_is_saturated_at_its_grains_all_along_does_not_shine():
+    """A matt table near the laser is lit the more: path-traced, 4 to 5 % of the fan's points were called gloss."""
+    seen = features_of(RIG)
+    bright = [replace(piece, saturated=np.arange(len(piece.saturated)) % 12 == 0) for piece in seen.fan]
+    (note,) = notes_on_shine(bright, (), 255.0)
+    assert note.code == "scan.bright_in_part"
+    assert "matt" not in str(note)
+
+
 def test_a_scan_that_is_refused_as_overexposed_is_not_said_to_shine_as_well():
     assert shine_in(features_far_too_bright()) == ()
