@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +13,7 @@ from core.files.project.keys import STEPS, left_to_do
 from core.messages import label
 from workbench.bench import Bench
 from workbench.language import printed, text_of, tr
+from workbench.reasons import first, why
 from workbench.work import jobs
 from workbench.work.tasks import Task
 
@@ -22,35 +23,22 @@ EDIT = "whole job"
 """What it accepts is one edit, undone as a whole."""
 
 
-@dataclass(frozen=True, slots=True)
-class WholeFacts:
-    """What *Measure everything* rests on."""
+def why_not_measure_all(*, running: bool, live: bool, left: frozenset[str], scan_chosen: bool, read_only: bool) -> str:
+    """Why not everything can be measured now; `left` are the steps that are not up to date.
 
-    running: bool
-    """It is being done, or waits for its turn."""
-    live: bool
-    """A live source is on, or what it recorded is still being put into the project."""
-    left: frozenset[str]
-    """The steps that are not up to date."""
-    scan_chosen: bool
-    """Pictures of a scan are chosen."""
-    read_only: bool
-    """Nothing can be written into the project."""
-
-
-def why_not_measure_all(facts: WholeFacts) -> str:
-    """Why not everything can be measured now."""
-    if facts.running:
-        return tr("Everything is being measured.")
-    if facts.live:
-        return tr("Stop the live source first.")
-    if not facts.left:
-        return tr("Everything is done.")
-    if facts.read_only:
-        return tr("The project is read-only: go on in a copy (File, Save a copy).")
-    if "scan" in facts.left and not facts.scan_chosen:
-        return tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan.")
-    return ""
+    `running`: it is being done, or waits for its turn. `live`: a live source is on, or what it recorded is still being
+    put into the project. `scan_chosen`: pictures of a scan are. `read_only`: nothing can be written into the project.
+    """
+    return first(
+        why(running, tr("Everything is being measured.")),
+        why(live, tr("Stop the live source first.")),
+        why(not left, tr("Everything is done.")),
+        why(read_only, tr("The project is read-only: go on in a copy (File, Save a copy).")),
+        why(
+            "scan" in left and not scan_chosen,
+            tr("Choose or record the pictures first: of the camera target, of the plane target, of the scan."),
+        ),
+    )
 
 
 class MeasuringAll(QObject):
@@ -79,14 +67,13 @@ class MeasuringAll(QObject):
     def cannot_start(self) -> str:
         """Why nothing can be done now, or ""."""
         model = self._model
-        facts = WholeFacts(
+        return why_not_measure_all(
             running=self.running,
             live=self._bench.live.busy or model.is_recording,
             left=frozenset(left_to_do(model.project, model.results)),
             scan_chosen=bool(model.project.sources.scan),
             read_only=model.is_read_only,
         )
-        return why_not_measure_all(facts)
 
     def start(self) -> None:
         """Do it."""

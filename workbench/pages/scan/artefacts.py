@@ -13,7 +13,7 @@ from core.files.results.rig_history import CheckChart
 from core.study.artefact_check import KINDS, Artefact, ArtefactCheck, ArtefactKind
 from workbench.bench import Bench
 from workbench.language import text_of, tr
-from workbench.pages.scan.stage import CompareFacts, why_not_compare
+from workbench.pages.scan.stage import why_not_compare
 from workbench.step_state import State
 from workbench.work import jobs
 from workbench.work.tasks import Task
@@ -72,14 +72,13 @@ class KnownArtefacts(QObject):
         """Why nothing of the thickness, "gauge", or of the plan, "inspection", can be compared."""
         project, results = self._model.project, self._model.results
         scan = self._model.states["scan"].state
-        facts = CompareFacts(
+        return why_not_compare(
             comparing=self._task is not None,
             measuring=self._measuring(),
             cannot_write=self._bench.cannot_write,
             measured=step in results,
             outdated=scan is State.OUTDATED or not up_to_date(step, project, results),
         )
-        return why_not_compare(facts)
 
     def compare(self, artefact: Artefact, characteristic: str = "") -> None:
         """Compare this characteristic with its certificate; the rig's history keeps the result."""

@@ -15,8 +15,8 @@ from core.report.facts.pictures import left_out
 from core.settings.options import StatedTilt
 from workbench.bench import Bench
 from workbench.language import text_of, tr
-from workbench.pages.scan.stage import ProfilesFacts, why_not_profiles
 from workbench.pages.words import fact_lines
+from workbench.reasons import first, why
 from workbench.views.forms.editors import NumberRange
 from workbench.views.forms.form import SettingsForm
 from workbench.views.layouts import enable, muted
@@ -124,7 +124,7 @@ class ProfilesPanel(QWidget):
     def _enable(self) -> None:
         enable(
             self.measure,
-            why_not_profiles(ProfilesFacts(self._task is not None, self._cannot)),
+            first(why(self._task, tr("The pictures are being measured.")), self._cannot),
             tr("Each picture shows the fan alone and the part; no hand-held laser is needed"),
         )
 

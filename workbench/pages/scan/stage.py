@@ -11,6 +11,7 @@ from typing import NamedTuple
 
 from core.states import OUT_OF_DATE
 from workbench.language import tr
+from workbench.reasons import first, why
 
 
 class Stage(StrEnum):
@@ -182,41 +183,12 @@ def check_buttons(facts: CheckFacts) -> CheckButtons:
     )
 
 
-@dataclass(frozen=True, slots=True)
-class CompareFacts:
-    """What comparing a measured length with a known artefact rests on."""
-
-    comparing: bool
-    measuring: bool
-    """The scan is being measured."""
-    cannot_write: str
-    measured: bool
-    """There is such a length."""
-    outdated: bool
-    """It is not what the project would give now."""
-
-
-def why_not_compare(facts: CompareFacts) -> str:
-    """Why a length cannot be compared with an artefact."""
-    reasons = (
-        (facts.comparing, tr("An artefact is being compared.")),
-        (facts.measuring, tr("The scan is being measured.")),
-        (bool(facts.cannot_write), facts.cannot_write),
-        (not facts.measured, tr("Measure the artefact first, like a part.")),
-        (facts.outdated, tr(OUT_OF_DATE["scan"])),
+def why_not_compare(*, comparing: bool, measuring: bool, cannot_write: str, measured: bool, outdated: bool) -> str:
+    """Why a length that was `measured`, and is not `outdated`, cannot be compared with an artefact."""
+    return first(
+        why(comparing, tr("An artefact is being compared.")),
+        why(measuring, tr("The scan is being measured.")),
+        cannot_write,
+        why(not measured, tr("Measure the artefact first, like a part.")),
+        why(outdated, tr(OUT_OF_DATE["scan"])),
     )
-    return next((why for true, why in reasons if true), "")
-
-
-@dataclass(frozen=True, slots=True)
-class ProfilesFacts:
-    """What measuring by the fixed lines alone rests on."""
-
-    measuring: bool
-    cannot: str
-    """Why the scan cannot be measured: without the same things these pictures cannot."""
-
-
-def why_not_profiles(facts: ProfilesFacts) -> str:
-    """Why nothing can be measured by the fixed lines."""
-    return tr("The pictures are being measured.") if facts.measuring else facts.cannot

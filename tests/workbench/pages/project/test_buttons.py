@@ -1,19 +1,30 @@
 """Every state of *Measure everything*: it follows from plain facts."""
 
 from itertools import product
+from typing import NamedTuple
 
 import pytest
 
-from workbench.pages.whole import WholeFacts, why_not_measure_all
+from workbench.pages.whole import why_not_measure_all
 
 BOTH = (False, True)
 LEFT = tuple(map(frozenset, ((), ("report",), ("scan", "gauge", "report"), ("camera", "scan", "report"))))
-STATES = [WholeFacts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
+
+
+class Facts(NamedTuple):
+    running: bool
+    live: bool
+    left: frozenset[str]
+    scan_chosen: bool
+    read_only: bool
+
+
+STATES = [Facts(*values) for values in product(BOTH, BOTH, LEFT, BOTH, BOTH)]
 
 
 @pytest.mark.parametrize("facts", STATES)
-def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: WholeFacts) -> None:
-    why = why_not_measure_all(facts)
+def test_everything_is_measured_where_something_is_left_and_can_be_done(facts: Facts) -> None:
+    why = why_not_measure_all(**facts._asdict())
     idle = not facts.running and not facts.live
     possible = bool(facts.left) and not facts.read_only and (facts.scan_chosen or "scan" not in facts.left)
     assert bool(why) != (idle and possible)

@@ -1,16 +1,14 @@
 """Every state of the Check card, and of fixed lines alone: the buttons follow from plain facts."""
 
 from itertools import product
+from typing import Any
 
 import pytest
 
 from workbench.pages.scan.stage import (
     CheckFacts,
-    CompareFacts,
-    ProfilesFacts,
     check_buttons,
     why_not_compare,
-    why_not_profiles,
 )
 
 BOOLS, WHY = (False, True), ("", "why not")
@@ -42,12 +40,10 @@ def test_what_can_be_done_on_the_check_card(facts: CheckFacts) -> None:
     assert bool(can.compare) == bool(facts.taking or facts.cannot_compare)
 
 
-@pytest.mark.parametrize("facts", [CompareFacts(*v) for v in product(BOOLS, BOOLS, WHY, BOOLS, BOOLS)], ids=str)
-def test_what_is_compared_with_an_artefact_is_measured_up_to_date_and_kept(facts: CompareFacts) -> None:
-    free = not (facts.comparing or facts.measuring or facts.cannot_write)
-    assert bool(why_not_compare(facts)) == (not free or facts.outdated or not facts.measured)
-
-
-@pytest.mark.parametrize("facts", [ProfilesFacts(*v) for v in product(BOOLS, WHY)], ids=str)
-def test_the_fixed_lines_are_measured_once_and_only_with_what_a_scan_needs(facts: ProfilesFacts) -> None:
-    assert bool(why_not_profiles(facts)) == bool(facts.measuring or facts.cannot)
+@pytest.mark.parametrize("states", list(product(BOOLS, BOOLS, WHY, BOOLS, BOOLS)), ids=str)
+def test_what_is_compared_with_an_artefact_is_measured_up_to_date_and_kept(states: tuple[Any, ...]) -> None:
+    comparing, measuring, cannot_write, measured, outdated = states
+    why = why_not_compare(
+        comparing=comparing, measuring=measuring, cannot_write=cannot_write, measured=measured, outdated=outdated
+    )
+    assert bool(why) == bool(comparing or measuring or cannot_write or outdated or not measured)

@@ -18,6 +18,7 @@ from workbench.bench import Bench
 from workbench.language import tr
 from workbench.pages.inspect.faces import InspectFaces
 from workbench.pages.inspect.scan import InspectScan
+from workbench.reasons import first, why
 from workbench.step_state import State
 from workbench.work import jobs
 
@@ -63,22 +64,20 @@ def repeats_buttons(facts: RepeatsFacts) -> RepeatsButtons:
 
 
 def _why_not_add(facts: RepeatsFacts) -> str:
-    if facts.no_surface:
-        return facts.no_surface
-    if facts.stale:
-        return tr("The scan is being read.")
-    if not facts.thickness:
-        return tr("Measure the thickness first.")
-    if facts.scan_old:
-        return tr(OUT_OF_DATE["scan"])
-    if facts.outdated:
-        return tr(OUT_OF_DATE["gauge"])
-    if facts.among:
-        return tr(
-            "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
-            "pictures again says nothing about how well the measurement repeats."
-        )
-    return ""
+    return first(
+        facts.no_surface,
+        why(facts.stale, tr("The scan is being read.")),
+        why(not facts.thickness, tr("Measure the thickness first.")),
+        why(facts.scan_old, tr(OUT_OF_DATE["scan"])),
+        why(facts.outdated, tr(OUT_OF_DATE["gauge"])),
+        why(
+            facts.among,
+            tr(
+                "This scan is among the repeats already. A repeat is another scan of the part: measuring the same "
+                "pictures again says nothing about how well the measurement repeats."
+            ),
+        ),
+    )
 
 
 class InspectRepeats(QObject):
