@@ -63,8 +63,7 @@ def scan_step(
     with work.step("scan") as log:
         features = scan_features(log.pictures, calibration, settings, progress, watch, earlier, seen)
         log.settings.update({**settings.told("scan"), **log.pictures.laser_channel("scan").settings})
-        solving = settings.solving(recording_set.rig.row_time_us)
-        solved = solved_scan(features, calibration, solving, progress)
+        solved = solved_scan(features, calibration, settings.solving(recording_set.rig.row_time_us), progress)
         shaped = begin_surface((solved.scan.cloud, features.image_size), progress, beside)
         checked = (
             check_of_the_day(log.pictures, calibration, settings.plane_stripe, progress, work.kept)
