@@ -121,7 +121,7 @@ def test_people_are_told_in_lines(rig, result, monkeypatch):
     ("words", "part"),
     [
         (["--scans", 0], "--scans"),
-        (["--sigma-cut", 0], "--sigma-cut"),
+        (["--sigma-cut", 0], "sigma-cut: 0 is not above 0 and at most 10 mm"),
     ],
 )
 def test_an_absurd_option_is_refused_in_one_sentence(rig, words, part):
