@@ -30,7 +30,7 @@ STEMS = {
     "left out": {"de": "ausgelassen", "zh_CN": "剔除"},
     "not measured": {"de": "nicht gemessen|nicht als .* gemessen", "zh_CN": "未测量|未被测量|未作为.*测得"},
     "interrupted": {"de": "unterbrochen", "zh_CN": "中断"},
-    "paused": {"de": "angehalten", "zh_CN": "暂停"},
+    "paused": {"de": "paus", "zh_CN": "暂停"},
 }
 """What any text that says a state in English has in the other languages."""
 

@@ -38,7 +38,7 @@ ROWS = (
             "the poses scatter by {scatter:.2f} mm, {times:.0f} times their noise, which the planes' uncertainty "
             "contains: is the target curled, its size as stated, the camera well calibrated?"),
     Finding("fan.channels_differ", Weight.CAUTION, Effect.WIDENS_U,
-            "by the {channel} channel alone the light planes lie {mm:.2f} mm off those in use (RMS), {times:.1f} times "
+            "by the {channel} channel alone the laser planes lie {mm:.2f} mm off those in use (RMS), {times:.1f} times "
             "what both leave uncertain, which the planes' uncertainty contains: expose so that no channel saturates, "
             "and record without compression"),
     Finding("fan.readjusted", Weight.INFORMATION, Effect.NONE,

@@ -21,6 +21,7 @@ WIDENED = {
     "target.flatness_assumed": Cause.FAN_ASSUMED,
     "target.size_assumed": Cause.SCALE_ASSUMED,
     "target.sizes_disagree": Cause.SCALE,
+    "fan.channels_differ": Cause.FAN_CALIBRATION,
     "fan.poses_scatter": Cause.FAN_CALIBRATION,
     "fan.bowed_target": Cause.FAN_CALIBRATION,
     "fan.bow_or_bend": Cause.BENT_LIGHT,

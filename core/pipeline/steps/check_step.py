@@ -419,7 +419,8 @@ def measure_check(
     """
     checked = replace(pictures.recording_set, planes=pictures.recording_set.check)
     reader = pictures.of(checked)
-    return poses_once(kept, reader, camera, stripe, partial(measure_poses, reader, camera, progress, stripe, beside))
+    measure = partial(measure_poses, reader, camera, progress, stripe, beside)
+    return poses_once(kept, reader, camera, stripe, measure, progress)
 
 
 def _told(pose: CheckedPose) -> CheckedPicture:

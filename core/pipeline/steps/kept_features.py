@@ -143,6 +143,7 @@ def poses_once(
     camera: Camera,
     stripe: StripeSettings | None,
     measure: Callable[[], tuple[PoseFeatures, ...]],
+    progress: Progress = silent,
 ) -> tuple[PoseFeatures, ...]:
     """What the plate's pictures of an interim check showed, kept in a `folder`; measured and kept where it is not.
 
@@ -152,7 +153,7 @@ def poses_once(
         return measure()
     recording_set = pictures.recording_set
     paths = _pose_pictures(recording_set)
-    pictures.take_hashes(paths)
+    pictures.take_hashes(paths, progress)
     rests_on = {
         "program": text_hash(_CALIBRATION_ROOMS),
         "target": as_calibrated_with(rig_tables(recording_set.rig)["plane_target"]),
