@@ -15,6 +15,11 @@ _NONE_SHARE = 4
 """A difference of nothing is this part of the largest grey value: noise below it is not cut off."""
 
 
+def has_colours(picture: NDArray[Any]) -> bool:
+    """Whether a picture has colours: neither (height, width) alone, nor grey with or without alpha."""
+    return picture.ndim == 3 and picture.shape[2] >= 3
+
+
 def saturated_in(picture: NDArray[Any], channel: Channel | None) -> NDArray[np.bool_]:
     """(height, width) True where a colour picture is saturated in anything that `to_grey` makes of it."""
     names = PLAIN_CHANNELS if channel is None else channel.split("-")

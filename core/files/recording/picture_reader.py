@@ -8,9 +8,9 @@ from contextlib import suppress
 from itertools import chain, islice
 from pathlib import Path
 
-from core.acquire.channel import PLAIN_CHANNELS, Channel, PlainChannel, is_difference
+from core.acquire.channel import Channel, is_difference
 from core.acquire.folder import read_ahead
-from core.acquire.grey import to_grey
+from core.acquire.grey import has_colours, to_grey
 from core.errors import InputError
 from core.files.pictures import Picture, decode_colours
 from core.files.reading import file_hash, read_bytes
@@ -69,25 +69,25 @@ class PictureReader:
         InputError
             If it is damaged or unreadable; names the file.
         """
-        data = read_bytes(path)
-        self.hashes[self.recording_set.name_of(path)] = hashlib.sha256(data).hexdigest()
-        part, rig = self.recording_set.part_of(path), self.recording_set.rig
+        part = self.recording_set.part_of(path)
         if part == "camera":
-            return self._decoded_target(data, path, rig.channel_of("camera"))
-        return to_grey(decode_colours(data, path, rig.mosaic), self.laser_channel(part).channel)
+            return self._decoded_target(self._hashed(path), path, self.recording_set.rig.channel_of("camera"))
+        return to_grey(self.read_colours(path), self.laser_channel(part).channel)
 
-    def read_channels(self, path: Path) -> Mapping[PlainChannel, Picture]:
-        """Read one picture of the set in each of its channels; none of a grey one.
+    def read_colours(self, path: Path) -> Picture:
+        """Read one picture of a laser as its file has it, grey or (H, W, 3), and take its hash.
 
         Raises
         ------
         InputError
             As `read`.
         """
-        picture = decode_colours(read_bytes(path), path, self.recording_set.rig.mosaic)
-        if picture.ndim < 3 or picture.shape[2] < 3:
-            return {}
-        return {channel: to_grey(picture, channel) for channel in PLAIN_CHANNELS}
+        return decode_colours(self._hashed(path), path, self.recording_set.rig.mosaic)
+
+    def _hashed(self, path: Path) -> bytes:
+        data = read_bytes(path)
+        self.hashes[self.recording_set.name_of(path)] = hashlib.sha256(data).hexdigest()
+        return data
 
     def read_further(self, path: Path, number: int) -> Picture | None:
         """As `read` the further exposure of this number of a picture; None if there is none."""
@@ -199,7 +199,7 @@ def _best_channel(recording_set: RecordingSet, part: str) -> LaserChannel:
             dark = None if off is None else decode_colours(read_bytes(off), off, mosaic)
         except InputError:
             continue  # told when it is measured
-        if lit.ndim < 3 or lit.shape[2] < 3:
+        if not has_colours(lit):
             return LaserChannel()
         same = dark is not None and dark.shape == lit.shape
         pictures.append(LitPicture(lit, dark if same else None, data))

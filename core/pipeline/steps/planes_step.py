@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
 
-from core.acquire.channel import Channel, is_difference
+from core.acquire.channel import PLAIN_CHANNELS, is_difference
+from core.acquire.grey import has_colours, to_grey
 from core.calibrate.fan.calibration import FanOptions, fit_fan
 from core.calibrate.fan.poses.plane_pose import Beside, measure_plane_pose
 from core.calibrate.fan.poses.pose_features import PoseFeatures, usual_stripe
@@ -155,11 +156,13 @@ def _measure(
     pictures = PictureReader(recording_set, channels)
     try:
         with stage(progress, "decoding"):
-            on = pictures.read(pair.on)
-            off = pictures.read(pair.off) if pair.off is not None else None
-            beside = _beside(pictures, pair)
+            lit = pictures.read_colours(pair.on)
+            unlit = pictures.read_colours(pair.off) if pair.off is not None else None
+            beside = _beside(pictures, pair, lit, unlit)
     except InputError as error:
         return PoseFeatures(pair.name, None, (), error.reason), pictures.hashes, ((), None)
+    channel = pictures.laser_channel(recording_set.part_of(pair.on)).channel
+    on, off = to_grey(lit, channel), None if unlit is None else to_grey(unlit, channel)
     pixels = tuple(pixels_of(picture) for picture in (on, off) if picture is not None)
     features = _pose_features(pictures, camera, stripe, pair, (on, off, beside), progress)
     ratio = None if off is None else light_off_over_on(on, off)
@@ -186,8 +189,8 @@ def _pose_features(
         return measure_plane_pose(pair.name, on, off, rig.plane_target, camera, stripe, rig.plane_margin_mm, beside)
 
 
-def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
-    """What there is of a pose beside its two pictures."""
+def _beside(pictures: PictureReader, pair: PlanePair, lit: Picture, unlit: Picture | None) -> Beside:
+    """What there is of a pose beside its two pictures, which are `lit` and `unlit` as their files have them."""
     part = pictures.recording_set.part_of(pair.on)
     channel = pictures.laser_channel(part).channel
     compression, further = compression_of(pair.on, channel), list[tuple[Picture, Picture | None]]()
@@ -196,24 +199,25 @@ def _beside(pictures: PictureReader, pair: PlanePair) -> Beside:
         if on is not None:
             further.append((on, None if pair.off is None else pictures.read_further(pair.off, number)))
     sites = pictures.sites(part)
-    others = _other_channels(pictures, pair, channel) if part == "planes" else {}
+    others = _other_channels(pictures, pair, lit, unlit) if part == "planes" else {}
     if not is_difference(channel) and sites == ALL_SITES:
         return Beside(None, compression, further, others=others)
-    unlit = pictures.read_target(pair.off) if pair.off is not None else None
-    return Beside((pictures.read_target(pair.on), unlit), compression, further, sites, others)
+    dark = pictures.read_target(pair.off) if pair.off is not None else None
+    return Beside((pictures.read_target(pair.on), dark), compression, further, sites, others)
 
 
 def _other_channels(
-    pictures: PictureReader, pair: PlanePair, channel: Channel | None
+    pictures: PictureReader, pair: PlanePair, lit: Picture, unlit: Picture | None
 ) -> Mapping[str, tuple[Picture, Picture, Compression]]:
     """A pair of colour pictures in each channel but the one in use; nothing of raw ones: most sites do not see it."""
-    if pair.off is None or pictures.recording_set.rig.mosaic is not None:
+    raw = pictures.recording_set.rig.mosaic is not None
+    if raw or unlit is None or not (has_colours(lit) and has_colours(unlit)) or lit.dtype != unlit.dtype:
         return {}
-    on, off = pictures.read_channels(pair.on), pictures.read_channels(pair.off)
+    used = pictures.laser_channel("planes").channel
     return {
-        other: (on[other], off[other], compression_of(pair.on, other))
-        for other in on.keys() & off.keys() - {channel}
-        if on[other].dtype == off[other].dtype
+        channel: (to_grey(lit, channel), to_grey(unlit, channel), compression_of(pair.on, channel))
+        for channel in PLAIN_CHANNELS
+        if channel != used
     }
 
 

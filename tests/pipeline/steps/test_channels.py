@@ -4,6 +4,8 @@ import cv2
 import numpy as np
 import pytest
 
+from core.files.pictures import decode_colours
+from core.files.recording import picture_reader
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import open_set
 from core.pipeline.steps.planes_step import measure_poses, solve_planes
@@ -32,6 +34,22 @@ def in_colour(folder, to, aside_px):
 
 def test_of_grey_pictures_there_are_no_other_channels(tiny_set):
     assert all(pose.others == {} for pose in measure_poses(PictureReader(open_set(tiny_set)), CAMERA))
+
+
+@pytest.mark.parametrize("make", [lambda folder, _: open_set(folder), lambda folder, to: in_colour(folder, to, 0.0)])
+def test_each_picture_of_a_pose_is_decoded_once_in_grey_and_in_colour(tiny_set, tmp_path, monkeypatch, make):
+    found = make(tiny_set, tmp_path / "set")
+    pictures = PictureReader(found)
+    pictures.laser_channel("planes")  # looks at three of them
+    decoded = []
+
+    def decode(data, path, *mosaic):
+        decoded.append(path.name)
+        return decode_colours(data, path, *mosaic)
+
+    monkeypatch.setattr(picture_reader, "decode_colours", decode)
+    measure_poses(pictures, CAMERA)
+    assert sorted(decoded) == sorted(path.name for pair in found.planes for path in (pair.on, pair.off))
 
 
 @pytest.mark.parametrize(("aside_px", "told"), [(0.0, False), (1.0, True)])
