@@ -61,6 +61,7 @@ def _type(one: Setting) -> Any:
     """What Typer makes of the word typed."""
     if isinstance(one.kind, Number):
         return float
-    if not isinstance(one.kind, Choice) or None in one.kind.values:
+    if not isinstance(one.kind, Choice) or True in one.kind.values:
         return bool
-    return one.kind.type or Enum(one.title or "Word", {str(value): value for value in one.kind.values}, type=str)
+    words = {str(value): value for value in one.kind.values if value is not None}
+    return one.kind.type or Enum(one.title or "Word", words, type=str)

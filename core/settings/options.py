@@ -257,7 +257,7 @@ class Options:
     channel: Channel | None = field(
         default=None,
         metadata=described(
-            Choice(CHANNELS),
+            Choice((None, *CHANNELS)),
             steps=("planes", "check", "scan", "profile"),
             flag=Flag(
                 "--channel",

@@ -139,7 +139,7 @@ class Setting:
         if isinstance(self.kind, Number):
             possible = self.kind.above < value <= self.kind.most
         elif isinstance(self.kind, Choice):
-            possible = value is None or value in self.kind.values
+            possible = value in self.kind.values
         return None if possible or self.refused is None else self.refused(value)
 
 

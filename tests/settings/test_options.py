@@ -30,6 +30,8 @@ def test_options_can_be_compared():
 def test_absurd_options_are_refused():
     with pytest.raises(InputError, match="method: 'magic' is not network or three-crossings"):
         Options("magic")
+    with pytest.raises(InputError, match="method: None is not network or three-crossings"):
+        Options(None)
     with pytest.raises(InputError, match="sigma-cut: 11 is not above 0 and at most 10 mm"):
         Options(sigma_cut_mm=11)
 

@@ -56,7 +56,7 @@ def _checked(row: Row) -> tuple[Any, Any]:
     elif isinstance(kind, Choice):
         if kind.type is not None:
             return kind.type, Field(default=row.default, strict=False, description=kind.stated)
-        if None in kind.values:  # true, false, or as it is best
+        if True in kind.values:  # true, false, or as it is best
             return bool | None, row.default
         allowed = Literal[kind.values]
     elif isinstance(kind, Names):
