@@ -81,19 +81,20 @@ def with_shape(
     used, counted = counted_observations(observed, verdicts)
     if not len(fit.free) or len(used) < LEAST_VIEWS:
         return fit, flat, verdicts
-    freedom = freedom_of(counted, free_parameters(options))
+    free = free_parameters(options)
+    freedom = freedom_of(counted, free)
     bundle = flat
     try:
         for _ in range(_SHAPE_STEPS):
             before = fit.values
-            fit = fit.step(bundle.of_views(used), counted, free_parameters(options), freedom)
-            bundle = _fit(bundle, fit.shaped(observed), verdicts, free_parameters(options))
+            fit = fit.step(bundle.of_views(used), counted, free, freedom)
+            bundle = _fit(bundle, fit.shaped(observed), verdicts, free)
             if (np.abs(fit.values - before)[fit.free] < _SHAPE_SETTLED * tolerance.sd[fit.free]).all():
                 break
         unsure = False
         if tolerance.flatness_mm is None:
-            covariance, _ = fit.covariance(bundle.of_views(used), counted, free_parameters(options), freedom)
-            unsure = not fit.shape(covariance, len(free_parameters(options))).surely_bowed
+            covariance, _ = fit.covariance(bundle.of_views(used), counted, free, freedom)
+            unsure = not fit.shape(covariance, len(free)).surely_bowed
     except np.linalg.LinAlgError:
         unsure = True
     if unsure:

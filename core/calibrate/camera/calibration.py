@@ -133,20 +133,20 @@ def _calibrated(
     observed = _observed([views[index] for index in usable])
     homographies = [found for found in screened if not isinstance(found, Message)]
 
-    bundle = start_of(homographies, observed, image_size, options)
+    free, bundle = free_parameters(options), start_of(homographies, observed, image_size, options)
     progress(_STEP, 1, _STAGES)
     if options.outliers != "keep":
-        bundle = refine_robustly(bundle, observed, free_parameters(options))
+        bundle = refine_robustly(bundle, observed, free)
     progress(_STEP, 2, _STAGES)
     bundle, verdicts = solve_judged(bundle, observed, options)
     if options.skew is None:
         used, counted = counted_observations(observed, verdicts)
-        if not skew_helps(bundle.of_views(used), counted, free_parameters(options)):
+        if not skew_helps(bundle.of_views(used), counted, free):
             return _calibrated(views, image_size, replace(options, skew=False), tolerance, progress, skew_left_out=True)
     fit, bundle, verdicts = with_shape(bundle, verdicts, observed, options, tolerance)
     if options.k3 is None and not options.fixed & {"k1", "k2"}:
         used, counted = counted_observations(observed, verdicts)
-        found = third_radial(bundle.of_views(used), fit.shaped(counted), free_parameters(options))
+        found = third_radial(bundle.of_views(used), fit.shaped(counted), free)
         if found is not None:  # the skew is judged again with it
             again = replace(options, skew=None if skew_left_out else options.skew, k3=True)
             calibration = _calibrated(views, image_size, again, tolerance, progress)
@@ -157,14 +157,13 @@ def _calibrated(
     progress(_STEP, 3, _STAGES)
     used, counted = counted_observations(observed, verdicts)
     solved = bundle.of_views(used)
-    covariance, shape, widening = _covariance(solved, counted, free_parameters(options), fit)
+    covariance, shape, widening = _covariance(solved, counted, free, fit)
     if skew_left_out:
-        covariance = _with_skew(covariance, solved, counted, free_parameters(options), fit)
+        covariance = _with_skew(covariance, solved, counted, free, fit)
     progress(_STEP, 4, _STAGES)
     fits = {index: (pose, verdict) for index, pose, verdict in zip(usable, bundle.poses, verdicts, strict=True)}
     qualities = view_qualities(views, reasons, bundle.camera, fits, shape)
-    summary = _summary(qualities, solved, fit.shaped(counted), covariance, free_parameters(options))
-    calibration = replace(summary, board=shape)
+    calibration = replace(_summary(qualities, solved, fit.shaped(counted), covariance, free), board=shape)
     calibration = replace(calibration, converged=has_settled(calibration))
     progress(_STEP, _STAGES, _STAGES)
     of_fit = () if calibration.converged else (note_of("camera.not_converged"),)

@@ -93,7 +93,7 @@ def form_zone(
     known[field.shape[1] : field.shape[1] + design.shape[1]] = 0.0
     wanted = np.eye(len(known))[:, : field.shape[1]]
     solved = cho_solve(cho_factor(information + np.diag(known)), wanted)
-    of_field = weights * (solved.T @ np.hstack([others, sources.speckle, sources.sweeps]).T)
+    of_field = weights * (solved.T @ sources.effects(others).T)
     aside = design[place] @ np.linalg.pinv(design[place])  # the surface itself is no form
     to_places = (np.eye(len(place)) - aside) @ field[place]
     predict = to_places @ of_field

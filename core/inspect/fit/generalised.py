@@ -85,7 +85,7 @@ def generalised_fit(design: Array, misfit: Array, sources: Sources, wanted: Arra
     The noise of `wanted` (q, p) · β limits how far what is only assumed takes part; None: that of each of β.
     """
     others = np.hstack([design, sources.measured, sources.form])
-    effects = np.hstack([others, sources.speckle, sources.sweeps])
+    effects = sources.effects(others)
     fixed, forms = design.shape[1], slice(others.shape[1] - sources.form.shape[1], others.shape[1])
     prior = np.repeat([0.0, 1.0], [fixed, effects.shape[1] - fixed])
     weights, factor, scale = np.ones(len(misfit)), np.ones(2), np.ones(effects.shape[1])

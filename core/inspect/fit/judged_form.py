@@ -218,7 +218,7 @@ def judge_form(cloud: Cloud, left: Left, part: Parts, places: Places, errors: Po
     residuals = Residuals(
         stretches.misfit, stretches.expected, group, stretches.cell, places.number * (int(part.max(initial=0)) + 1)
     )
-    shared = np.hstack([sources.common, sources.speckle, sources.sweeps])
+    shared = sources.effects(sources.common)
 
     def information(others: Array, weight: Array) -> Array:
         return sources.information(np.hstack([others, sources.common]), weight)

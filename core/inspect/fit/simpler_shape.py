@@ -90,7 +90,7 @@ def _explained(shape: Shape, cloud: Cloud, errors: PointErrors) -> _Explained:
     part = np.zeros(len(cloud), dtype=np.int64)
     outward = shape.outward(cloud.points, part)
     sources = Sources.of(cloud, outward, np.ones(len(cloud)), part, patches(cloud.uv, part), errors)
-    shared = np.hstack([sources.explained, sources.speckle, sources.sweeps])
+    shared = sources.effects(sources.explained)
 
     def solved(shape: Shape, weights: Array) -> tuple[Shape, Array, float]:
         """The shape moved, and residuals and what is left before that."""

@@ -152,8 +152,12 @@ class Sources:
             else Cause.LIGHT_FROM_BELOW,
         )
 
+    def effects(self, others: Array) -> Array:
+        """A = [`others` (J, q), `speckle`, `sweeps`], (J, n)."""
+        return np.hstack([others, self.speckle, self.sweeps])
+
     def information(self, others: Array, weight: Array) -> Array:
-        """Aᵀ W A (n, n) of A = [`others` (J, q), `speckle`, `sweeps`]; `weight` (J,) is the diagonal of W."""
+        """Aᵀ W A (n, n) of the `effects` A; `weight` (J,) is the diagonal of W."""
         of_swept, of_fan = self.information_of_each(others, weight)
         return of_swept + of_fan
 
@@ -163,7 +167,7 @@ class Sources:
         All of a sweep's stretches follow its few numbers only, so that as many rows stand for them.
         """
         fan, swept = np.flatnonzero(self.of_fan), np.flatnonzero(~self.of_fan)
-        rows = np.hstack([one[fan] for one in (others, self.speckle, self.sweeps)]) * np.sqrt(weight[fan])[:, None]
+        rows = self.effects(others)[fan] * np.sqrt(weight[fan])[:, None]
         weighted = weight[swept, None] * others[swept]
         planes = _triangles(self.on_planes[swept], weight[swept]) @ self.planes
         across = (self.on_planes[swept].T @ weighted).T @ self.planes

@@ -23,7 +23,7 @@ from core.files.project.data import Project
 from core.files.recording.features_file import read_poses, read_views, write_poses, write_views
 from core.files.recording.picture_reader import PictureReader
 from core.files.recording.recording_set import RecordingSet
-from core.files.recording.rig import as_calibrated_with, rig_tables
+from core.files.recording.rig import Rig, as_calibrated_with, rig_tables
 from core.files.results.scan_features import FEATURES, read_features, write_features
 from core.image.stripes.stripe import StripeSettings
 from core.model import Camera
@@ -154,16 +154,10 @@ def poses_once(
     recording_set = pictures.recording_set
     paths = _pose_pictures(recording_set)
     pictures.take_hashes(paths, progress)
-    rests_on = {
-        "program": text_hash(_CALIBRATION_ROOMS),
-        "target": as_calibrated_with(rig_tables(recording_set.rig)["plane_target"]),
-        "channel": pictures.laser_channel(recording_set.part_of(paths[0])).channel,
-        "mosaic": recording_set.rig.mosaic,
-        "camera": [camera.matrix.tolist(), camera.distortion.tolist()],
-        "stripe": asdict(stripe) if stripe else None,
-        "pictures": pictures.named_hashes(paths),
-    }
-    key, path = _hash_of(rests_on), folder / "check-found.npz"
+    of_camera = [camera.matrix.tolist(), camera.distortion.tolist()]
+    part = recording_set.part_of(paths[0])
+    key = _key(pictures, recording_set.rig, ("plane_target", part), paths, of_camera, stripe)
+    path = folder / "check-found.npz"
     with suppress(InputError):  # damaged: the pictures are still there
         if poses := read_poses(path, key):
             return poses
@@ -183,27 +177,36 @@ def _path(project_folder: Path, step: str) -> Path:
 
 
 def _views_key(project: Project, pictures: PictureReader) -> str:
-    return _key(project, "camera", pictures, pictures.recording_set.camera)
+    return _key(pictures, project.rig, ("camera_target", "camera"), pictures.recording_set.camera)
 
 
 def _poses_key(project: Project, pictures: PictureReader) -> str:
-    return _key(project, "planes", pictures, _pose_pictures(pictures.recording_set), project.accepted.camera)
+    paths, stripe = _pose_pictures(pictures.recording_set), project.options.plane_stripe
+    return _key(pictures, project.rig, ("plane_target", "planes"), paths, project.accepted.camera, stripe)
 
 
 def _pose_pictures(recording_set: RecordingSet) -> list[Path]:
     return recording_set.pictures_of(recording_set.planes)
 
 
-def _key(project: Project, step: str, pictures: PictureReader, paths: Sequence[Path], camera: str = "") -> str:
+def _key(
+    pictures: PictureReader,
+    rig: Rig,
+    of: tuple[str, str],
+    paths: Sequence[Path],
+    camera: object = "",
+    stripe: StripeSettings | None = None,
+) -> str:
+    """What the features of a target's pictures rest on; the target's table in rig.toml, and the part they are `of`."""
+    target, part = of
     rests_on: dict[str, Any] = {
         "program": text_hash(_CALIBRATION_ROOMS),
-        "target": as_calibrated_with(rig_tables(project.rig)["camera_target" if step == "camera" else "plane_target"]),
-        "channel": pictures.laser_channel(step).channel,
+        "target": as_calibrated_with(rig_tables(rig)[target]),
+        "channel": pictures.laser_channel(part).channel,
         "mosaic": pictures.recording_set.rig.mosaic,
         "camera": camera,
         "pictures": pictures.named_hashes(paths),
     }
-    stripe = project.options.plane_stripe
-    if step == "planes" and stripe is not None:
+    if stripe is not None:
         rests_on["stripe"] = [stripe.width_px, stripe.contrast]
     return _hash_of(rests_on)
