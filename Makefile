@@ -68,7 +68,7 @@ offscreen: $(READY)
 
 # Files of tests; pytest would take no file for all.
 BELOW_WORKBENCH = --ignore=tests/workbench
-below_workbench: $(READY) ## every test but those of windows: what another Python than that of `make test` has to pass
+below_workbench: compile   ## every test but those of windows: what another Python than that of `make test` has to pass
 	@# 5: there are only proofs in these files
 	$(if $(strip $(BELOW_WORKBENCH)),QT_QPA_PLATFORM=offscreen $(BIN)/pytest -p tests.time_left $(SIDE_BY_SIDE) $(BELOW_WORKBENCH) || [ $$? -eq 5 ])
 

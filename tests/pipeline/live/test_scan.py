@@ -32,6 +32,7 @@ from core.pipeline.live.events import (
     LiveUnplugged,
     LiveView,
 )
+from core.pipeline.live.warm_up import get_ready_for_live
 from core.scan.features.extraction import read_reference
 from core.simulate.recording import scan_of
 from core.simulate.scenario import Scenario
@@ -59,6 +60,8 @@ class Stage:
 
 @pytest.fixture(scope="module")
 def stage():
+    """With all compiled that a preview needs: the first look would outlast a recording of a second."""
+    get_ready_for_live(np.uint8)
     return Stage()
 
 
