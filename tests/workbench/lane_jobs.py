@@ -54,6 +54,11 @@ def deaf(progress: Progress) -> None:
     time.sleep(60)
 
 
+def past_its_last_look(progress: Progress) -> str:
+    time.sleep(0.3)
+    return "written"
+
+
 def unsendable(progress: Progress) -> Any:
     return lambda: None
 

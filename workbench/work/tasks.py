@@ -52,7 +52,7 @@ class Task(QObject):
         return cast(Lane, self.parent())
 
     def cancel(self) -> None:
-        """Ask the job to stop; it does within a second."""
+        """Ask the job to stop; it does within a second, unless it is done by then."""
         self.lane.cancel(self)
 
     def send(self, command: Any) -> None:
@@ -69,7 +69,7 @@ class Task(QObject):
 
     def conclude(self, kind: Kind, value: Any = None) -> None:
         """The job is over: tell the answer to its receiver."""
-        self.succeeded = kind is Kind.DONE and not self.cancelling
+        self.succeeded = kind is Kind.DONE  # even if Cancel was pressed: what is on the disk now is the new result
         try:
             if self.succeeded:
                 self.done.emit(value)

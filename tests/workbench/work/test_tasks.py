@@ -198,6 +198,18 @@ def test_cancel_acts_soon_even_on_a_job_that_does_not_listen(qtbot: Any, lane: L
     assert answers.got[-1] == ("done", 10)
 
 
+def test_a_job_that_was_done_before_it_heard_of_the_cancel_is_told_as_done(qtbot: Any, lane: Lane) -> None:
+    answers = Answers()
+    answers.run(lane, "double", 1)
+    finish(qtbot, lane)
+    task = answers.run(lane, "past_its_last_look")
+    qtbot.wait(100)
+    task.cancel()
+    finish(qtbot, lane)
+    assert answers.got[1:] == [("done", "written")]
+    assert task.succeeded
+
+
 def test_a_waiting_job_can_be_cancelled_before_it_begins(qtbot: Any, lane: Lane) -> None:
     answers = Answers()
     answers.run(lane, "double", 1)
