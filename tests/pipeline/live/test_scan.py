@@ -17,6 +17,7 @@ from core.files.recording.rig import Rig
 from core.image.targets import BlackSquare, Checkerboard
 from core.pipeline.live import checks as live_checks
 from core.pipeline.live import preview as live_preview
+from core.pipeline.live import recorded_features
 from core.pipeline.live import session as live
 from core.pipeline.live.commands import Configure, Mark, Pause, Resume, Stop, Switch, TakeReference
 from core.pipeline.live.events import (
@@ -63,6 +64,12 @@ def stage():
     """With all compiled that a preview needs: the first look would outlast a recording of a second."""
     get_ready_for_live(np.uint8)
     return Stage()
+
+
+@pytest.fixture(autouse=True)
+def no_features(monkeypatch):
+    """Every recording is too short for its features to be kept beside it: tests/pipeline/live/test_recorded_features.py."""
+    monkeypatch.setattr(recorded_features, "LOOK_AHEAD", 10**9)
 
 
 def scan(monkeypatch, folder, stage, source, window, **choices):
