@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import cv2
@@ -9,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from core.model.arrays import Array
+from core.scan.surface.cloud import FAN, Cloud
 
 CELL_MM = 0.5
 """Side of a cell: below the spacing of stripes on a usual scan, so that a face's edge is found to half a cell."""
@@ -51,6 +53,38 @@ class Region:
         # Distances run to the centre of the first empty cell; the edge lies half a cell nearer.
         inner = (depth_in - 0.5) * laid.cell >= margin_mm
         return cls(near[inner[laid.row, laid.column]], float(inner.sum()) * laid.cell**2)
+
+
+def region_on(
+    cloud: Cloud, near: NDArray[np.int64], normal: Array, margin_mm: float, smallest_part: float = SMALL_PART
+) -> Region:
+    """The region of a face that the points `near` (n,) of a cloud lie on, less a margin.
+
+    A face that no sweep reaches is known by the fan's lines alone, and these lie as far apart as the rig has them: what
+    is between two of them is no edge. Where several lines see it, each is cut by the margin at its own ends, and stands
+    for the narrowest gap that counts as covered.
+    """
+    region = Region.of(cloud.points, near, normal, margin_mm, smallest_part)
+    swept = bool(np.any(cloud.sweep[region.indices] > FAN))
+    lines = np.unique(cloud.sweep[near][cloud.sweep[near] <= FAN])
+    if swept or len(lines) < 2:
+        return region
+    pieces = [piece for line in lines for piece in _pieces(cloud.points, near[cloud.sweep[near] == line])]
+    longest = max(float(along[-1]) for _, along in pieces)
+    kept, length = [near[:0]], 0.0
+    for indices, along in pieces:
+        end = float(along[-1]) - margin_mm
+        if along[-1] >= smallest_part * longest and end > margin_mm:
+            kept.append(indices[(along >= margin_mm) & (along <= end)])
+            length += end - margin_mm
+    return Region(np.sort(np.concatenate(kept)), length * 2 * SMALLEST_GAP_MM)
+
+
+def _pieces(points: Array, line: NDArray[np.int64]) -> Iterator[tuple[NDArray[np.int64], Array]]:
+    """The contiguous pieces of one line of the fan, and the way in mm from the begin of each to its points."""
+    steps = np.linalg.norm(np.diff(points[line], axis=0), axis=1)
+    for piece in np.split(np.arange(len(line)), np.flatnonzero(steps > 2 * SMALLEST_GAP_MM) + 1):
+        yield line[piece], np.concatenate([[0.0], np.cumsum(steps[piece[:-1]])])
 
 
 def connected_with(

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from core.errors import InputError, OwnCause
-from core.inspect.face_region import Region, inside_polygon
+from core.inspect.face_region import inside_polygon, region_on
 from core.inspect.fit.plane_search import (
     FEWEST_POINTS,
     POINT_CLOUD,
@@ -276,5 +276,5 @@ def face_inside(cloud: Cloud, inside: NDArray[np.bool_], *, margin_mm: float = 1
     if plane is None:
         return np.empty(0, dtype=np.int64)
     near = points_on(cloud, plane, tolerance)
-    face = Region.of(cloud.points, near, plane.normal, margin_mm, smallest_part=0.0)
+    face = region_on(cloud, near, plane.normal, margin_mm, smallest_part=0.0)
     return face.indices[inside[face.indices]]

@@ -70,6 +70,30 @@ def test_points_near_the_edges_are_left_out(scan):
         assert HALF - margin - 1.5 < outermost < HALF - margin + 0.5
 
 
+@pytest.mark.parametrize("outlined", [False, True])
+def test_a_table_that_no_sweep_reaches_is_known_by_the_lines_of_the_fan(scan, outlined):
+    """They lie farther apart than any gap between stripes; each is cut at its own ends."""
+    cloud = scan.measure(np.random.default_rng(3), noise=1e-4, plane_errors=False)
+    seen = cloud.select(scan.upper | (cloud.sweep <= FAN))
+    beside = np.array([[-HALF, HALF], [HALF, HALF], [HALF, scan.reach], [-HALF, scan.reach]])
+    pair = find_faces(seen)
+    if outlined:
+        pair = faces_in_polygons(seen, scan.polygons[0], pixels(TABLE_MM * NORMAL + beside @ axes()))
+    on_table = seen.select(pair.lower)
+    assert set(on_table.sweep.tolist()) == {FAN, FAN - 1, FAN - 2}
+    assert np.abs(heights(seen, pair.lower)).max() < 0.1
+    along = on_table.points @ axes()[1]
+    assert scan.reach - 1.5 - 2 * 0.45 < np.abs(along).max() <= scan.reach - 1.5
+    assert len(pair.lower) > (0.4 if outlined else 0.8) * np.count_nonzero(~scan.upper & (cloud.sweep <= FAN))
+
+
+def test_a_table_that_one_line_alone_reaches_is_no_face(scan):
+    """What lies on one line lies in its plane of light as well."""
+    cloud = scan.measure(np.random.default_rng(3))
+    with pytest.raises(InputError, match="plane face is in view"):
+        find_faces(cloud.select(scan.upper | (cloud.sweep == FAN)))
+
+
 def test_wrong_points_do_not_matter(scan):
     cloud = scan.measure(np.random.default_rng(2), outliers=0.15)
     pair = find_faces(cloud)

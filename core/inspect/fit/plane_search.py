@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial import cKDTree
 
-from core.inspect.face_region import Region
+from core.inspect.face_region import Region, region_on
 from core.messages import Message
 from core.model.arrays import Array
 from core.progress import Progress, silent
@@ -134,7 +134,7 @@ def largest_plane(cloud: Cloud, tolerance: float, margin_mm: float, seed: int) -
         finalists.append((_vote(oriented, area, normal, distance, tolerance), normal, distance))
     for vote, normal, distance in sorted(finalists, key=lambda one: -one[0]):
         on = np.flatnonzero(_on_plane(cloud, normal, distance, tolerance))
-        region = Region.of(cloud.points, on, normal, margin_mm)
+        region = region_on(cloud, on, normal, margin_mm)
         if vote > 0 and len(region.indices):  # nothing may be left of a plane that slants through stairs
             return FoundPlane(normal, distance, region)
     return None
