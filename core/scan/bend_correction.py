@@ -47,7 +47,7 @@ def reconstruct_twice(
     options: ReconstructOptions | None = None,
     progress: Progress = silent,
 ) -> tuple[ScanFeatures, ScanResult]:
-    """Solve the scan, and again where its surface bends; returns the features it rests on in the end, and the solution.
+    """Solve the scan, and once more where its surface bends; return the features last used, and the solution.
 
     By the paper's method it is solved once, as the paper does.
 

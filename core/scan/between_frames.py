@@ -19,7 +19,7 @@ class Between(NamedTuple):
 
 
 def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message, ...]:
-    """When something moved, in order; `names` are the frames'.
+    """List when something moved, in order of time; `names` are the names of the frames.
 
     Examples
     --------
@@ -38,7 +38,7 @@ def between(names: Sequence[str], movements: Iterable[Between]) -> tuple[Message
 
 
 def each_once(of_light: Sequence[Between], of_crossings: Sequence[Between]) -> tuple[Between, ...]:
-    """All movements in order, one that light and crossings both tell as the light has it: it sees more frames.
+    """Merge two lists of movements in order; one in both is taken from the fan's light, which sees more frames.
 
     Examples
     --------

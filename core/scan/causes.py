@@ -83,7 +83,7 @@ class _Candidate:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Normal:
-    """What crossings say of the numbers of all candidates, the network's unknowns eliminated.
+    """Normal equations of the crossings for the numbers of all candidates, the network's unknowns eliminated.
 
     Parameters
     ----------
@@ -118,7 +118,7 @@ def compare_causes(
     of_calibration: Sequence[Deviation] = (),
     of_rig: Sequence[Deviation] = (),
 ) -> Causes:
-    """Compare what may be why crossings of a scan are off too much; () where planes have fallen together.
+    """Compare candidate causes of crossings that are off too much; () where planes have fallen together.
 
     Parameters
     ----------
@@ -163,7 +163,7 @@ def compare_causes(
 
 
 def choose(normal: Normal) -> Causes:
-    """Choose, of the causes beyond chance, whichever explains most, and then of the others most of what is left.
+    """Choose the cause that explains most beyond chance, and then of the others the one that explains most of the rest.
 
     Examples
     --------
@@ -364,7 +364,7 @@ _WORDS = {
 def note_on_causes(
     causes: Causes, facts: ScanFacts, movements: Sequence[Between], names: Sequence[str]
 ) -> tuple[Message, ...]:
-    """A note on the likeliest cause with its share, and on those that explain what is left.
+    """Note the likeliest cause with its share, and the causes that explain what is left.
 
     It is grave where the scan's `facts` say the same of the likeliest, and so take the proof away; else a caution: that
     a cause is beyond chance does not say that it does more than U contains. `names` are the frames', and

@@ -42,7 +42,7 @@ _FEWEST_POSES, _FEWEST_BLOCKS = 3, 6
 
 
 class Section(Enum):
-    """What is known of the skewness of the fan's stripes where it has not surely changed since the calibration."""
+    """State of the skewness of the fan's stripes where it has not surely changed since the calibration."""
 
     SAME = auto()
     NOT_KNOWN = auto()
@@ -62,13 +62,13 @@ class ChangedSection:
 
     @property
     def note(self) -> Message:
-        """What is said of it."""
+        """Note on how much the section of the fan's stripes has changed."""
         return note_of(
             "scan.section_changed", now=self.skewness, then=self.then, error=self.error, shift_px=self.shift_px
         )
 
     def deviation(self, fan: Sequence[Centreline], camera: Camera, calibrated: Fan) -> Deviation:
-        """Camera and fan displaced by half of what that may be: U is twice as much.
+        """Displace camera and fan by half of what the change of section may amount to: U is twice as much.
 
         All lines are moved aside alike in the picture; `fan` are the scan's.
         """
@@ -81,7 +81,7 @@ class ChangedSection:
 def changed_section(
     poses: Sequence[Sequence[Centreline]], fan: Sequence[Centreline], camera: Camera, calibrated: Fan
 ) -> ChangedSection | Section:
-    """How the stripes of the `fan` in a scan are skewed otherwise than in its `poses`, if they surely are.
+    """Compare the skewness of the stripes of the `fan` in a scan with that in its calibration's `poses`.
 
     Not known where there are too few poses, or the stripes are too short, to tell how sure their mean is.
     """

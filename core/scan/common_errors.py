@@ -111,7 +111,7 @@ class CommonErrors:
 
     @classmethod
     def of_fan(cls, camera: Camera, fan: Fan, deviations: Sequence[Deviation]) -> CommonErrors:
-        """What displaced calibrations do where there is no sweep: points of the fan alone."""
+        """Make the errors of points of the fan alone by displaced calibrations, for a scan without sweeps."""
         return cls(
             camera.image_size,
             tuple(one.source for one in deviations),

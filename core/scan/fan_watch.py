@@ -60,7 +60,7 @@ WARM_UP = Message("scan.advice_warm_up", "let camera and lasers warm up, then sc
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FanRest:
-    """What the fan's light tells of a scan.
+    """Movements of the part and of the rig during a scan, as the fan's light shows them.
 
     Parameters
     ----------
@@ -88,21 +88,21 @@ class FanRest:
 
     @property
     def known(self) -> bool:
-        """Whether enough of it is watched to tell a movement or a drift."""
+        """Whether enough of the fan's light is watched to show a movement or a drift."""
         return self.frames >= 2 * LEAST_FRAMES and self.stretches >= LEAST_STRETCHES
 
     @property
     def unsteady(self) -> bool:
-        """Whether anything has moved, at once or evenly."""
+        """Whether anything has moved, at once or gradually."""
         return bool(self.movements) or self.drifts
 
     @property
     def what_moved(self) -> Message:
-        """The part alone, or more."""
+        """Name of what has moved: the part alone, or more."""
         return EVERYTHING_WORDS if self.share > NEARLY_ALL else PART_WORDS
 
     def note(self, names: Sequence[str], frames: int) -> tuple[Message, ...]:
-        """Note for the technician if anything moved, or that is not known; `frames` frames are used."""
+        """Note for the technician if anything moved, or if that is not known; `frames` frames are used."""
         if not self.known:
             return (note_of("scan.rest_not_judged", n=self.frames, stretches=self.stretches, least=2 * LEAST_FRAMES),)
         if self.drifts:
@@ -162,7 +162,7 @@ def watch_fan(features: ScanFeatures, lines: FanLines, camera: Camera, fan: Fan)
 
 
 def fan_shifts(features: ScanFeatures) -> tuple[Index, Array, Array]:
-    """The frames (K,) that see the fan's light, how far in px its stretches lie aside (K, C), and their noise (C,)."""
+    """Measure in frames (K,) how far in px the fan's stretches lie aside (K, C), with the noise of each (C,)."""
     known = np.array([i for i, frame in enumerate(features.frames) if len(frame.fan_shifts_px)], dtype=np.int64)
     if not len(known):
         return known, np.zeros((0, 0)), np.zeros(0)

@@ -26,7 +26,7 @@ MOST = 0.5
 
 
 class Suspect(StrEnum):
-    """What may be the cause, by its name in files, in the order in which facts are said."""
+    """Candidate cause of a bad scan, by its name in files, in the order in which causes are reported."""
 
     BENT_LINES = "bent_lines"
     MOVED = "moved"
@@ -68,7 +68,7 @@ Causes = tuple[Cause, ...]
 
 @dataclass(frozen=True, slots=True)
 class Reason:
-    """Why nothing could be made of a scan, to be said before the complaint about what was made of it.
+    """Reason why a scan gave no result, shown before the complaint about the result.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ class Reason:
 
 
 def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[Reason, ...]:
-    """The reasons as they are to be said, by what their causes explain of what is too large in the scan.
+    """Sort the reasons by how much of the excess misfit of the scan their causes explain.
 
     Examples
     --------
@@ -116,7 +116,7 @@ def in_order(reasons: Iterable[Reason], causes: Sequence[Cause] = ()) -> tuple[R
 
 @contextmanager
 def cause_first(reasons: Callable[[], Iterable[Reason]], causes: Sequence[Cause] = ()) -> Iterator[None]:
-    """A complaint begins with the first of the reasons that holds: that is why.
+    """Put the first of the reasons that holds before the text of a complaint raised in this block.
 
     `reasons` is called if there is a complaint, and gives those that hold; `causes` are those that were compared.
     """

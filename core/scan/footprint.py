@@ -25,7 +25,10 @@ LEAST_ACROSS = 0.08
 
 
 def surfaces_of(cloud: Cloud, camera: Camera) -> Array:
-    """The plane π (GRID, 3) that most points of `cloud` in each part of the picture lie on; NaN where none is known."""
+    """Find the plane π (GRID, 3) that most points of `cloud` lie on in each part of the picture.
+
+    NaN where not known.
+    """
     planes = np.full((GRID[0] * GRID[1], 3), np.nan)
     part = over_picture(cloud.uv, camera.image_size, GRID)
     for one in np.unique(part):
@@ -49,7 +52,7 @@ def _face(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]
 
 
 def px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array:
-    """By how many px (N,) a stripe at `uv` (N, 2) moves in the picture when its sheet moves by a mm across itself.
+    """Compute by how many px (N,) a stripe at `uv` (N, 2) moves when its sheet moves 1 mm along its normal.
 
     `surfaces` are those of the parts of the picture. NaN where no surface is known, or the light lies on another one.
     """
@@ -57,7 +60,7 @@ def px_per_mm(uv: Array, sheet: Array, surfaces: Array, camera: Camera) -> Array
 
 
 def footprint(uv: Array, sheet: Array, surface: Array, camera: Camera) -> Array:
-    """The same on the planes `surface` (N, 3) or (3,); NaN where the light is not on them.
+    """Compute px per mm as `px_per_mm`, on the planes `surface` (N, 3) or (3,); NaN where the light is not on them.
 
     With ρ the surface's plane, n·X − d = d·(π·r/ρ·r − 1) on the surface; its gradient over the picture is
     z·(π − ρ)·∂r/|π| where the two meet.

@@ -15,7 +15,7 @@ MOST_SIGMA_CUT_MM = 10.0
 
 
 class Method(StrEnum):
-    """How the sweeps of a scan are located; the value is its name in files and on the command line."""
+    """Method of locating the sweeps of a scan; the value is its name in files and on the command line."""
 
     NETWORK = "network"
     """All sweeps adjusted together."""
@@ -37,7 +37,7 @@ class ReconstructOptions:
 
     @property
     def complaint(self) -> Message | None:
-        """The reason why they cannot be; None if they can."""
+        """Reason why these options cannot be used; None if they can."""
         row_time = 0.0 if self.row_time_us is None else self.row_time_us
         if 0 < self.sigma_cut_mm <= MOST_SIGMA_CUT_MM and 0 <= row_time < math.inf:
             return None

@@ -60,7 +60,7 @@ _MEDIAN_ERROR = 1.2533
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PartLight:
-    """How much wider stripes are on a part than on the table.
+    """Width of the stripes on a part against their width on the table.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ class PartLight:
 
     @property
     def surely(self) -> bool:
-        """Whether they are surely wider."""
+        """Whether the stripes are surely wider on the part."""
         return self.wider > max(SURELY * self.error, LEAST_WIDER)
 
 
@@ -92,12 +92,15 @@ class Blur(NamedTuple):
     depth_mm: float
 
     def at(self, depth: Array) -> Array:
-        """At depths (N,) in mm; never less than nothing."""
+        """Compute the squared blur (N,) in px² at depths (N,) in mm; never below 0."""
         return np.maximum(self.square + self.per_mm * (depth - self.depth_mm), 0.0)
 
 
 def blur_of(plates: Iterable[tuple[Pose, Sequence[Centreline]]], camera: Camera, fan: Fan) -> Blur | None:
-    """The lens's blur by the stripes on the plates of a calibration, each with its pose; None where too few tell it."""
+    """Estimate the lens's blur from the stripes on the plates of a calibration, each with its pose.
+
+    None for too few.
+    """
     rows = []
     for pose, stripes in plates:
         normal = pose.rotation[:, 2]
@@ -129,7 +132,7 @@ def blur_of(plates: Iterable[tuple[Pose, Sequence[Centreline]]], camera: Camera,
 def light_on_part(
     stripes: Iterable[tuple[Sequence[Centreline], Array]], cloud: Cloud, camera: Camera, blur: Blur | None
 ) -> PartLight | None:
-    """How much wider `stripes` are on the part than on the table; None where too few frames tell.
+    """Compare the width of `stripes` on the part with that on the table; None where too few frames show both.
 
     Parameters
     ----------

@@ -75,7 +75,7 @@ def _why_no_points(reasons: Index, solved: bool) -> Message:
 def reasons_of(
     with_fan: NDArray[np.bool_], weights: Array, still: NDArray[np.bool_], located: NDArray[np.bool_]
 ) -> NDArray[np.int64]:
-    """Determine the `CrossingUse` (M,) of crossings by their weights, of frames that stood still and were located."""
+    """Decide the `CrossingUse` (M,) of each crossing; `still` and `located` (M,) tell whether its frames are."""
     disagrees = np.where(with_fan, CrossingUse.NOT_THE_FAN, CrossingUse.NOT_THE_SWEEPS)
     reasons = np.where(weights < SILENCED, disagrees, CrossingUse.COUNTS)
     reasons = np.where(located, reasons, CrossingUse.NOT_LOCATED)

@@ -110,7 +110,7 @@ class ScanResult:
 
     @property
     def of_solved(self) -> NDArray[np.bool_]:
-        """(M,) True for the crossings of solved sweeps' own light; frames after a movement are not solved."""
+        """Mask (M,) of the crossings of solved sweeps' own light; frames after a movement are not solved."""
         table = self.crossings
         solved = np.isin(table.a, self.sweep_frames) & (table.with_fan | np.isin(table.b, self.sweep_frames))
         return np.asarray(solved & ~self.second_bounces.among(table))

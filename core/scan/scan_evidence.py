@@ -41,7 +41,7 @@ _ROUNDS = 2
 def scan_evidence(
     features: ScanFeatures, scan: ScanResult, camera: Camera, fan: Fan, deviations: Sequence[Deviation]
 ) -> Evidence:
-    """What a scan says of K deviations.
+    """Compute what the misclosures of a scan say of K deviations, as their normal equations.
 
     `scan` is the solution of `features` by the network with `camera` and `fan`.
     """
@@ -69,7 +69,7 @@ def scan_evidence(
 
 
 def change_of_misclosures(equations: Adjustment, solution: Solution, fan: Fan, camera: Camera | None = None) -> Array:
-    """(M,) change of the misclosures observed − adjusted, in 1/mm, with another `fan` and `camera` (None: the same)."""
+    """Compute the change (M,) in 1/mm of the misclosures with another `fan` and `camera` (None: the same)."""
     rays = equations.geometry.rays
     here = np.einsum("mi,mi->m", equations.differences(solution.pis), rays)
     there = replace(equations, fan=fan).differences(solution.pis)

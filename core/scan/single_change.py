@@ -52,7 +52,7 @@ LARGE = 5.0
 
 
 class Changed(StrEnum):
-    """What a single change of the rig is of."""
+    """Part of the rig that a single change concerns."""
 
     PICTURE_ALONG_U = "picture along u"
     PICTURE_ALONG_V = "picture along v"
@@ -92,7 +92,7 @@ class SingleChange:
 
     @property
     def message(self) -> Message:
-        """What has changed, and by how much."""
+        """Sentence that names what has changed, and by how much."""
         if self.what == Changed.FOCUS:
             percent = 100 * float(self.size[0])
             return Message("scan.change_of_focus", "the focal length changed by {percent:+.2g} %", percent=percent)
@@ -109,7 +109,7 @@ class SingleChange:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Explanation:
-    """The `changes` of which each alone explains crossings that disagree, the likeliest first; never none.
+    """Changes of which each alone explains crossings that disagree, the likeliest first; at least one.
 
     `misfit`: mean square of what crossings are off, in their variances, with none of them.
     """
@@ -119,12 +119,12 @@ class Explanation:
 
     @property
     def share(self) -> float:
-        """Share of what is too much of the misfit that the likeliest of them explains."""
+        """Share of the excess misfit that the likeliest change explains."""
         return (self.misfit - self.changes[0].left) / (self.misfit - 1)
 
     @property
     def note(self) -> Message:
-        """How much crossings disagree, and what would explain it."""
+        """Note on how much crossings disagree, and which change would explain it."""
         return note_of(
             "scan.explained_by_change",
             times=float(np.sqrt(self.misfit)),
@@ -135,7 +135,9 @@ class Explanation:
 def explain_by_change(
     crossings: CrossingTable, line: NDArray[np.int64], camera: Camera, fan: Fan, progress: Progress = silent
 ) -> Explanation | None:
-    """Find what single change explains why crossings disagree; None where none does, or nothing is too much.
+    """Find the single change that explains why crossings disagree.
+
+    None where none does, or the misfit is not too large.
 
     Parameters
     ----------

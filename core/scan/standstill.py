@@ -73,7 +73,7 @@ HOLD_STILL = Message("scan.advice_hold_still", "hold both still and scan again")
 
 @dataclass(frozen=True, slots=True)
 class Movement:
-    """Something moved, `when` being between two frames that both are crossed by others.
+    """Movement of part or rig; `when` is between two frames that both are crossed by others.
 
     `score` is T, about 10 where nothing moved.
     """
@@ -150,7 +150,7 @@ class _Scores:
 
 
 def movements_of(equations: Adjustment, solution: Solution) -> tuple[Index, Index, Array]:
-    """What a movement between two sweeps does to the crossings across it.
+    """Compute the changes of the crossings by a movement between two sweeps, for each place in the order of frames.
 
     The `earlier` and `later` (M,) sweep of each, −1 for the fan, and `pattern` (M, ≤ 12) in 1/mm, as of `_Scores`.
     """
@@ -194,7 +194,7 @@ def _movements(rays: Array, inverse_depths: Array) -> Array:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StillPart:
-    """The crossings (M,) that are kept, when something moved, and whether there are sweeps enough to tell."""
+    """Crossings (M,) within which nothing moved, when something moved, and whether there are sweeps enough to tell."""
 
     kept: NDArray[np.bool_]
     movements: tuple[Between, ...]
@@ -216,7 +216,7 @@ def still_part(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> StillPart:
-    """Choose the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
+    """Select the larger part of a scan, before or after each movement, that agrees with itself and with the fan.
 
     `line` (M,) is the fan's line of each crossing, −1 between sweeps; `names` are the frames'.
 

@@ -54,7 +54,7 @@ def all_crossings(
     window: CrossingWindow,
     progress: Progress = silent,
 ) -> CrossingTable:
-    """Every crossing of each sweep with the fan and with each later sweep."""
+    """Find every crossing of each sweep with the fan and with each later sweep."""
     pictures = (fan, *sweeps)
     progress("crossings", 0, len(sweeps))
     lines = Stack([piece for pieces in pictures for piece in pieces], window.half_length_px)
@@ -66,7 +66,7 @@ def all_crossings(
 
 
 def meetings_of(lines: Stack, picture: Index) -> Meetings:
-    """Where centrelines of different pictures meet; `picture` (P,) is the picture of each piece, ascending."""
+    """Find where centrelines of different pictures meet; `picture` (P,) is the picture of each piece, ascending."""
     finite = np.isfinite(lines.boxes).all(axis=1)
     boxes = lines.boxes[finite]
     if not len(boxes):

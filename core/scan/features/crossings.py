@@ -84,27 +84,27 @@ class CrossingTable:
 
     @property
     def with_fan(self) -> NDArray[np.bool_]:
-        """True where b is the fan."""
+        """Mask (M,), True where b is the fan."""
         return self.b < 0
 
     def select(self, keep: NDArray[np.bool_] | Index) -> CrossingTable:
-        """The rows that `keep` selects."""
+        """Select the rows for which `keep` is true, or which it numbers."""
         arrays = {f.name: getattr(self, f.name)[keep] for f in fields(self) if f.name != "half_length_px"}
         return CrossingTable(**arrays, half_length_px=self.half_length_px)
 
     def renumber(self, number: Index) -> CrossingTable:
-        """The same crossings with frame i called `number[i]`; the fan stays −1."""
+        """Give frame i the number `number[i]`; the fan stays −1."""
         b = np.where(self.with_fan, -1, number[np.maximum(self.b, 0)])
         return replace(self, a=number[self.a], b=b)
 
     def swapped(self) -> CrossingTable:
-        """The same crossings with a called b and b called a."""
+        """Exchange a and b of every crossing."""
         pairs = ("tangent", "sigma", "piece", "along", "cell", "share")
         turned = {f"{name}_{to}": getattr(self, f"{name}_{of}") for name in pairs for to, of in ("ab", "ba")}
         return replace(self, a=self.b, b=self.a, **turned)
 
     def followed_by(self, *others: CrossingTable) -> CrossingTable:
-        """The rows of this table and then of the `others`."""
+        """Append the rows of the `others` to the rows of this table."""
         names = [f.name for f in fields(self) if f.name != "half_length_px"]
         tables = (self, *others)
         joined = {name: np.concatenate([getattr(table, name) for table in tables]) for name in names}
@@ -113,7 +113,7 @@ class CrossingTable:
 
 @dataclass(frozen=True, slots=True)
 class CrossingWindow:
-    """How crossings are fitted: a third of how far a local fit reaches in px, smallest angle (rad) accepted."""
+    """Window of the local fits at crossings: a third of its reach in px, and the smallest angle (rad) accepted."""
 
     half_length_px: float = HALF_LENGTH_PX
     min_angle: float = LEAST_ANGLE
@@ -121,7 +121,7 @@ class CrossingWindow:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ShadedLines:
-    """The centrelines of one picture, what uneven brightness adds to their σ, and both made ready to be crossed."""
+    """Centrelines of one picture with the σ that uneven brightness adds, both prepared for crossing."""
 
     pieces: Sequence[Centreline]
     shading: Sequence[Array]
@@ -129,7 +129,7 @@ class ShadedLines:
 
 
 def shaded(pieces: Sequence[Centreline], window: CrossingWindow) -> ShadedLines:
-    """Centrelines made ready to be crossed with many others."""
+    """Prepare centrelines for crossing with many others."""
     return ShadedLines(pieces, [shading_sigma(piece) for piece in pieces], Stack(pieces, window.half_length_px))
 
 
@@ -143,7 +143,7 @@ class Meeting:
 
 
 def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: CrossingWindow) -> list[Meeting]:
-    """The crossings of one picture's centrelines with another's, which are called frame `a` and frame `b`."""
+    """Cross the centrelines of one picture, called frame `a`, with those of another, called frame `b`."""
     found = cross_centrelines(of_a.stack, of_b.stack, window.half_length_px, window.min_angle)
     return meetings_at(found, of_a, of_b, a, b)
 
@@ -151,7 +151,7 @@ def meetings(of_a: ShadedLines, of_b: ShadedLines, a: int, b: int, window: Cross
 def meetings_at(
     found: Sequence[tuple[int, int, Crossing]], of_a: ShadedLines, of_b: ShadedLines, a: int, b: int
 ) -> list[Meeting]:
-    """Crossings (piece of a, piece of b, crossing) that were `found` by a search, with what the table wants of them."""
+    """Add the σ of each centreline to crossings (piece of a, piece of b, crossing) that a search has `found`."""
     rows = []
     for i, j, crossing in found:
         at_a, at_b = of_a.stack.point_at(i, crossing.along_a), of_b.stack.point_at(j, crossing.along_b)
@@ -169,7 +169,7 @@ def meetings_at(
 
 
 def crossing_table(rows: Sequence[Meeting], window: CrossingWindow) -> CrossingTable:
-    """The crossings as arrays, in their order."""
+    """Make the table of these crossings, in their order."""
 
     def of_crossings(name: str, *shape: int) -> Array:
         return np.array([getattr(row.crossing, name) for row in rows], dtype=np.float64).reshape(-1, *shape)

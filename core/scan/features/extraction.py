@@ -63,7 +63,7 @@ LOOK_AHEAD = 8
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ScanFeatures:
-    """All that a scan's pictures show; frames in the order of the recording, `frames[i].index == i`.
+    """Centrelines and crossings of all pictures of a scan, in the order of the recording: `frames[i].index == i`.
 
     `faults` tell what is wrong with the pictures themselves, which may be why what is made of them is refused; `notes`
     whatever else they tell. `too_fine_for_mosaic` is whether the fan's stripes are too fine for the
@@ -83,7 +83,7 @@ class ScanFeatures:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenLines:
-    """The centrelines of a scan's pictures, not crossed yet: no camera is needed for them.
+    """Centrelines of a scan's pictures before they are crossed: no camera is needed for them.
 
     `stripes` are the fan's and the sweeps', as they were looked for.
     """
@@ -183,7 +183,7 @@ def gather(
     progress: Progress = silent,
     smoothed: bool = True,
 ) -> ScanFeatures:
-    """Centrelines as they were extracted to a scan's features: crossed, and then averaged along themselves.
+    """Make a scan's features of centrelines as they were extracted: cross them, then average them along themselves.
 
     `stripes` are the fan's and the sweeps'; of the `options` window and camera count here; without `smoothed` the
     centrelines stay as they are.
@@ -200,7 +200,7 @@ def gather(
 def crossed(
     seen: SeenLines, kept: SeenLines, options: FeatureOptions | None = None, progress: Progress = silent
 ) -> ScanFeatures:
-    """The features of a scan: the crossings of its centrelines as `seen`, and the centrelines that are `kept`.
+    """Cross the centrelines as `seen`, and make features of these crossings and of the centrelines in `kept`.
 
     Of the `options` window and camera count here.
     """
@@ -218,7 +218,7 @@ def crossed(
 
 
 def refined(pieces: tuple[Centreline, ...]) -> tuple[Centreline, ...]:
-    """Averaged along themselves, and as uncertain as uneven brightness makes them."""
+    """Average centrelines along themselves, and widen their σ by what uneven brightness adds."""
     smoothed = (smooth(piece) for piece in pieces)
     return tuple(replace(piece, sigma=np.hypot(piece.sigma, shading_sigma(piece))) for piece in smoothed)
 
@@ -249,7 +249,7 @@ def _handed_on(ahead: list[Frame], frames: Iterator[Frame]) -> Iterator[Frame]:
 def choose_sweep_stripe(
     frames: Sequence[Frame], reference: ReferenceFeatures, progress: Progress = silent
 ) -> StripeSettings | None:
-    """The median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
+    """Choose the median width and contrast of the sweep's stripe in `frames`; None when none of them shows a stripe."""
     seen = []
     for _, picture in steps(frames, progress, "stripe", len(frames)):
         if not isinstance(picture, Reason) and picture.shape == reference.base.shape:
@@ -298,7 +298,7 @@ def _require_sweeps(frames: list[FrameFeatures]) -> None:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FurtherExposures:
-    """The further exposures of a scan that have one number: shorter or longer than the first ones.
+    """Further exposures of a scan that share one number: shorter or longer than the first ones.
 
     `reference` is what the one of the fan alone shows, `stripe` the sweeps' in them, None if none shows any; `read`
     gives the one of a frame by that frame's name, None if it has none.
@@ -309,7 +309,7 @@ class FurtherExposures:
     read: Callable[[str], Picture | None]
 
     def of(self, name: str) -> Exposure | None:
-        """What the further exposure of a frame shows of the sweep; None if there is none, or not of its size."""
+        """Read what the further exposure of a frame shows of the sweep; None if it is missing or of another size."""
         picture = self.read(name)
         if picture is None or self.stripe is None or picture.shape != self.reference.base.shape:
             return None
@@ -321,7 +321,7 @@ class FurtherExposures:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FrameReader:
-    """A frame and its number to features, against one reference; called from several threads."""
+    """Reader that reduces a frame to features against one reference; it may be called from several threads."""
 
     reference: ReferenceFeatures
     stripe: StripeSettings | None
@@ -364,12 +364,12 @@ class FrameReader:
 
 
 def exposed(picture: Picture, lines: Sequence[Centreline], saturated: NDArray[np.bool_]) -> Exposure:
-    """The centrelines of a picture (H, W), and where that is `saturated`, as one of several exposures."""
+    """Make an `Exposure` of the centrelines of a picture (H, W) and of its `saturated` pixels (H, W)."""
     return Exposure(lines, saturated, float(picture[::4, ::4].mean()) / np.iinfo(picture.dtype).max)
 
 
 def saturated_pixels(picture: Picture) -> NDArray[np.bool_]:
-    """True (H, W) where a picture holds its largest possible value."""
+    """Mask (H, W) of the pixels that have the largest possible value."""
     highest = np.iinfo(picture.dtype).max
     _, found = cv2.threshold(picture, highest - 1, 1, cv2.THRESH_BINARY)
     return np.asarray(found, dtype=np.uint8).view(np.bool_)

@@ -44,7 +44,7 @@ LARGEST_GAIN = 2.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FanLight:
-    """The fan's light in the reference.
+    """Light of the fan in the reference, by which it is taken off frames of another brightness.
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ class FanLight:
 
     @classmethod
     def of(cls, base: Picture, bare: NDArray[np.float32], full_scale: float) -> FanLight:
-        """The fan's light in the picture `base` (H, W), of which `bare` (H, W) has the background in its place."""
+        """Find the fan's light in the picture `base` (H, W), of which `bare` (H, W) has the background in its place."""
         light = base - bare
         pixels = np.flatnonzero((light > 0) & (base < full_scale))
         light, level = light.ravel()[pixels], base.ravel()[pixels]
@@ -88,7 +88,10 @@ class FanLight:
         return cls(pixels, light, strong, under, least, tile, sums)
 
     def gain(self, difference: Difference) -> float:
-        """Factor of a frame's light over the reference's, given frame − reference (H, W); 1: as good as the same."""
+        """Estimate the ratio of a frame's light to the reference's, given frame − reference (H, W).
+
+        1 if about equal.
+        """
         if not len(self.strong):
             return 1.0
         of_room = _middle_mean(difference[::SPARSE, ::SPARSE].ravel())
@@ -102,7 +105,7 @@ class FanLight:
         return gain if _middle_mean(summed[bright] / self.sums[bright]) / change >= AS_WELL else 1.0
 
     def take_off(self, difference: Difference, gain: float) -> None:
-        """Take off frame − reference (H, W) what such a gain has left of the fan in it, in place."""
+        """Subtract in place, from frame − reference (H, W), what such a gain has left of the fan in it."""
         left = np.float32(gain - 1) * self.light
         if np.issubdtype(difference.dtype, np.integer):
             left = np.rint(left)

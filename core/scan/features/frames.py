@@ -48,7 +48,7 @@ class FrameFeatures(Excludable):
     gain: float = 1.0
 
     def brought_back(self, sites: Sites) -> FrameFeatures:
-        """The same in px of the whole picture, where its `sites` were looked at."""
+        """Convert centrelines and shifts from px of `sites` to px of the whole picture."""
         return replace(
             self,
             centrelines=sites.brought_back(self.centrelines),
@@ -58,7 +58,7 @@ class FrameFeatures(Excludable):
 
 
 class CrossingUse(IntEnum):
-    """Whether a crossing counts, or why it does not."""
+    """Use of a crossing in the network: it counts, or the reason why it does not."""
 
     COUNTS = 0
     NOT_THE_FAN = 1
@@ -69,7 +69,7 @@ class CrossingUse(IntEnum):
 
     @property
     def message(self) -> Message:
-        """Why it does not count."""
+        """Reason why the crossing does not count."""
         return _WHY_LEFT_OUT[self]
 
 
@@ -87,7 +87,7 @@ _WHY_LEFT_OUT = {
 
 @dataclass(frozen=True, slots=True)
 class FrameRecord:
-    """What became of one frame.
+    """Record of one frame: whether it was used, what it shows, and the reason if it gave no points.
 
     Parameters
     ----------
@@ -129,12 +129,12 @@ class FrameRecord:
 
 
 def notes_on(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What all frames of a scan tell the technician: of movements, brightness that was taken off, further exposures."""
+    """Note movements, brightness that was subtracted, and further exposures among all frames of a scan."""
     return _moved_notes(frames) + _gain_notes(frames) + _exposure_notes(frames)
 
 
 def light_faults(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
-    """What is wrong with the light of all frames of a scan: the room's changed."""
+    """Note faults of the light over all frames of a scan: that the room's light has changed."""
     return _light_notes(frames)
 
 
@@ -211,7 +211,7 @@ def _moved_notes(frames: Sequence[FrameFeatures]) -> tuple[Message, ...]:
 
 
 def left_out_notes(frames: Sequence[FrameRecord]) -> tuple[Message, ...]:
-    """One note for every reason why frames gave no points, with the names of the first."""
+    """Make one note for every reason why frames gave no points, with the names of the first."""
     names: dict[Message, list[str]] = {}
     for frame in frames:
         if not frame.used:

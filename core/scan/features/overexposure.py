@@ -30,13 +30,13 @@ ADVICE = Message(
 
 
 def saturated_share(pieces: Sequence[Centreline]) -> float:
-    """Share of the points of centrelines that are saturated; 0 without points."""
+    """Compute the share of the points of centrelines that are saturated; 0 without points."""
     saturated = np.concatenate([np.zeros(0, np.bool_), *(piece.saturated for piece in pieces)])
     return float(saturated.mean()) if len(saturated) else 0.0
 
 
 def overexposed(fan: Sequence[Centreline], sweeps: Sequence[Centreline]) -> Message | None:
-    """What to say of stripes that are saturated too often; None if they are not."""
+    """Complain of stripes that are saturated too often; None if they are not."""
     of_fan, of_sweeps = saturated_share(fan), saturated_share(sweeps)
     if max(of_fan, of_sweeps) <= MANY:
         return None
@@ -50,7 +50,7 @@ def overexposed(fan: Sequence[Centreline], sweeps: Sequence[Centreline]) -> Mess
 
 
 def notes_on_shine(fan: Sequence[Centreline], sweeps: Sequence[Centreline], full_scale: float) -> tuple[Message, ...]:
-    """A note on stripes that are saturated here and there, and by how much to expose less; none where all of them are.
+    """Note stripes that are saturated here and there, and by how much to expose less; none where all of them are.
 
     It says that the surface shines only where the fan's stripes rise to a lobe there (`LOBE`). How far above
     `full_scale`, the largest grey level, a saturated stripe reaches is what its flanks say.

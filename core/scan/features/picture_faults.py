@@ -39,7 +39,7 @@ _CLEAR = 10.0
 
 
 class Mosaic(NamedTuple):
-    """How a colour mosaic behind a picture shows in the fan's stripes.
+    """Trace of a colour mosaic in the fan's stripes, and whether the picture was interpolated from one.
 
     `width_px` is their width if they are below FINEST_PX and it is interpolated, `uneven` the least and most light of
     the fan by its sites' place in the tiles if it is raw; None if not.
@@ -50,23 +50,23 @@ class Mosaic(NamedTuple):
 
     @property
     def too_fine(self) -> bool:
-        """Whether the stripes are too fine for its tiles."""
+        """Whether the stripes are too fine for the tiles of the mosaic."""
         return self.width_px is not None or self.uneven is not None
 
 
 def mosaic_of(fan: Sequence[Centreline], base: Picture) -> Mosaic:
-    """How the mosaic behind the picture `base` (H, W) shows in the fan's stripes."""
+    """Look for the trace of a colour mosaic in the picture `base` (H, W), along the fan's stripes."""
     return Mosaic(_width_if_interpolated(fan, base), _unevenness(fan, base))
 
 
 def faults_of(reference: ReferenceFeatures, mosaic: Mosaic) -> tuple[Message, ...]:
-    """Notes on the faults that the picture with the fan alone shows, of which one is its `mosaic`."""
+    """Note the faults that the picture with the fan alone shows, of which one is its `mosaic`."""
     noise = reference.noise
     return (*notes_on_compression(noise), *_notes_on_mosaic(mosaic, noise), *_notes_on_speckle(reference))
 
 
 def notes_on_compression(noise: NoiseModel) -> tuple[Message, ...]:
-    """A note on frames of this noise if what compression leaves them off is more than their noise."""
+    """Note frames in which the errors of compression are larger than their noise."""
     if noise.compression.grey <= noise.read_grey:
         return ()
     return (note_of("scan.compressed", grey=noise.compression.grey, noise=noise.read_grey),)
@@ -131,7 +131,7 @@ def _scatter(pieces: Sequence[Centreline], noise: NoiseModel) -> float:
 
 
 def at_fault(faults: Sequence[Message]) -> Iterator[Reason]:
-    """The `faults` of pictures, if there are any, as the reason of a complaint about what was made of them."""
+    """Give the `faults` of pictures, if there are any, as the reason for a complaint about their results."""
     if faults:
         yield Reason(
             Suspect.PICTURES,

@@ -40,12 +40,12 @@ Picture = NDArray[np.uint8] | NDArray[np.uint16]
 
 
 def sample_indices(count: int) -> list[int]:
-    """Indices of at most `SAMPLE` frames spread evenly over `count`."""
+    """Choose at most `SAMPLE` indices of frames spread evenly over `count`."""
     return sorted({round(i) for i in np.linspace(0, count - 1, min(count, SAMPLE))}) if count else []
 
 
 def quantile_reference(pictures: Sequence[Picture]) -> Picture:
-    """The per-pixel low quantile of `pictures` (each height × width), by order statistics.
+    """Compute the per-pixel low quantile of `pictures` (each height × width), by order statistics.
 
     Raises
     ------
@@ -63,7 +63,9 @@ def quantile_reference(pictures: Sequence[Picture]) -> Picture:
 
 
 def picture_difference(picture: Picture, base: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
-    """`picture` minus `base`, both (H, W): 16-bit integers where they hold it, which moves less memory; else float32.
+    """Subtract `base` from `picture`, both (H, W).
+
+    In 16-bit integers where they hold it, as less memory is moved, else float32.
 
     Pictures of 8 bits are what a camera sends a hundred times a second: a compiled loop takes a third of the time that
     OpenCV takes for different types of input and output.
@@ -91,7 +93,7 @@ enough that a sweep across it does not matter to its median."""
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceCheck:
-    """How far a frame has departed from the reference.
+    """Departure of a frame from the reference, in place and in light.
 
     `shift_px` is the largest median shift of any of the fan's centrelines across itself; `lost` says that a whole
     stretch of the fan's light is gone; `light` the change of the background in grey levels. `shifts_px` (C,) are the
@@ -128,7 +130,10 @@ def check_reference(difference: NDArray[np.int16] | NDArray[np.float32], fan: Se
 
 
 def fan_stretches(fan: Sequence[Centreline]) -> list[tuple[int, slice]]:
-    """Piece and points of the stretches, of STRETCH points each, in which the fan's light is watched."""
+    """Divide the fan's centrelines into stretches of STRETCH points, in which its light is watched.
+
+    Each is piece and points.
+    """
     return [
         (number, slice(first, first + STRETCH))
         for number, piece in enumerate(fan)
@@ -170,7 +175,7 @@ LIGHT_SHARE, LIGHT_FLOOR = 0.2, 0.02
 
 @dataclass(frozen=True, slots=True)
 class FeatureOptions:
-    """How pictures become features; None means chosen from the pictures.
+    """Options of reducing pictures to features; None means chosen from the pictures.
 
     A stripe's width that the pictures contradict gives way to the measured one.
 
@@ -202,7 +207,7 @@ class LaserLight(NamedTuple):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ReferenceFeatures:
-    """What the picture with the fan alone shows, and what frames are compared with.
+    """Features of the picture with the fan alone, and the picture that frames are compared with.
 
     `base` (H, W) is the picture as it came, `full_scale` its largest possible grey level, `noise` that of a frame minus
     the picture; `fan` the fan's centrelines, `stripe` how they were looked for; `room` and `light` are what
@@ -219,16 +224,16 @@ class ReferenceFeatures:
 
     @property
     def image_size(self) -> tuple[int, int]:
-        """(width, height) in pixels."""
+        """Width and height of the picture, in px."""
         height, width = self.base.shape
         return width, height
 
     def difference(self, picture: Picture) -> NDArray[np.int16] | NDArray[np.float32]:
-        """A frame minus the picture, both (H, W)."""
+        """Subtract the picture with the fan alone from a frame, both (H, W)."""
         return picture_difference(picture, self.base)
 
     def of_lasers(self, picture: Picture) -> LaserLight:
-        """A frame minus the picture, both (H, W), less what exposure and the room's light have changed since."""
+        """Subtract the fan's picture from a frame, both (H, W), less changes of exposure and of the room's light."""
         difference, room = self.difference(picture), 0.0
         changed = self.room.change(difference)
         if changed is not None:
@@ -239,7 +244,7 @@ class ReferenceFeatures:
         return LaserLight(difference, room, gain)
 
     def light_change(self, seen: LaserLight) -> float:
-        """What the room's light has changed beside the exposure, as a share of it; 0 where stripes do not feel it."""
+        """Compute by what share the room's light has changed beside the exposure; 0 where stripes are not affected."""
         background = max(float(np.median(self.base[::16, ::16])), 1.0)
         grey = seen.room - (seen.gain - 1) * background if seen.room else 0.0
         if abs(grey) < max(LIGHT_SHARE * background, LIGHT_FLOOR * self.full_scale):
@@ -250,7 +255,7 @@ class ReferenceFeatures:
 def read_reference(
     picture: Picture, options: FeatureOptions | None = None, first: ReferenceFeatures | None = None
 ) -> ReferenceFeatures:
-    """The fan's centrelines in the picture with the fan alone; with what its `first` exposure shows, in a further one.
+    """Extract the fan's centrelines from a picture with the fan alone; a further exposure uses those of the `first`.
 
     Raises
     ------

@@ -60,7 +60,7 @@ class RoomLight:
 
     @classmethod
     def of(cls, base: Picture, fan: Sequence[Centreline], full_scale: float) -> RoomLight:
-        """The room's light in the picture `base` (H, W) with the fan on."""
+        """Find the room's light in the picture `base` (H, W) with the fan on."""
         bare = base.astype(np.float32)
         rows, columns = _grid(bare.shape)
         level = _levels(bare, rows, columns)
@@ -75,7 +75,7 @@ class RoomLight:
         return cls(bare, np.maximum(_levels(bare, rows, columns), 1.0), full_scale)
 
     def change(self, difference: Difference) -> tuple[NDArray[np.float32], float] | None:
-        """What the room's light has added (H, W) to a frame, given frame − reference, and how much that typically is.
+        """Estimate the light (H, W) that the room has added to a frame − reference (H, W), and its typical size.
 
         That is in grey levels, the median where it is more than half of what a tenth of the picture has at least. None
         if it is too little to matter.

@@ -19,12 +19,12 @@ from core.scan.features.crossings import CrossingTable
 
 
 def straightened(pieces: Sequence[Centreline], camera: Camera) -> tuple[Centreline, ...]:
-    """The centrelines in pixels of the same camera without its distortion."""
+    """Map centrelines to pixels of the same camera without its distortion."""
     return tuple(_straightened(piece, camera) for piece in pieces)
 
 
 def bent_back(crossings: CrossingTable, camera: Camera) -> CrossingTable:
-    """Crossings of straightened centrelines in the picture's own pixels.
+    """Map crossings of straightened centrelines back to the picture's own pixels.
 
     Places along centrelines, and cells, stay those of the straightened ones.
     """

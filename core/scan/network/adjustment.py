@@ -139,7 +139,7 @@ def solve_network(
 
 
 def solve_planes(equations: Adjustment, progress: Progress = silent) -> tuple[Solution, bool]:
-    """The solution alone, and whether rejecting outliers would have silenced the fan and was not done.
+    """Solve for the planes without covariance; also whether rejection was left out because it would drop the whole fan.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def _share_silenced(crossings: CrossingTable, weights: Array) -> float:
 
 
 def has_collapsed(equations: Adjustment, pis: Array) -> bool:
-    """Whether sweeps `pis` (S, 3) have fallen together, so that their crossings say nothing any more."""
+    """Whether sweeps `pis` (S, 3) have fallen together on one plane, so that their crossings carry no information."""
     between = ~equations.crossings.with_fan
     if not np.any(between):
         return False

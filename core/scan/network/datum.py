@@ -75,12 +75,12 @@ class Datum:
 
     @property
     def weak(self) -> bool:
-        """Whether that exceeds WEAK_MM."""
+        """Whether the uncertainty of a height exceeds WEAK_MM."""
         return self.height_mm > WEAK_MM
 
 
 def note_on_datum(datum: Datum, fan_relief_mm: float) -> Message:
-    """Note for the technician; where the scale is weak, with what is missing.
+    """Note how well scale and place are fixed; where the scale is weak, with what is missing.
 
     `fan_relief_mm` is the relief that the fan's own points show (`relief_mm`), whether sweeps cross them or not.
     """
@@ -160,14 +160,14 @@ def _tilt(crossings: CrossingTable, sweeps: int) -> float:
 
 
 def relief_mm(rays: Array, inverse_depths: Array) -> float:
-    """Range in mm of 95 % of the depths about the plane that most lie on, at `inverse_depths` (M,) on `rays` (M, 3)."""
+    """Compute the range in mm of 95 % of the depths 1/`inverse_depths` (M,) on `rays` (M, 3) about their main plane."""
     plane, _ = main_plane(rays, inverse_depths)
     low, high = np.quantile(1 / inverse_depths - 1 / np.maximum(rays @ plane, 1e-6), _RELIEF_QUANTILES)
     return float(high - low)
 
 
 def main_plane(rays: Array, inverse_depths: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """Find the plane π (3,) that holds most points at `inverse_depths` (M,) on `rays` (M, 3), and the points on it.
+    """Find the plane π (3,) on which most points at `inverse_depths` (M,) on `rays` (M, 3) lie; also which (M,) do.
 
     The best of many through three of the points, then fitted to all within `MAIN_PLANE_MM` of depth. Of all planes
     through fewer points the one that leans least.

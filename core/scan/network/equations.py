@@ -53,7 +53,7 @@ MOST_OFFSET = 3.0
 
 @dataclass(frozen=True, eq=False)
 class Solution:
-    """One weighted linear solution.
+    """Solution of one weighted linear round of the network, with the factor of its normal matrix.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ class Adjustment:
 
     @property
     def unknowns(self) -> int:
-        """How many numbers describe all sweeps."""
+        """Number of unknowns of all sweeps."""
         return self.read_out.size * self.sweeps
 
     def start(self) -> Solution:
@@ -177,13 +177,13 @@ class Adjustment:
         return self._solve(weights, gains, adjusted, moved)
 
     def covariance(self, solution: Solution) -> tuple[Array, float]:
-        """(3S, 3S) of the planes from the crossings' whole covariance, and the expected `Solution.misfit`."""
+        """Compute the planes' covariance (3S, 3S) from the crossings' whole one, and the expected `Solution.misfit`."""
         middle, of_planes = self._middle(solution), solution.inverse[: self.unknowns]
         covariance = of_planes @ middle @ of_planes.T
         return np.asarray((covariance + covariance.T) / 2), self._expected(solution, middle)
 
     def expected(self, solution: Solution) -> float:
-        """The expected `Solution.misfit` alone."""
+        """Compute the expected `Solution.misfit` without the covariance."""
         return self._expected(solution, self._middle(solution))
 
     def _expected(self, solution: Solution, middle: Array) -> float:
@@ -201,7 +201,7 @@ class Adjustment:
         return np.asarray(middle)
 
     def shared_with_fan(self, solution: Solution) -> Array:
-        """(3S, F) covariance of the planes' errors π̂ − π with the errors z of the fan's cells.
+        """Compute the covariance (3S, F) of the planes' errors π̂ − π with the errors z of the fan's cells.
 
         x̂ − x = H⁻¹(Aᵀ W e − P x) for unknowns x with the prior P and noise e that is none of theirs, and z is one of
         them with P = 1: so it is minus the block of H⁻¹.
@@ -209,7 +209,7 @@ class Adjustment:
         return -solution.inverse[: self.unknowns, self.unknowns :]
 
     def shared_with_own_lines(self, solution: Solution) -> Array:
-        """(Q, 3) covariance of π̂ − π of a sweep with the errors z of the cells of its own centrelines.
+        """Compute the covariance (Q, 3) of a sweep's π̂ − π with the errors z of the cells of its own centrelines.
 
         The crossings say A x = y + noise, so x̂ − x is −H⁻¹ Aᵀ W noise, prior aside.
         """
@@ -221,7 +221,10 @@ class Adjustment:
         return moved
 
     def noise(self, solution: Solution) -> csr_array:
-        """(M, …) that turns independent standard normal numbers into the misclosures in 1/mm, less the fan's cells."""
+        """Make the matrix (M, …) from independent standard normal numbers to misclosures in 1/mm.
+
+        Less the fan's cells.
+        """
         return csr_array(hstack([self._shared(solution), diags_array(np.sqrt(self._rest(solution)))], format="csr"))
 
     def _shared(self, solution: Solution) -> csr_array:
@@ -243,7 +246,7 @@ class Adjustment:
         return felt
 
     def gradient(self, pis: Array) -> Array:
-        """D (M, 2) in 1/(mm px) at every crossing of sweeps `pis` (S, 3)."""
+        """Compute D (M, 2) in 1/(mm px) at every crossing of sweeps `pis` (S, 3)."""
         return inverse_depth_gradient(self.differences(pis), self.geometry.jacobians)
 
     def _noise_of_rays(self, before: Solution, gains: Array, difference: Array) -> Array:
@@ -312,7 +315,7 @@ class Adjustment:
             matrix[weight.coords] += weight.data
 
     def differences(self, pis: Array) -> Array:
-        """π_a − π_b (M, 3) of every crossing, in its row."""
+        """Compute π_a − π_b (M, 3) of every crossing, in its row."""
         table, v = self.crossings, self.crossings.uv[:, 1]
         other = np.where(table.with_fan[:, None], self._fan_pis, self.read_out.planes(pis[table.b], v))
         return np.asarray(self.read_out.planes(pis[table.a], v) - other)

@@ -59,7 +59,7 @@ class CellErrors:
 
     @classmethod
     def of(cls, equations: Adjustment, solution: Solution) -> CellErrors:
-        """From the adjustment's solution; only cells that are crossed."""
+        """Take the errors of the fan's cells from the adjustment's solution; only of cells that are crossed."""
         table, first = equations.crossings, equations.unknowns
         share = equations.errors.fan.tocoo()
         row, cell, part = share.coords[0], share.coords[1], share.data
@@ -100,7 +100,7 @@ def judge_fan_cells(cells: CellErrors, image_size: tuple[int, int], scale: float
 
 
 def judge_network(scale: float, cells: CellErrors, image_size: tuple[int, int]) -> tuple[bool, tuple[Message, ...]]:
-    """Whether the sweeps are off the fan's light by its place in the picture, and what is wrong with crossings."""
+    """Judge whether the sweeps are off the fan's light by its place in the picture, and note what is wrong."""
     if len(cells.z) and (found := judge_fan_cells(cells, image_size, scale)).p < SURELY:
         place = found.strongest
         note = note_of(

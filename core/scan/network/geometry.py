@@ -28,27 +28,27 @@ class CrossingRays:
 
     @classmethod
     def of(cls, crossings: CrossingTable, camera: Camera) -> CrossingRays:
-        """The rays of all `crossings` as `camera` sees them."""
+        """Compute the rays of all `crossings` as `camera` sees them."""
         rays = camera.rays(crossings.uv)
         return cls(rays, camera.ray_jacobian(rays))
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.int64]) -> CrossingRays:
-        """The rows that `keep` selects."""
+        """Select the rows for which `keep` is true, or which it numbers."""
         return CrossingRays(self.rays[keep], self.jacobians[keep])
 
     def followed_by(self, other: CrossingRays) -> CrossingRays:
-        """These rows and then those of `other`."""
+        """Append the rows of `other` to these rows."""
         return CrossingRays(np.concatenate([self.rays, other.rays]), np.concatenate([self.jacobians, other.jacobians]))
 
 
 def inverse_depth_gradient(pi_difference: Array, jacobians: Array) -> Array:
-    """D = ∂(π_a − π_b)·r/∂(u, v), (M, 2) in 1/(mm px), of plane differences (M, 3)."""
+    """Compute D = ∂(π_a − π_b)·r/∂(u, v), (M, 2) in 1/(mm px), of plane differences (M, 3)."""
     gradient: Array = np.einsum("mi,mij->mj", pi_difference[:, :2], jacobians)
     return gradient
 
 
 def noise_gains(crossings: CrossingTable, gradient: Array) -> tuple[Array, Array]:
-    """Derivatives of (π_a − π_b)·r by an offset of a's and of b's centreline across itself, (M,) each in 1/(mm px).
+    """Compute the derivatives of (π_a − π_b)·r by an offset of a's and b's centreline; (M,) each in 1/(mm px).
 
     The sign follows the normals n = (t_v, −t_u).
     """

@@ -11,7 +11,10 @@ from core.scan.features.crossings import Index
 
 
 def normal_matrix(design: csr_array, weight: Array) -> Array:
-    """Lower triangle (N, N) of Aᵀ W A, in Fortran's order; `design` A (M, N) has sorted rows, `weight` W is (M,)."""
+    """Compute the lower triangle (N, N) of Aᵀ W A, in Fortran's order.
+
+    `design` A (M, N) has sorted rows, `weight` W is (M,).
+    """
     matrix = np.zeros((design.shape[1], design.shape[1]), order="F")
     _add_rows(design.indptr.astype(np.int64), design.indices.astype(np.int64), design.data, weight, matrix)
     return matrix

@@ -47,7 +47,7 @@ SLOWEST_READOUT_MS = 71.0
 
 
 def row_forms(rays: Array, v: Array, rows: int, size: int) -> Array:
-    """(N, `size`) what stacked coefficients are multiplied by at `rays` (N, 3) seen in rows `v` (N,) of `rows`."""
+    """Compute the factors (N, `size`) of the stacked coefficients at `rays` (N, 3) seen in rows `v` (N,) of `rows`."""
     if size == 3:
         return rays
     basis = legvander(_time(v, rows), size // 3 - 1)
@@ -55,7 +55,10 @@ def row_forms(rays: Array, v: Array, rows: int, size: int) -> Array:
 
 
 def row_planes(coefficients: Array, v: Array, rows: int) -> Array:
-    """π (N, 3) in 1/mm in rows `v` (N,) of planes with stacked `coefficients` (N, 3·(1 + K)), or (1, …) for all."""
+    """Compute π (N, 3) in 1/mm in rows `v` (N,) of planes with stacked `coefficients` (N, 3·(1 + K)).
+
+    (1, …) for all.
+    """
     size = coefficients.shape[1]
     if size == 3:
         return coefficients
@@ -68,7 +71,7 @@ def _time(v: Array, rows: int) -> Array:
 
 
 def change_per_mm(pis: Array, inverse_depths: Array, rays: Array) -> tuple[float, float, float]:
-    """Change of a plane π in 1/mm, component by component, by a shift of its sheet by 1 mm.
+    """Compute the change of a plane π in 1/mm, component by component, by a shift of its sheet by 1 mm.
 
     Of sweeps `pis` (S, 3) that are crossed at `inverse_depths` (M,) on `rays` (M, 3). The shift at the picture's edges
     differs from that in its middle by TURNING of it.
@@ -86,11 +89,11 @@ class Hand:
     tremor_mm: float
 
     def steady_mm(self, time_s: float) -> float:
-        """Standard deviation in mm of what the steady hand moves a sheet from the middle of a read-out to its end."""
+        """Standard deviation in mm of how far the steady hand moves a sheet from mid read-out to its end."""
         return self.speed_mm_s * time_s / 2
 
     def tremor_terms_mm(self, terms: int, time_s: float) -> Array:
-        """Standard deviations (terms,) in mm of the terms of a sheet's way that the tremor adds."""
+        """Compute the standard deviations (terms,) in mm of the terms of a sheet's path that the tremor adds."""
         n = np.arange(1, terms + 1)
         waves = np.abs([spherical_jn(n, np.pi * f * time_s) for f in TREMOR_HZ]).max(axis=0)
         return np.asarray((2 * n + 1) * waves * self.tremor_mm / np.sqrt(2))
@@ -117,38 +120,38 @@ class ReadOut:
 
     @classmethod
     def of(cls, rows: int, time_ms: float, hand: Hand) -> ReadOut:
-        """The read-out of pictures in which that hand moves; what that does to a plane is not known yet."""
+        """Make the read-out of pictures in which that hand moves; its effect on a plane is not known yet."""
         n = np.arange(1, MOST_TERMS + 1)
         size = hand.tremor_terms_mm(MOST_TERMS, time_ms / 1000) + hand.steady_mm(time_ms / 1000) * (n == 1)
         used = int(n[size > LEAST_SHIFT_MM * np.sqrt(2 * n + 1)].max(initial=0))
         return cls(rows, time_ms, (0.0,) * used).by(hand)
 
     def by(self, hand: Hand) -> ReadOut:
-        """The same read-out, with as many terms, of another hand."""
+        """Replace the hand, and keep the number of terms."""
         shifts = hand.tremor_terms_mm(len(self.shifts_mm), self.time_ms / 1000)
         steady = hand.steady_mm(self.time_ms / 1000)
         return replace(self, shifts_mm=tuple(np.maximum(shifts, NO_SHIFT_MM).tolist()), steady_mm=steady)
 
     @property
     def size(self) -> int:
-        """How many numbers describe a sweep."""
+        """Number of unknowns of one sweep."""
         return 3 * (1 + len(self.shifts_mm))
 
     def forms(self, rays: Array, v: Array) -> Array:
-        """`row_forms` of this read-out."""
+        """Compute `row_forms` of this read-out: (N, size) for `rays` (N, 3) and rows `v` (N,)."""
         return row_forms(rays, v, self.rows, self.size)
 
     def planes(self, coefficients: Array, v: Array) -> Array:
-        """`row_planes` of this read-out."""
+        """Compute `row_planes` of this read-out: π (N, 3) in 1/mm in rows `v` (N,)."""
         return row_planes(coefficients, v, self.rows)
 
     @property
     def moves(self) -> bool:
-        """Whether rows see different planes."""
+        """Whether different rows see different planes."""
         return bool(self.shifts_mm)
 
     def weight(self, sweeps: int) -> csr_array:
-        """Weight of the prior on the numbers of so many sweeps in the order of time, but for their planes' own.
+        """Make the weight matrix of the prior on the numbers of so many sweeps in order of time; 0 for the planes' own.
 
         The inverse of their covariance, 0 where there is no prior.
         """
@@ -168,7 +171,7 @@ class ReadOut:
         return csr_array((np.concatenate(values), (np.concatenate(rows), np.concatenate(columns))), shape=shape)
 
     def log_det_weight(self, sweeps: int) -> float:
-        """Logarithm of the determinant of `weight`, less what does not depend on the hand."""
+        """Compute the logarithm of the determinant of `weight`, less what does not depend on the hand."""
         frame = np.arange(sweeps)
         kept = np.exp(-np.abs(frame[:, None] - frame) / KEPT_FRAMES)
         first = self.shifts_mm[0] ** 2 * np.eye(sweeps) + self.steady_mm**2 * kept

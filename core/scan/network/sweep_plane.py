@@ -58,7 +58,10 @@ def solve_sweep_plane(rays: Array, inverse_depths: Array, sigmas: Array) -> Swee
 
 
 def plane_condition(rays: Array) -> float:
-    """Ratio of the largest to the smallest singular value of `rays` (M, 3): infinite when they are coplanar."""
+    """Compute the ratio of the largest to the smallest singular value of `rays` (M, 3).
+
+    Infinite when they are coplanar.
+    """
     if len(rays) < 3:
         return float("inf")
     values = np.linalg.svd(rays, compute_uv=False)

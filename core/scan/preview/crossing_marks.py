@@ -38,7 +38,7 @@ _NOT_CROSSED: Mapping[str, Message] = {
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingMarks:
-    """M crossings of one frame: `uv` (M, 2) in pixels, `status` (M,) `CrossingStatus`, and why for each.
+    """Marks of the M crossings of one frame: `uv` (M, 2) in px, `status` (M,) `CrossingStatus`, and the reason of each.
 
     `with_fan` (M,) is True for those with the fan, False for those with other sweeps.
     """

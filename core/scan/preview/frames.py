@@ -66,7 +66,7 @@ class StripeRays:
 
     @classmethod
     def of(cls, frame: int, pieces: Sequence[Centreline], camera: Camera) -> StripeRays:
-        """The points of `pieces`, in their order."""
+        """Collect the points of `pieces`, in their order."""
         uv = np.concatenate([np.zeros((0, 2)), *(piece.uv for piece in pieces)])
         normal = np.concatenate([np.zeros((0, 2)), *(piece.normal for piece in pieces)])
         sigma = np.concatenate([np.zeros(0), *(piece.sigma for piece in pieces)])
@@ -77,7 +77,7 @@ class StripeRays:
         return cls(frame, uv, rays, across, strength, ~saturated & np.isfinite(rays).all(axis=1))
 
     def thinned(self, step: int = 2) -> StripeRays:
-        """Every `step`-th point; copied, so that the others' memory is free."""
+        """Select every `step`-th point; copied, so that the others' memory is free."""
         return StripeRays(
             self.frame,
             self.uv[::step].copy(),
@@ -91,7 +91,10 @@ class StripeRays:
         return len(self.rays)
 
     def depth(self, pi: Array, covariance: Array) -> tuple[Array, Array]:
-        """Depth (N,) in mm on the plane `pi` (3,) with `covariance` (3, 3), and its σ; NaN where there is none."""
+        """Compute depth (N,) in mm on the plane `pi` (3,) with `covariance` (3, 3), and its σ.
+
+        NaN where there is none.
+        """
         inverse = self.rays @ pi
         inverse = np.where(self.usable & (inverse > LEAST_INVERSE_DEPTH), inverse, np.nan)
         variance = np.einsum("ni,ij,nj->n", self.rays, covariance, self.rays, optimize=True)
@@ -99,7 +102,7 @@ class StripeRays:
         return 1 / inverse, np.sqrt(np.maximum(variance, 0)) / inverse**2
 
     def cloud(self, depth: Array, sigma: Array, keep: NDArray[np.bool_]) -> PreviewCloud:
-        """The points that `keep` (N,) selects, at `depth` (N,)."""
+        """Make a cloud of the points that `keep` (N,) selects, at `depth` (N,)."""
         return PreviewCloud(
             (self.rays[keep] * depth[keep, None]).astype(np.float32),
             sigma[keep].astype(np.float32),
@@ -110,7 +113,7 @@ class StripeRays:
 
 
 class Preview:
-    """Makes the preview of a scan from the features of its frames, one after another.
+    """Preview of a scan, made from the features of its frames one after another.
 
     Built once per scan from the features of its reference picture
     (:func:`core.scan.features.extraction.read_reference`). Not to be called from two threads at once.
@@ -148,7 +151,7 @@ class Preview:
         return tuple(tuple(piece for piece, k in pieces if k == line) for line in range(self._fan.lines))
 
     def cloud(self) -> PreviewCloud:
-        """All points so far, the fan's own first."""
+        """Collect all points so far, the fan's own first."""
         return PreviewCloud.joined([*self._fan_clouds(), *map(self._points_of, self._stripes)])
 
     @property
@@ -157,7 +160,7 @@ class Preview:
         return self._coming is not None or self._thinned or self._tracker.is_due
 
     def go_on(self) -> None:
-        """Do a part of the work that can wait.
+        """Do a part of the work that can wait until a frame is shown.
 
         Called again and again it adjusts the anchors when that is due, and then makes the cloud anew by them,
         RENEWED_AT_ONCE sweeps at a time. The next frame brings the cloud once it is complete.

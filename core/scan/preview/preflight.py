@@ -212,13 +212,13 @@ class Preflight:
 
 
 def stripe_width(pieces: Iterable[Centreline]) -> float | None:
-    """Median width (σ) of stripes, in pixels; None where there is none."""
+    """Compute the median width (σ) of stripes in pixels; None where there is none."""
     widths = np.concatenate([np.empty(0), *(piece.width for piece in pieces)])
     return float(np.median(widths)) if len(widths) else None
 
 
 def other_focus(width_px: float, then_px: float) -> Message | None:
-    """What to say of the fan's stripes in a scan where they are wider than in its calibration, by another focus."""
+    """Complain that the fan's stripes are wider than in its calibration, by another focus; None if they are not."""
     return _out_of_focus(_width_changed(width_px, then_px), _REFOCUS) if width_px >= OTHER_FOCUS * then_px else None
 
 

@@ -49,7 +49,7 @@ class PreviewCloud:
 
     @classmethod
     def joined(cls, clouds: Sequence[PreviewCloud]) -> PreviewCloud:
-        """All points of `clouds`, in order."""
+        """Concatenate the points of `clouds`, in order."""
         nothing = np.zeros(0, np.float32)
         flat = np.zeros((0, 3), np.float32), nothing, nothing, np.zeros((0, 2), np.float32), np.zeros(0, np.int32)
         parts = [(c.points, c.sigma, c.intensity, c.uv, c.frame) for c in clouds]
@@ -198,7 +198,7 @@ class FrameStages:
 
 @dataclass(frozen=True, slots=True)
 class SettledScan:
-    """What a finished measurement has found: the stripes' width and contrast, the fan line of each piece.
+    """Settings found by a finished measurement: the stripes' width and contrast, the fan line of each piece.
 
     `second_bounces` are frame and number of the sweeps' centrelines that it left out as such.
     """

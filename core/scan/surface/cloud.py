@@ -77,7 +77,7 @@ class Cloud:
         return len(self.points)
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.intp]) -> Cloud:
-        """The points that `keep` selects."""
+        """Select the points for which `keep` is true, or which it numbers."""
         return Cloud(
             self.points[keep],
             self.uv[keep],

@@ -26,17 +26,17 @@ class CoverageMap:
         self.lit: NDArray[np.bool_] = np.zeros_like(self.cells)
 
     def add(self, uv: Pixels) -> None:
-        """Points were measured at `uv` (N, 2) in pixels."""
+        """Mark the cells of points measured at `uv` (N, 2) in px."""
         self._mark(self.cells, uv)
         self._mark(self.lit, uv)
 
     def add_lit(self, uv: Pixels) -> None:
-        """Light was seen at `uv` (N, 2) in pixels, whether it could be measured or not."""
+        """Mark the cells of light seen at `uv` (N, 2) in px, whether it could be measured or not."""
         self._mark(self.lit, uv)
 
     @property
     def share(self) -> float:
-        """Covered share (0 … 1) of what has been lit: of the hull around all light seen; 0 before there is any."""
+        """Covered share (0 … 1) of the hull around all light seen; 0 before there is any."""
         rows, columns = np.nonzero(self.lit)
         if not len(rows):
             return 0.0

@@ -77,25 +77,25 @@ class Surface:
 
     @property
     def valid(self) -> NDArray[np.bool_]:
-        """(rows, columns), True where a cell holds a fused point."""
+        """Mask (rows, columns), True where a cell has a fused point."""
         mask = np.zeros(self.shape, dtype=np.bool_)
         mask.ravel()[self.cells] = True
         return mask
 
     @property
     def depth(self) -> Array:
-        """(rows, columns) fused depth in mm; NaN in empty cells."""
+        """Fused depth (rows, columns) in mm; NaN in empty cells."""
         return self.grid(self.points[:, 2])
 
     def grid(self, values: Array) -> Array:
-        """`values` (M,) of the fused points laid out as (rows, columns); NaN in empty cells."""
+        """Lay out `values` (M,) of the fused points as (rows, columns); NaN in empty cells."""
         laid = np.full(self.shape, np.nan)
         laid.ravel()[self.cells] = values
         return laid
 
 
 def grid_shape(image_size: tuple[int, int], cell_px: float) -> tuple[int, int]:
-    """Rows and columns of the grid of cells that covers a picture of `image_size` (width, height)."""
+    """Compute rows and columns of the grid of cells that covers a picture of `image_size` (width, height)."""
     width, height = image_size
     return int(np.ceil(height / cell_px)), int(np.ceil(width / cell_px))
 
@@ -131,7 +131,7 @@ class Mesh:
 
     @property
     def measured(self) -> NDArray[np.bool_]:
-        """(V,) whether a vertex is a corner of a triangle that was measured."""
+        """Mask (V,) of the vertices that are a corner of a measured triangle."""
         on = np.zeros(len(self.vertices), dtype=np.bool_)
         on[self.triangles[~self.filled]] = True
         return on

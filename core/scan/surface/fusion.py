@@ -107,7 +107,7 @@ _MOST_INSERTED = 64
 
 @compiled()
 def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cell_px: float) -> Index:
-    """Find the cell (N,) of each point in a grid of `shape` (rows, columns); −1 for what cannot be fused.
+    """Find the cell (N,) of each point in a grid of `shape` (rows, columns); −1 for points that cannot be fused.
 
     Positions `uv` (N, 2) on the rim belong to the outermost cells. A point needs a depth and a σ above 0.
     """
@@ -123,7 +123,7 @@ def cells_of(points: Array, uv: Array, sigma: Array, shape: tuple[int, int], cel
 
 @compiled()
 def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
-    """Sort points by their cell, those of −1 left out; also where in that order each of the `cells` begins and ends."""
+    """Sort points by their cell, those of −1 left out; also where each of the `cells` begins and ends in that order."""
     starts, filled = indices_of(cells + 1, 0), new_indices(cells)
     for i in range(len(cell_of)):
         if cell_of[i] >= 0:
@@ -141,7 +141,7 @@ def sorted_by_cell(cell_of: Index, cells: int) -> tuple[Index, Index]:
 
 
 class Measured(NamedTuple):
-    """The N points of a cloud."""
+    """Measured values of the N points of a cloud, as fusion takes them."""
 
     points: Array
     uv: Array

@@ -83,6 +83,7 @@ class Stripe:
     def of(
         cls, sheet: int, frame: int, piece: int, line: Centreline, pi: Array, camera: Camera, bends: Bends
     ) -> Stripe:
+        """Place a centreline on its light plane `pi` (3,) and read the bends of the surface along it."""
         rays = camera.rays(line.uv)
         inverse = rays @ pi
         points = rays / np.where(inverse > LEAST_INVERSE_DEPTH, inverse, np.inf)[:, None]
@@ -120,7 +121,7 @@ class Stripe:
         return np.where(self.known, np.clip(off, -LARGEST_SHIFT * own, LARGEST_SHIFT * own), 0.0)
 
     def brightness(self, light_mm: float, blur_px: float) -> Array:
-        """Logarithm (N,) of the light that falls on the surface: the section's height without the blur."""
+        """Compute the logarithm (N,) of the light on the surface: the height of its section, the blur taken out."""
         own = np.maximum((light_mm / self.slope) ** 2, 1e-6)
         return np.asarray(np.log(np.maximum(self.line.strength, 1e-3)) + 0.5 * np.log1p(blur_px**2 / own))
 

@@ -34,17 +34,17 @@ class Triangles:
 
     @property
     def normals(self) -> Array:
-        """(T, 3) outward unit normals; zero for a triangle without area."""
+        """Outward unit normals (T, 3); zero for a triangle without area."""
         cross = np.cross(self.corners[:, 1] - self.corners[:, 0], self.corners[:, 2] - self.corners[:, 0])
         return np.asarray(cross / np.maximum(np.linalg.norm(cross, axis=1), 1e-30)[:, None])
 
     @property
     def size_mm(self) -> float:
-        """Diagonal of the box around it."""
+        """Diagonal in mm of the box around the surface."""
         return float(np.linalg.norm(np.ptp(self.corners.reshape(-1, 3), axis=0)))
 
     def moved(self, rotation: Array, translation: Array) -> Triangles:
-        """The surface after X → R X + t."""
+        """Move the surface by X → R X + t."""
         return replace(self, corners=self.corners @ rotation.T + translation)
 
 

@@ -32,7 +32,7 @@ class OwnLine:
     cell_px: float
 
     def with_noise(self, centreline: Centreline, rays: Array, forms: Array, slope: Array, focal: float) -> Array:
-        """Covariance (N,) in 1/mm² of r·(π̂ − π) with what the line's own noise does to w.
+        """Compute the variance (N,) in 1/mm² of r·(π̂ − π), the line's own noise in w included.
 
         A cell's mean is off by z times its standard deviation. Points are averages over cells; the covariance changes
         so little from one to the next that an average of it is its value at the point.

@@ -67,7 +67,7 @@ AMBIGUOUS = Message("scan.fan_light_ambiguous", "it could be more than one of th
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Face:
-    """A plane face that two centrelines lie on, i of line k and j of line m: `of` ((i, k), (j, m)).
+    """Plane face on which two centrelines lie, i of line k and j of line m: `of` ((i, k), (j, m)).
 
     `on` (n, N): whether each centreline lies on it, too, were it of line 0 … N − 1.
     """
@@ -78,7 +78,7 @@ class Face:
 
 @dataclass(frozen=True, slots=True)
 class FanLines:
-    """The fan line (from 0) of each centreline; UNASSIGNED where none fits, and then the reason.
+    """Fan line (from 0) of each centreline; UNASSIGNED where none fits, and then the reason.
 
     `choices` holds the lines that the rules alone would allow; a number is sure where there is but one. `allowed` says
     which numbers go together (one True for all: any), `faces` where centrelines could lie.
@@ -92,7 +92,7 @@ class FanLines:
 
     @classmethod
     def settled_as(cls, line: Sequence[int]) -> FanLines:
-        """Numbers settled earlier."""
+        """Make a numbering of line numbers that were settled earlier."""
         return cls(tuple(line), (None,) * len(line), tuple((k,) for k in line))
 
     @property
@@ -102,7 +102,7 @@ class FanLines:
 
     @property
     def sure(self) -> FanLines:
-        """Only the numbers that the rules alone have settled."""
+        """The numbering without all numbers that the rules alone have not settled."""
         kept = (k if len(c) == 1 else UNASSIGNED for k, c in zip(self.line, self.choices, strict=True))
         return replace(self, line=tuple(kept))
 
@@ -114,7 +114,7 @@ class FanLines:
         return int(np.count_nonzero(np.any([on for on in lying if on.sum() > 2] or [False], axis=0)))
 
     def agreed(self, others: Sequence[FanLines]) -> FanLines:
-        """The numbers that none of the `others` contradicts."""
+        """Remove the numbers that any of the `others` contradicts."""
         line, reason = list(self.line), list(self.reason)
         for i, k in enumerate(line):
             if {k, *(lines.line[i] for lines in others)} - {k, UNASSIGNED}:

@@ -71,17 +71,17 @@ class SecondBounces:
         return piece in self.pieces
 
     def among(self, crossings: CrossingTable) -> NDArray[np.bool_]:
-        """(M,) True for the crossings of such a piece."""
+        """Mask (M,) of the crossings with such a piece."""
         return _of(self.pieces, crossings.a, crossings.piece_a) | _of(self.pieces, crossings.b, crossings.piece_b)
 
     def counted(self, records: Sequence[FrameRecord]) -> tuple[FrameRecord, ...]:
-        """The records of all frames with how many of their pieces are second bounces."""
+        """Add to the records of all frames how many of their pieces are second bounces."""
         count = Counter(frame for frame, _ in self.pieces)
         return tuple(replace(one, second_bounces=count[one.index]) for one in records)
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """A note for the technician if there are any."""
+        """Note for the technician if any piece is a second bounce."""
         if not self.pieces:
             return ()
         return (note_of("scan.second_bounces", n=len(self.pieces), frames=len({frame for frame, _ in self.pieces})),)
@@ -206,7 +206,7 @@ def _judged(
 
 
 def free_turns(crossings: CrossingTable, geometry: CrossingRays, sweeps: int) -> Array:
-    """Unit vectors (S, 3) along which the planes are free, for their crossings' rays lie in one plane; else zero."""
+    """Find unit vectors (S, 3) along which planes are free because their crossings' rays are coplanar; else zero."""
     px = np.sqrt(np.abs(np.linalg.det(geometry.jacobians)))
     free = np.zeros((sweeps, 3))
     for sweep in range(sweeps):

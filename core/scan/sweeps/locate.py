@@ -114,7 +114,7 @@ def choose_numbering(
 
 
 def some_sweeps(crossings: CrossingTable) -> NDArray[np.bool_]:
-    """Which crossings (M,) are of NUMBERING_SWEEPS sweeps spread over the scan, with the fan or each other.
+    """Mask (M,) of the crossings of NUMBERING_SWEEPS sweeps spread over the scan, with the fan or each other.
 
     They tell of fan and camera what all do.
     """
@@ -221,7 +221,7 @@ def planes_together(
     progress: Progress = silent,
     read_out: ReadOut = AT_ONCE,
 ) -> SweepPlanes:
-    """The same planes as of `locate_together`, in half the time where their uncertainty is not asked for.
+    """Locate all sweeps as `locate_together`, without their uncertainty, in half the time.
 
     Raises
     ------
@@ -236,7 +236,7 @@ def planes_together(
 
 
 def sweeping_frames(crossings: CrossingTable) -> NDArray[np.int64]:
-    """The frames (S,) that cross anything, in order."""
+    """List the frames (S,) that have any crossing, in order."""
     return np.unique(np.concatenate([crossings.a, crossings.b[~crossings.with_fan]]))
 
 

@@ -94,7 +94,7 @@ def _minus_2_ln_l(equations: Adjustment, base: Solution) -> float:
 def hand_notes(
     sweeps: LocatedSweeps, crossings: CrossingTable, camera: Camera, read_out: ReadOut, *, stated: bool
 ) -> tuple[Message, ...]:
-    """What the technician is told of the hand, if its motion can show."""
+    """Note the motion of the hand during the read-out, where it can show."""
     if not read_out.moves:
         return ()
     twist = _twist(sweeps, crossings, camera, read_out)

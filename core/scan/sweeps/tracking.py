@@ -69,14 +69,14 @@ class TrackedSweep:
     used: NDArray[np.int64]
 
     def without_crossings(self) -> TrackedSweep:
-        """The sweep and its plane alone, which it takes little memory to keep."""
+        """Drop the crossings: the sweep and its plane alone take little memory."""
         none = np.zeros(0, np.int64)
         table, rays = self.crossings.select(none), self.geometry.select(none)
         return replace(self, crossings=table, geometry=rays, left_out=(), used=none)
 
 
 class SweepTracker:
-    """Locates sweeps one after another.
+    """Tracker that locates sweeps one after another.
 
     `lines` are the numbers of the fan's centrelines as far as they are settled; given at first, they stay.
     """
@@ -155,14 +155,14 @@ class SweepTracker:
         return frame in self._outdated
 
     def located_anew(self, frame: int) -> TrackedSweep:
-        """The sweep of `frame` by the latest adjustment."""
+        """Locate the sweep of `frame` by the latest adjustment."""
         if frame in self._outdated:
             self._outdated.discard(frame)
             self._sweeps[frame] = self._located(self._sweeps[frame])
         return self._sweeps[frame]
 
     def sweeps(self) -> Iterator[TrackedSweep]:
-        """All sweeps so far, in the order they came."""
+        """Yield all sweeps so far, in the order they came."""
         return iter(self._sweeps.values())
 
     def _is_new(self, pieces: Sequence[Centreline]) -> bool:
@@ -230,7 +230,10 @@ class SweepTracker:
 
 
 def movement_px(now: Sequence[Centreline], before: Sequence[Centreline]) -> float:
-    """Median distance in pixels, across the stripe, of the centrelines `now` from those `before`; NaN without any."""
+    """Compute the median distance in px, across the stripe, of the centrelines `now` from those `before`.
+
+    NaN without any.
+    """
     if not now or not before:
         return float("nan")
     uv = np.concatenate([piece.uv for piece in now])
