@@ -48,7 +48,7 @@ Target = Literal["camera_target", "plane_target"]
 
 
 def size_assumed(target: Target, scale_sd: float) -> Message:
-    """Note on the standard uncertainty that is assumed of a target's size, as a share of the size."""
+    """Note the standard uncertainty that is assumed for the size of a target, as a share of it."""
     return note_of("target.size_assumed", field=Field(f"{target}.scale_sd", whole=True), per_mille=scale_sd * 1e3)
 
 
@@ -94,7 +94,7 @@ class BoardTolerance:
             )
 
     def notes(self, target: Target, *, shape_known: bool = False) -> tuple[Message, ...]:
-        """What is assumed of a target of which rig.toml says nothing, as far as the step of that `target` rests on it.
+        """Note what is assumed of a target of which rig.toml says nothing, if the step of that `target` depends on it.
 
         A bow of the camera's target is found in its views, so only the plane target's flatness is ever assumed, and
         that not where its shape is known from them. That the plane target's size is assumed is told by the fact
@@ -110,12 +110,12 @@ class BoardTolerance:
 
     @property
     def size_sd(self) -> float:
-        """Standard uncertainty of its size as a share of it, stated or not."""
+        """Standard uncertainty of the size of the board as a share of it, stated or assumed."""
         return SUSPECTED_SCALE if self.scale_sd is None else self.scale_sd
 
     @property
     def flatness_sd_mm(self) -> float:
-        """Standard deviation of how far its edges may be off its plane, stated or not."""
+        """Standard deviation in mm of how far the edges may be off the board's plane, stated or assumed."""
         return SUSPECTED_MM if self.flatness_mm is None else self.flatness_mm
 
     @property
@@ -152,13 +152,13 @@ class Board:
 
     @classmethod
     def of(cls, points: Sequence[Array]) -> Board:
-        """The board on which all of `points`, (N, 3) in each view, are."""
+        """Make the board on which all of `points`, (N, 3) in each view, are."""
         joined = np.concatenate(points)[:, :2]
         low, high = joined.min(axis=0), joined.max(axis=0)
         return cls((low + high) / 2, np.maximum((high - low) / 2, 1e-9))
 
     def changes(self, points: Array) -> Array:
-        """∂(x, y, z)/∂(shape) of flat `points` (N, 3): (N, 3, 4)."""
+        """Compute ∂(x, y, z)/∂(shape) of flat `points` (N, 3): (N, 3, 4)."""
         off = points[:, :2] - self.middle
         x, y = (off / self.half).T
         derivative = np.zeros((len(points), 3, 4))
@@ -182,19 +182,19 @@ class BoardShape:
 
     @property
     def sd(self) -> Array:
-        """Standard deviations (4,)."""
+        """Standard deviations (4,) of the shape's parameters."""
         return np.asarray(np.sqrt(np.maximum(np.diag(self.covariance), 0)), dtype=np.float64)
 
     @property
     def departure_mm(self) -> float:
-        """Largest less smallest z of the board, its corners included."""
+        """Largest less smallest z in mm over the board, its corners included."""
         grid = np.linspace(-1, 1, 21)
         x, y = (axis.ravel() for axis in np.meshgrid(grid, grid))
         return float(np.ptp(self.values[0] * x * x + self.values[1] * y * y + self.values[2] * x * y))
 
     @property
     def surely_bowed(self) -> bool:
-        """Whether noise alone would hardly ever make a flat board look so bowed."""
+        """Whether the board is bowed by more than noise makes of a flat one."""
         bow = self.values[:3]
         if not bow.any():
             return False

@@ -48,7 +48,7 @@ LEAST_INFORMATION = 0.05
 
 @dataclass(frozen=True, slots=True)
 class Stability:
-    """How far a rig may have changed since its calibration: standard uncertainties.
+    """Standard uncertainties of how far a rig may have changed since its calibration.
 
     The defaults are those of a rig of which nothing is stated, a few kelvins and days after its calibration: mounts
     and modules of lasers point elsewhere by 10 to 100 µrad for each kelvin, 150 mm of aluminium grow by 17 µm in five
@@ -86,7 +86,7 @@ class Stability:
             raise ValueError(f"a stability is a number not below 0: {self}")
 
     def times(self, turn: float, shift: float, centre: float, focal: float) -> Stability:
-        """A rig that changes by so many times more."""
+        """Multiply each standard uncertainty by its factor."""
         return Stability(turn * self.turn, shift * self.shift_mm, centre * self.centre_px, focal * self.focal_share)
 
     @property
@@ -95,7 +95,7 @@ class Stability:
 
     @property
     def over_default(self) -> Array:
-        """(9,) the standard deviation of each of `changes`, which are as large as the default's."""
+        """Standard deviation (9,) of each of `changes`, which are as large as the default's."""
         share = np.array(self._each) / np.array(DEFAULT_STABILITY._each)
         return np.asarray(share[[0, 0, 0, 1, 1, 1, 2, 2, 3]], dtype=np.float64)
 
@@ -108,7 +108,7 @@ STABLE = Stability(0.0, 0.0, 0.0, 0.0)
 
 @dataclass(frozen=True, slots=True)
 class RigSpread:
-    """A rig changes `factor` times as much as by default, by checks on `days` days from the `first` to the `last`."""
+    """Factor on the default stability, by checks of a rig on `days` days from the `first` to the `last`."""
 
     factor: float
     days: int
@@ -117,12 +117,12 @@ class RigSpread:
 
     @property
     def stability(self) -> Stability:
-        """That by default, times the factor."""
+        """Default stability times the factor."""
         return DEFAULT_STABILITY.times(*[self.factor] * 4)
 
 
 def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
-    """The nine changes that are reckoned with, each one standard deviation of the default stability large.
+    """Make the nine changes of a rig that are considered, each one standard deviation of the default stability large.
 
     Three turns of the fan about the laser and three shifts of it, two shifts of the picture, and the focal length.
     """
@@ -142,7 +142,7 @@ def changes(camera: Camera, fan: Fan) -> tuple[Deviation, ...]:
 
 
 def displaced_fan(fan: Fan, turn: Array, pivot: Array, shift_mm: Array | None = None) -> Fan:
-    """The fan turned by the rotation vector `turn` (3,) in rad about `pivot` (3,) in mm, and then shifted (3,)."""
+    """Turn the fan by the rotation vector `turn` (3,) in rad about `pivot` (3,) in mm, and then shift it (3,)."""
     rotation = Rotation.from_rotvec(turn).as_matrix()
     moved = pivot if shift_mm is None else pivot + shift_mm
     planes = []
@@ -155,7 +155,10 @@ def displaced_fan(fan: Fan, turn: Array, pivot: Array, shift_mm: Array | None = 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Evidence:
-    """What pictures say of K deviations x: `information` (K, K) is N, `scatter` (K, K) Σ, `gradient` (K,) g."""
+    """Normal equations of pictures for K deviations x.
+
+    `information` (K, K) is N, `scatter` (K, K) Σ, `gradient` (K,) g.
+    """
 
     information: Array
     scatter: Array
@@ -163,7 +166,7 @@ class Evidence:
 
     @classmethod
     def none(cls, count: int) -> Self:
-        """No pictures say anything of so many deviations."""
+        """Make the evidence of no pictures about so many deviations."""
         return cls(np.zeros((count, count)), np.zeros((count, count)), np.zeros(count))
 
     def __add__(self, other: Evidence) -> Evidence:
@@ -175,7 +178,7 @@ class Evidence:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Change:
-    """What pictures say of changes since the calibration.
+    """Judgement of whether the rig has changed since its calibration.
 
     Parameters
     ----------
@@ -209,12 +212,12 @@ class Change:
 
     @property
     def surely(self) -> bool:
-        """Whether camera or laser surely differ from their calibration: nothing measured then proves conformity."""
+        """Whether camera or laser surely differ from their calibration: no measured value then proves conformity."""
         return self.p < PROVES_NOTHING
 
     @property
     def seemingly(self) -> bool:
-        """Whether they seem to, and no check of the day is in order, which proves nothing either.
+        """Whether camera or laser seem to differ, and no check of the day is in order, which proves nothing either.
 
         Who has no passed check has only the scan to go by, which sees little of most changes: what shows in it at all
         may be far larger than U allows for.
@@ -223,7 +226,7 @@ class Change:
 
     @property
     def notes(self) -> tuple[Message, ...]:
-        """A note if something has surely changed, and on pictures that say nothing."""
+        """Note if something has surely changed, and on pictures that carry no information."""
         return (*self._changed, *self.left_out)
 
     @property
@@ -239,7 +242,7 @@ class Change:
 def reckoned(
     stated: Stability | None, charted: RigSpread | None, assumed: Stability = DEFAULT_STABILITY
 ) -> tuple[Stability, Source]:
-    """The stability that is reckoned with, and the source of what changes by it: `assumed` where neither is known."""
+    """Choose the stability to use, and the source of the uncertainty by it: `assumed` where neither other is known."""
     if charted is not None:
         return charted.stability, "charted change"
     return (assumed, "assumed change") if stated is None else (stated, "change")
@@ -254,7 +257,9 @@ def judge(
     charted: RigSpread | None = None,
     assumed: Stability = DEFAULT_STABILITY,
 ) -> Change:
-    """What has changed, by all evidence of the K `deviations`: those of the calibrations, and then `changes`.
+    """Estimate what has changed, from all evidence of the K `deviations`.
+
+    Those of the calibrations first, then the nine `changes`.
 
     `camera` and `fan` are those calibrated. The stability is that by the rig's checks, `charted`, where they say it;
     else that `stated`, else that `assumed`; what change adds says so.
@@ -279,13 +284,13 @@ def judge(
 
 
 def agrees(deviations: Sequence[Deviation], evidence: Evidence) -> bool:
-    """Whether pictures that say something of a rig's changes agree with its calibrations."""
+    """Whether pictures that carry information about a rig's changes agree with its calibrations."""
     squares, freedom = _squares(evidence, np.array([one.source == "change" for one in deviations], dtype=np.bool_))
     return freedom > 0 and _by_chance(squares, freedom) >= P_TOLD
 
 
 def lasting(deviations: Sequence[Deviation], evidence: Evidence, stability: Stability) -> tuple[Array, Array]:
-    """x̂ (K,) and C (K, K) of the deviations by all evidence; 0 for what cannot change."""
+    """Estimate x̂ (K,) and C (K, K) of the deviations from all evidence; 0 for those that cannot change."""
     x, estimate, root = _lasting(deviations, evidence, stability)
     everywhere, square = np.zeros(len(x)), np.zeros((len(x), len(x)))
     everywhere[x], square[np.ix_(x, x)] = estimate, root @ root.T
@@ -339,7 +344,7 @@ def _vector(camera: Camera, fan: Fan) -> Array:
 
 
 def laser_of(fan: Fan) -> Array:
-    """Where the light planes meet, as near to the camera as they do (3,); of a single plane its nearest point.
+    """Find the point (3,) where the light planes meet, nearest to the camera; of a single plane its nearest point.
 
     Planes at small angles meet along a line that is well known but for noise, which is taken for none.
     """

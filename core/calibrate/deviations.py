@@ -44,7 +44,7 @@ NEGLIGIBLE = 1e-12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Deviation:
-    """A camera and a fan displaced together by one standard uncertainty in one direction.
+    """Camera and fan displaced together by one standard uncertainty in one direction.
 
     `source` says whose error it is: "camera" (the fan moves along with it, as it would have been calibrated through
     such a camera), "fan" (the camera is as calibrated), "bend" (its light is off its planes),

@@ -39,13 +39,13 @@ USUAL_HOURS = 24.0
 
 @dataclass(frozen=True, slots=True)
 class Drift:
-    """How far a rig may change for each kelvin, and each hour: standard uncertainties; 0 where nothing is stated."""
+    """Standard uncertainties of the change of a rig per kelvin and per hour; 0 where nothing is stated."""
 
     per_kelvin: Stability = STABLE
     per_hour: Stability = STABLE
 
     def over(self, apart: Apart) -> Stability:
-        """What warmth and time change, as far apart as these."""
+        """Compute the stability for a difference of temperature and time."""
         kelvins, hours = [apart.kelvins] * 4, [apart.hours] * 4
         return together(self.per_kelvin.times(*kelvins), self.per_hour.times(*hours))
 
@@ -74,7 +74,7 @@ class Apart:
 
 
 def apart(one: float | None, other: float | None, hours: float | None, usual_kelvins: float) -> Apart:
-    """How far apart two temperatures in °C and times are, with what is usual for what is not stated."""
+    """Compute the difference of two temperatures in °C and times, with the usual one for what is not stated."""
     unknown = one is None or other is None
     return Apart(
         usual_kelvins if one is None or other is None else abs(one - other),
@@ -85,7 +85,7 @@ def apart(one: float | None, other: float | None, hours: float | None, usual_kel
 
 
 def together(*parts: Stability) -> Stability:
-    """What independent changes make, each a standard uncertainty."""
+    """Add independent changes in quadrature, each a standard uncertainty."""
     return Stability(
         math.hypot(*(one.turn for one in parts)),
         math.hypot(*(one.shift_mm for one in parts)),
@@ -95,7 +95,10 @@ def together(*parts: Stability) -> Stability:
 
 
 def stability_after(stated: Stability | None, drift: Drift, since: Apart) -> Stability | None:
-    """How far a rig may have changed `since` its calibration; None where nothing is stated and the default will do."""
+    """Compute how far a rig may have changed `since` its calibration.
+
+    None where nothing is stated and the default applies.
+    """
     if drift != NO_DRIFT:
         return together(DEFAULT_STABILITY if stated is None else stated, drift.over(since))
     if stated is not None or since.kelvins_assumed or since.kelvins <= USUAL_KELVINS:
@@ -104,7 +107,7 @@ def stability_after(stated: Stability | None, drift: Drift, since: Apart) -> Sta
 
 
 def loosened(evidence: Evidence, deviations: Sequence[Deviation], since: Stability) -> Evidence:
-    """What pictures say of the K `deviations` once the rig may have changed by as much `since` they were taken."""
+    """Widen the evidence of the K `deviations` by how much the rig may have changed `since` the pictures were taken."""
     if since == STABLE:
         return evidence
     variance = np.zeros(len(deviations))

@@ -16,7 +16,7 @@ POOR_SHARE = 0.5
 
 
 class Grade(StrEnum):
-    """How good it is."""
+    """Grade of a quality: good, fair or poor."""
 
     GOOD = "good"
     FAIR = "fair"
@@ -25,17 +25,17 @@ class Grade(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """From `good` on it is good; less than `POOR_SHARE` of that is poor."""
+    """Limit of a grade: from `good` on it is good; less than `POOR_SHARE` of that is poor."""
 
     good: float
 
     @property
     def poor(self) -> float:
-        """Less than this is poor."""
+        """Value below which the grade is poor."""
         return POOR_SHARE * self.good
 
     def grade(self, value: float) -> Grade:
-        """The grade of a value, in the unit of the limit."""
+        """Grade a value, in the unit of the limit."""
         if value >= self.good:
             return Grade.GOOD
         return Grade.FAIR if value >= self.poor else Grade.POOR

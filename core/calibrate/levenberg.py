@@ -28,14 +28,14 @@ LEAST_DAMPING, MOST_DAMPING = 1e-12, 1e8
 
 
 class Linearised(Protocol):
-    """A sum of squared residuals near a state, as its normal equations."""
+    """Normal equations of a sum of squared residuals near a state."""
 
     @property
     def cost(self) -> float:
-        """The sum of squares at the state."""
+        """Sum of squares at the state."""
 
     def step(self, damping: float) -> Array:
-        """The local step (P,) to the minimum, with the diagonal raised by `damping` of itself."""
+        """Compute the local step (P,) to the minimum, with the diagonal raised by `damping` of itself."""
 
 
 class DenseProblem:
@@ -59,7 +59,10 @@ Model = TypeVar("Model", bound=Linearised)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Solution(Generic[State, Model]):
-    """The state, and the residuals with their derivatives there; a minimum if it has `converged`."""
+    """Result of a minimisation.
+
+    A minimum if it has `converged`. `linear` are the residuals with their derivatives there.
+    """
 
     state: State
     linear: Model

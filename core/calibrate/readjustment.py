@@ -64,7 +64,7 @@ size differs by a thousandth looks like a laser that is 0.3 mm further away."""
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CheckPictures:
-    """What the pictures of a check are, and how far they are from the calibrations.
+    """Pictures of a check: what they are, and how far they are from the calibrations.
 
     `squares` is the sum of squares of the offsets and slopes of its stripes in units of their covariance by noise, of
     `freedom` of them; `poses` say something. `hashes` are SHA-256 by the pictures' names, `pictures_id` names them all.
@@ -270,7 +270,7 @@ def _vector(one: Deviation) -> Array:
 
 
 def nothing_changed(p: float) -> InputError | None:
-    """Why a rig whose check has this p is not re-adjusted; None if it may be."""
+    """Give the reason why a rig whose check has this p is not re-adjusted; None if it may be."""
     if p < P_TOLD:
         return None
     return _refused(

@@ -46,7 +46,7 @@ class ViewQuality(Excludable):
 
     @property
     def name(self) -> str:
-        """The picture's, as `TargetView.name`."""
+        """Name of the picture, as `TargetView.name`."""
         return self.view.name
 
 
@@ -85,7 +85,7 @@ class CameraCalibration:
 
     @property
     def ranked(self) -> tuple[ViewQuality, ...]:
-        """The views from the best-fitting to the worst, those left out last."""
+        """Views from the best-fitting to the worst, those left out last."""
         return tuple(sorted(self.views, key=lambda quality: (not quality.used, np.nan_to_num(quality.rms_px, nan=1e9))))
 
 
@@ -114,7 +114,7 @@ class PlanePose(Excludable):
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Readjustment:
-    """What was done to camera and fan by the pictures of a check (`core.calibrate.readjustment`).
+    """Record of moving camera and fan to the pictures of a check (`core.calibrate.readjustment`).
 
     Parameters
     ----------
@@ -155,7 +155,7 @@ class Readjustment:
 
     @property
     def note(self) -> Message:
-        """What is moved, in a sentence: of what is proposed as of what was accepted."""
+        """Note on what is moved, by a proposal or by an accepted re-adjustment."""
         turn, shift, drift, focal = np.split(np.asarray(self.change), [3, 6, 8])
         return note_of(
             "fan.readjusted",
@@ -230,14 +230,14 @@ class FanCalibration:
 
     @property
     def told(self) -> tuple[Message, ...]:
-        """All that is to be said of it: its notes, and of its target's size that it is assumed, unless it is not."""
+        """Notes, with one on the size of its target if that is assumed."""
         unstated = self.scale_assumed is not False and self.scale_sd > 0
         size = (size_assumed("plane_target", self.scale_sd),) if unstated else ()
         return tuple(dict.fromkeys((*self.notes, *size)))
 
     @property
     def minority(self) -> Message | None:
-        """What is to be decided where fewer than half of the poses that show target and stripes are used."""
+        """Warning that fewer than half of the poses that show target and stripes are used; None if not."""
         speaking = [
             pose
             for pose in self.poses
@@ -254,7 +254,7 @@ class FanCalibration:
         )
 
     def camera_used(self, given: CameraCalibration) -> CameraCalibration:
-        """The camera this fan is to be used with: the `given` calibration, corrected if the poses did so."""
+        """Give the camera to use with this fan: the `given` calibration, corrected if the poses did so."""
         if self.camera is None or self.camera_covariance is None:
             return given
         return replace(given, camera=self.camera, covariance=self.camera_covariance)
@@ -262,7 +262,7 @@ class FanCalibration:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ProposedReadjustment:
-    """What a re-adjustment would make of camera and fan, and what that does.
+    """Proposed re-adjustment of camera and fan, with its effects.
 
     Parameters
     ----------
@@ -285,6 +285,6 @@ class ProposedReadjustment:
 
     @property
     def record(self) -> Readjustment:
-        """What would be done."""
+        """Record of the re-adjustment if it is accepted."""
         assert self.fan.readjusted is not None
         return self.fan.readjusted

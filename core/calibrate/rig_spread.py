@@ -30,7 +30,10 @@ FACTORS = 2.0 ** (0.5 * np.arange(-8, 9))
 
 
 def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Array:
-    """Logarithm (F,) of the likelihood of a check for each of `FACTORS`; its evidence is of the K `deviations`."""
+    """Compute the logarithm (F,) of the likelihood of a check for each of `FACTORS`.
+
+    Its evidence is of the K `deviations`.
+    """
     of_change = np.array([one.source == "change" for one in deviations], dtype=np.bool_)
     sd = np.array([one.source != UNEXPLAINED for one in deviations], dtype=np.float64)
     likelihoods = []
@@ -45,7 +48,7 @@ def log_likelihoods(deviations: Sequence[Deviation], evidence: Evidence) -> Arra
 def stability_by_pictures(
     deviations: Sequence[Deviation], evidence: Evidence, guess: Stability = DEFAULT_STABILITY
 ) -> Stability:
-    """The stability to assume of a rig of which nothing is stated and no check of the day has passed.
+    """Estimate the stability to assume of a rig of which nothing is stated and no check of the day has passed.
 
     The default is known to a factor of two only, and a rig that has changed more than most shows a little of it in each
     scan. It is the default times the root of the mean square of t, given the pictures, and no less than the default:
@@ -58,7 +61,9 @@ def stability_by_pictures(
 
 
 def most_likely_factor(likelihoods: Array, about: float = 1.0) -> float:
-    """The factor by the likelihoods (n, F) of n checks: the mean of its logarithm; `about` where they say nothing.
+    """Estimate the factor from the likelihoods (n, F) of n checks by the mean of its logarithm.
+
+    `about` without information.
 
     Before any check it is within a factor of two of that (one standard deviation): default and statement are honest
     guesses.

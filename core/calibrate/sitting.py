@@ -16,7 +16,7 @@ FRESH_HOURS = 4.0
 
 @dataclass(frozen=True, slots=True)
 class Taken:
-    """By which camera a recording was made, as its log names it, and when its first and last picture were taken."""
+    """Camera of a recording, as its log names it, and the times of its first and last picture."""
 
     camera: str
     first: datetime
@@ -24,7 +24,9 @@ class Taken:
 
 
 def hours_of_sitting(planes: Taken | None, scan: Taken | None, fresh_hours: float | None = None) -> float | None:
-    """Hours from the first picture to the last where both are of one sitting; else, or where that is not known, None.
+    """Compute the hours from the first picture to the last if both are of one sitting.
+
+    None if not, or if that is not known.
 
     That is within `fresh_hours`, where the rig's description states them.
     """

@@ -32,7 +32,7 @@ _POSE = 6
 
 @dataclass(frozen=True, slots=True)
 class TargetRatio:
-    """How large the second target is against the first, over what is stated.
+    """Ratio of the size of the second target to the first, over the stated ratio.
 
     Parameters
     ----------
@@ -50,11 +50,11 @@ class TargetRatio:
     fit_p: float
 
     def p(self, scale_sd: float) -> float:
-        """Probability that chance sets sizes stated with this relative uncertainty together so far apart."""
+        """Compute the probability that chance puts sizes stated with this relative uncertainty so far apart."""
         return float(2 * ndtr(-abs(self.ratio - 1) / np.hypot(self.u, scale_sd)))
 
     def note(self, scale_sd: float, other: Message) -> Message:
-        """What the pictures say of the sizes stated; `other` is what the plane target is seen beside."""
+        """Note how the pictures' ratio agrees with the sizes stated; `other` names the other target."""
         if self.fit_p < NOT_FIXED:
             return note_of("target.not_fixed", n=self.pictures, other=other, p=self.fit_p)
         if self.p(scale_sd) >= P_TOLD:
@@ -72,7 +72,9 @@ class TargetRatio:
 
 
 def target_ratio(shown: Sequence[tuple[TargetView, TargetView]], camera: Camera) -> TargetRatio:
-    """Adjust N ≥ 1 pictures of two targets; with several the plate is to be tilted or moved between them.
+    """Compute the ratio of sizes from N ≥ 1 pictures of two targets.
+
+    With several the plate is to be tilted or moved between them.
 
     Raises
     ------

@@ -104,5 +104,5 @@ def with_shape(
 
 
 def freedom_of(counted: Sequence[Observed], free: NDArray[np.intp]) -> int:
-    """Observations less unknowns of camera and poses."""
+    """Count the observations less the unknowns of camera and poses."""
     return 2 * sum(len(view.points) for view in counted) - len(free) - 6 * len(counted)

@@ -38,7 +38,7 @@ class BoardFit:
         return self.tolerance.free
 
     def shaped(self, flat: Sequence[Observed]) -> list[Observed]:
-        """Views of `flat` points with the points where the board has them."""
+        """Replace the points of views of a `flat` board by those of the board's shape."""
         return [replace(view, points=self.board.shaped(view.points, self.values)) for view in flat]
 
     def _normal(self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp]) -> Normal:
@@ -49,7 +49,7 @@ class BoardFit:
     def covariance(
         self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp], freedom: int
     ) -> tuple[Array, SharedErrorFactors]:
-        """Covariance of the camera's `free` parameters and the shape's behind them, and how it was widened.
+        """Compute the covariance of the camera's `free` parameters, followed by the shape's, and how it was widened.
 
         Raises
         ------
@@ -62,7 +62,7 @@ class BoardFit:
         return free_covariance(normal, [view.points for view in flat], cells, freedom, precision)
 
     def shape(self, covariance: Array, camera_parameters: int) -> BoardShape:
-        """The shape with its part of such a covariance."""
+        """Make the shape with its part of such a covariance."""
         own = np.zeros((len(self.values), len(self.values)))
         own[np.ix_(self.free, self.free)] = covariance[camera_parameters:, camera_parameters:]
         return BoardShape(self.board, self.values, own)
@@ -73,7 +73,7 @@ class BoardFit:
         return np.concatenate([np.zeros(camera_parameters), own])
 
     def step(self, bundle: Bundle, flat: Sequence[Observed], free: NDArray[np.intp], freedom: int) -> BoardFit:
-        """One Gauss–Newton step of the shape, camera and poses moving along.
+        """Do one Gauss–Newton step of the shape, camera and poses moving along.
 
         Raises
         ------

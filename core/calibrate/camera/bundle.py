@@ -63,7 +63,7 @@ class Bundle:
     poses: tuple[Pose, ...]
 
     def of_views(self, numbers: Sequence[int]) -> Bundle:
-        """The camera with the poses of these views alone."""
+        """Select the poses of these views, with the same camera."""
         return Bundle(self.camera, tuple(self.poses[i] for i in numbers))
 
 
@@ -213,12 +213,12 @@ def refine_robustly(start: Bundle, views: Sequence[Observed], free: NDArray[np.i
 
 
 def residuals(camera: Camera, pose: Pose, view: Observed) -> Array:
-    """Observed − predicted (N, 2) in pixels; infinite if a point is not in front of the camera."""
+    """Compute observed − predicted (N, 2) in pixels; infinite if a point is not in front of the camera."""
     return _StackedViews.of([view]).residuals(Bundle(camera, (pose,)))
 
 
 def residual_lengths(bundle: Bundle, observed: Sequence[Observed]) -> list[Array]:
-    """Lengths (N,) of the weighted residual vectors of every view, in pixels."""
+    """Compute the lengths (N,) of the weighted residual vectors of every view, in pixels."""
     return [
         np.linalg.norm(residuals(bundle.camera, pose, view), axis=1) * np.sqrt(view.weights)
         for pose, view in zip(bundle.poses, observed, strict=True)

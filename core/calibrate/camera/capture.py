@@ -70,7 +70,10 @@ HOLD_STILL = Message("live.hold_still", "Hold still.")
 
 @dataclass(frozen=True, slots=True)
 class Verdict:
-    """Whether to take the view, the sentence that says why or why not, and whether nothing will come of this one."""
+    """Decision on a view: whether to take it, and the reason.
+
+    `of_no_use` if the target must be held otherwise to take one.
+    """
 
     take: bool
     sentence: Message
@@ -78,7 +81,7 @@ class Verdict:
 
 
 class CaptureJudge:
-    """Judges the views of a live picture one after another.
+    """Judge of the views of a live picture, one after another.
 
     `views` are those taken so far and those known from before, `cells` (rows, MAP_COLUMNS) what of the picture they
     cover.
@@ -141,7 +144,7 @@ class CaptureJudge:
         return Verdict(True, TAKEN) if already_there is None else Verdict(False, already_there, of_no_use=True)
 
     def know(self, views: Iterable[TargetView]) -> None:
-        """Add the views of an earlier recording, which new ones are added to; they cannot be deleted here."""
+        """Add the views of an earlier recording that is being continued; they cannot be deleted here."""
         for view in views:
             nameless = TargetView(view.points, view.uv, view.sigma, "")
             self._taken.append((nameless, view_geometry(nameless, self._camera)))

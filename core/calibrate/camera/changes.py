@@ -14,7 +14,7 @@ UNLIKELY = 3.0
 
 @dataclass(frozen=True, slots=True)
 class ParameterChange:
-    """One parameter in two calibrations.
+    """Change of one parameter between two calibrations.
 
     `change` is second − first, `sd` the standard deviation to expect of it, the calibrations being of different views;
     `unlikely` if it is more than three of them.
@@ -28,7 +28,7 @@ class ParameterChange:
 
     @property
     def unlikely(self) -> bool:
-        """Whether chance alone hardly explains the change."""
+        """Whether chance alone is unlikely to explain the change."""
         return abs(self.change) > UNLIKELY * self.sd > 0
 
 
@@ -56,7 +56,7 @@ def camera_changes(first: CameraCalibration, second: CameraCalibration, progress
 
 
 def parameter_values(calibration: CameraCalibration) -> tuple[float, ...]:
-    """The parameters in the order of CAMERA_PARAMETERS."""
+    """List the parameters in the order of CAMERA_PARAMETERS."""
     matrix, distortion = calibration.camera.matrix, calibration.camera.distortion
     values = [matrix[0, 0], matrix[1, 1], matrix[0, 1], matrix[0, 2], matrix[1, 2], *distortion]
     return tuple(float(value) for value in values)

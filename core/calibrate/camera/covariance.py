@@ -50,7 +50,7 @@ class SharedErrorFactors:
 
     @property
     def total(self) -> float:
-        """The factor applied: all are variances on top of the independent one."""
+        """Factor that is applied: all are variances on top of the independent one."""
         return float(np.sqrt(self.within_views**2 + self.across_views**2 + self.over_picture**2 - 2))
 
 

@@ -62,13 +62,13 @@ def empty_regions(uv: Array, image_size: tuple[int, int], names: Sequence[Messag
 
 
 def tilt(pose: Pose) -> float:
-    """Angle in rad between the target's normal and the optical axis, 0 to π/2."""
+    """Compute the angle in rad between the target's normal and the optical axis, 0 to π/2."""
     normal = pose.rotation[:, 2]
     return float(np.arctan2(np.hypot(normal[0], normal[1]), abs(normal[2])))
 
 
 def tilt_range(poses: Sequence[Pose]) -> float:
-    """The largest angle in rad between the target's planes in two of the views."""
+    """Compute the largest angle in rad between the target's planes in two of the views."""
     normals = [pose.rotation[:, 2] for pose in poses]
     angles = [np.arctan2(np.linalg.norm(np.cross(a, b)), abs(a @ b)) for a, b in combinations(normals, 2)]
     return float(max(angles, default=0.0))

@@ -54,7 +54,7 @@ class ExpectedError:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ResidualField:
-    """Corners that count, of all used views together.
+    """Corners used for the fit and their residuals, of all used views together.
 
     `uv` (N, 2) where they were found, `residual` (N, 2) observed − predicted, both in pixels; `view` (N,) the index of
     each corner's view in the calibration's `views`.
@@ -112,7 +112,7 @@ def expected_error(
 
 
 def residual_field(calibration: CameraCalibration) -> ResidualField:
-    """Collect the corners that count and their residuals."""
+    """Collect the corners used for the fit and their residuals."""
     used = [(index, view) for index, view in enumerate(calibration.views) if view.used]
     if not used:
         return ResidualField(np.zeros((0, 2)), np.zeros((0, 2)), np.zeros(0, np.intp))
@@ -124,7 +124,7 @@ def residual_field(calibration: CameraCalibration) -> ResidualField:
 
 
 def corner_depths(calibration: CameraCalibration) -> Array:
-    """Depths z in mm of the corners that count."""
+    """Compute depths z in mm of the corners used for the fit."""
     depths = [view.pose.apply(view.view.points[view.counted])[:, 2] for view in calibration.views if view.used]
     return np.concatenate(depths) if depths else np.zeros(0)
 

@@ -77,13 +77,13 @@ class ViewGeometry:
     pose: Pose
 
     def angle_to(self, other: ViewGeometry) -> float:
-        """Angle in rad between the planes of two views, 0 to π/2."""
+        """Compute the angle in rad between the planes of two views, 0 to π/2."""
         sine = np.linalg.norm(np.cross(self.normal, other.normal))
         return float(np.arctan2(sine, abs(self.normal @ other.normal)))
 
 
 def stand_in_camera(image_size: tuple[int, int]) -> Camera:
-    """Make a camera as most are, to estimate tilts as long as the true one is not known."""
+    """Make a typical camera, to estimate tilts as long as the true one is not known."""
     width, height = image_size
     focal = _USUAL_FOCAL * max(width, height)
     return Camera(
@@ -118,7 +118,7 @@ def missing_from(
     image_size: tuple[int, int],
     series: Series = CAMERA_VIEWS,
 ) -> tuple[Message, ...]:
-    """Advise as `what_is_missing`, from geometries of the views that are known already."""
+    """Advise as `what_is_missing`, from geometries that are known already."""
     wanted = {"enough": series.enough, "pictures": series.pictures}
     if not views:
         return (Message("advice.record_first", "Record at least {enough} {pictures}; there is none.", **wanted),)

@@ -52,7 +52,7 @@ def judge_picture(calibration: CameraCalibration) -> PictureResiduals:
 
 
 def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
-    """What is wrong with the residuals, and in which direction."""
+    """Note what is wrong with the residuals, and in which direction."""
     found = judge_picture(calibration)
     bad = _bad_fit(calibration.rms_px, found.over_picture.times)
     notes = [] if bad is None else [bad]
@@ -64,7 +64,7 @@ def notes_on_picture(calibration: CameraCalibration) -> tuple[Message, ...]:
 
 
 def bad_fit(calibration: CameraCalibration) -> Message | None:
-    """Say that a calibration is bad, by how its corners fit; None if it is not."""
+    """Complain of a calibration whose corners fit badly; None if they fit."""
     return _bad_fit(calibration.rms_px, judge_picture(calibration).over_picture.times)
 
 
@@ -108,7 +108,7 @@ _OUTWARDS, _INWARDS = Message("camera.outwards", "outwards"), Message("camera.in
 
 
 def direction_of(u: float, v: float) -> Message:
-    """Which way in the picture (u, v) points."""
+    """Name the direction in the picture in which (u, v) points."""
     if abs(u) > abs(v):
         return Message("camera.to_the_right", "to the right") if u > 0 else Message("camera.to_the_left", "to the left")
     return Message("camera.downwards", "downwards") if v > 0 else Message("camera.upwards", "upwards")

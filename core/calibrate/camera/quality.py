@@ -75,7 +75,7 @@ def view_qualities(
     fits: Mapping[int, tuple[Pose, Verdict]],
     board: BoardShape,
 ) -> tuple[ViewQuality, ...]:
-    """Qualities of all `views`: those of index in `fits` with pose and verdict, the others with their reason."""
+    """Compute the quality of all `views`; `fits` has pose and verdict by index, `reasons` those of the others."""
     return tuple(
         fitted_view(view, camera, *fits[index], board) if index in fits else unfitted_view(view, reasons[index])
         for index, view in enumerate(views)
@@ -83,7 +83,7 @@ def view_qualities(
 
 
 def rms_and_mean(errors: Array) -> tuple[float, float]:
-    """Root mean square and mean of the lengths of residual vectors (N, 2)."""
+    """Compute root mean square and mean of the lengths of residual vectors (N, 2)."""
     lengths = np.linalg.norm(errors, axis=1)
     return float(np.sqrt(np.mean(lengths**2))), float(lengths.mean())
 

@@ -16,7 +16,7 @@ from core.model.arrays import Array
 
 
 def parameters_of(camera: Camera) -> Array:
-    """The parameters (10,) of `camera` in the order of CAMERA_PARAMETERS."""
+    """List the parameters (10,) of `camera` in the order of CAMERA_PARAMETERS."""
     (alpha, gamma, u0), (_, beta, v0), _ = camera.matrix
     return np.array([alpha, beta, gamma, u0, v0, *camera.distortion])
 
@@ -54,7 +54,7 @@ def linearise(camera: Camera, pose: Pose, points: Array) -> tuple[Array, Array, 
 
 
 def linearise_turned(camera: Camera, turned: Array, position: Array) -> tuple[Array, Array, Array]:
-    """As `linearise`, of points (N, 3) that poses turned but did not shift, and of their `position` (N, 3).
+    """Project points (N, 3) that are turned but not yet shifted by their poses to `position` (N, 3), with derivatives.
 
     The poses may be many: what each changes is what it does to its own points.
     """
@@ -80,7 +80,7 @@ def linearise_turned(camera: Camera, turned: Array, position: Array) -> tuple[Ar
 
 
 def ray_changes(camera: Camera, rays: Array) -> Array:
-    """∂(x, y)/∂camera (N, 2, 10) of `rays` (N, 3), the pixels they belong to the same."""
+    """Compute ∂(x, y)/∂camera (N, 2, 10) of `rays` (N, 3) at fixed pixels."""
     distorted = camera.distort(rays[:, :2])
     by_camera = np.concatenate([_by_matrix(distorted), camera.matrix[:2, :2] @ _by_distortion(rays[:, :2])], axis=2)
     return np.asarray(-camera.ray_jacobian(rays) @ by_camera, dtype=np.float64)

@@ -43,7 +43,7 @@ _FLOOR_PX = 1e-3
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Verdict(Excludable):
-    """Whether a view is used, why not, and which of its corners count (N,)."""
+    """Decision on a view: whether it is used, the reason if not, and which of its corners count (N,)."""
 
     used: bool
     counted: NDArray[np.bool_]

@@ -17,7 +17,7 @@ SETTLED = 0.1
 
 
 def has_settled(calibration: CameraCalibration) -> bool | None:
-    """Whether no step of Gauss and Newton would move a parameter noticeably; None where no views are kept.
+    """Whether one more Gauss–Newton step would leave all parameters nearly unchanged; None where no views are kept.
 
     A parameter of the value 0 has been held there, whatever its standard deviation.
     """

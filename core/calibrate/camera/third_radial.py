@@ -40,7 +40,7 @@ _BORDER = 9
 
 @dataclass(frozen=True, slots=True)
 class ThirdRadial:
-    """What k3 does.
+    """Effect of k3 on the fit and on the picture.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ class ThirdRadial:
 
     @property
     def note(self) -> Message:
-        """That k3 is solved for, and what it does."""
+        """Note that k3 is solved for, and its effect."""
         return note_of(
             "camera.third_radial",
             gain=self.gain,
@@ -72,7 +72,9 @@ class ThirdRadial:
 
 
 def third_radial(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> ThirdRadial | None:
-    """What k3 does to a camera `solved` without it from the views `counted`; None where it does not surely help.
+    """Compute the effect of k3 on a camera `solved` without it from `counted` views.
+
+    None where it does not surely help.
 
     `free` are the free parameters, without k3. None also with fewer than FEWEST_VIEWS views, or where the picture would
     have no ray at its border.
@@ -99,7 +101,9 @@ def third_radial(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.i
 
 
 def left_out_misfits(solved: Bundle, counted: Sequence[Observed], free: NDArray[np.intp]) -> Array:
-    """χ² (V,) of each view before the camera that the others give, in units of the weights; `solved` from all of them.
+    """Compute χ² (V,) of each view before the camera of all others, in units of the weights.
+
+    `solved` is from all of them.
 
     Raises
     ------

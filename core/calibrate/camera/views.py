@@ -20,7 +20,7 @@ from core.progress import Progress, silent
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SeenView(Excludable):
-    """One picture: the target found in it, or what excludes it; size (width, height) if it could be read."""
+    """View in one picture: the target found in it, or the exclusion; size (width, height) if it could be read."""
 
     name: str
     view: TargetView | None = None
@@ -41,23 +41,23 @@ class SeenViews:
 
     @property
     def size(self) -> tuple[int, int] | None:
-        """(width, height) of the pictures; None if none could be read."""
+        """Width and height of the pictures in px; None if none could be read."""
         return next((one.size for one in self.views if one.size is not None), None)
 
     @property
     def found(self) -> tuple[TargetView, ...]:
-        """The targets that were found."""
+        """Targets that were found."""
         return tuple(one.view for one in self.views if one.view is not None)
 
     @property
     def lost(self) -> tuple[SeenView, ...]:
-        """The pictures in which there is no usable target."""
+        """Pictures in which there is no usable target."""
         return tuple(one for one in self.views if one.view is None)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class RecalledCamera:
-    """The accepted calibration, with its views if it was made from the project's pictures.
+    """Accepted calibration, with its views if it was made from the project's pictures.
 
     `as_it_is`: it is what these pictures give with the project's settings as they are.
     """

@@ -35,7 +35,7 @@ def wanted_view(
     adds: Callable[[ViewGeometry, Array], float | None],
     middle: Array | None = None,
 ) -> Array | None:
-    """The outline of the target at the pose that would add most to the views taken.
+    """Compute the outline of the target at the pose that would add most to the views taken.
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ CORNER_SCALE_RANGE = (0.3, 30.0)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Bundle:
-    """The solution.
+    """Solution for planes and poses together.
 
     Parameters
     ----------
@@ -98,7 +98,7 @@ class Bundle:
 
     @property
     def covariance(self) -> Array:
-        """(3N, 3N) of the stacked π in 1/mm², the camera taken as known."""
+        """Covariance (3N, 3N) of the stacked π in 1/mm², the camera taken as known."""
         to_pis = self.planes.jacobian
         unknowns = to_pis.shape[1]
         return np.asarray(to_pis @ self.joint[:unknowns, :unknowns] @ to_pis.T)

@@ -62,7 +62,7 @@ NOT_CONVERGED = note_of("fan.not_converged", n=MOST_STEPS)
 
 @dataclass(frozen=True, slots=True)
 class FanOptions:
-    """What is known of the laser.
+    """Options of a fan calibration: what is known of laser and target.
 
     Parameters
     ----------
@@ -99,7 +99,7 @@ class FanOptions:
 
     @property
     def seen_bowed(self) -> BoardShape | None:
-        """The target's shape, where the camera's calibration has found it bowed."""
+        """Shape of the target if the camera's calibration has found it bowed; else None."""
         return self.board if self.board is not None and self.board.values[:BOWS].any() else None
 
 
@@ -111,7 +111,7 @@ def fit_fan(
     excluded: Collection[str] = (),
     camera_covariance: Array | None = None,
 ) -> FanCalibration:
-    """Calibrate the fan.
+    """Calibrate the fan from the features of its poses.
 
     Parameters
     ----------

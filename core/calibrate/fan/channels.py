@@ -65,14 +65,14 @@ class Difference:
 
     @property
     def note(self) -> Message:
-        """What is told of it."""
+        """Note that the light planes differ between colour channels."""
         return note_of("fan.channels_differ", channel=CHANNEL_NAMES[self.channel], mm=self.mm, times=self.times)
 
 
 def with_differences(
     calibration: FanCalibration, used: Bundle, located: Sequence[LocatedPose], camera: Camera, plate: Plate | None
 ) -> FanCalibration:
-    """The calibration with what its pictures' other channels say of its planes: in their covariance, and told.
+    """Widen the calibration's covariance by how its planes differ between the pictures' channels, and note it.
 
     Parameters
     ----------

@@ -50,7 +50,7 @@ STEP_MM = 0.01
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Predictions:
-    """What the other poses foretell of each of P poses.
+    """Errors of the prediction of each of P poses by the other poses.
 
     Parameters
     ----------
@@ -66,12 +66,12 @@ class Predictions:
 
     @property
     def usual_mm(self) -> float:
-        """Of the median pose."""
+        """Median over the poses of the predictions' error, in mm."""
         return float(np.nanmedian(self.error_mm))
 
 
 def predict(used: Bundle, poses: Sequence[BundlePose], camera: Camera, plate: Plate | None = None) -> Predictions:
-    """How well the light planes that the other poses give foretell each pose's stripes.
+    """Compute how well the light planes of the other poses predict each pose's stripes.
 
     Parameters
     ----------

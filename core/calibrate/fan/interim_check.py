@@ -70,7 +70,7 @@ class CheckedPose:
 def check_poses(
     poses: Sequence[PoseFeatures], camera: Camera, fan: FanCalibration, deviations: Sequence[Deviation]
 ) -> tuple[tuple[CheckedPose, ...], Evidence]:
-    """How far the stripes of P poses are from where the calibrations have them, and what that says of K deviations."""
+    """Measure how far the stripes of P poses are from their calibrated places, and the evidence of that."""
     found = _as_noisy_as_all([_located(pose, camera, fan.fan) for pose in poses])
     checked, evidence = [], Evidence.none(len(deviations))
     for pose in found:
@@ -86,7 +86,9 @@ def check_poses(
 def step_errors(
     poses: Sequence[CheckedPose], camera: Camera, fan: Fan, deviations: Sequence[Deviation], step_mm: float
 ) -> Array:
-    """(K,) by how much each deviation makes a step of `step_mm` on the target too high, where the fan meets it."""
+    """Compute by how many mm (K,) each deviation makes a step of `step_mm` on the target, where the fan meets it,
+    too high.
+    """
     here = Deviation("fan", camera, fan)
     changes = [
         _step(pose.located, line, camera, fan, one, step_mm) - _step(pose.located, line, camera, fan, here, step_mm)

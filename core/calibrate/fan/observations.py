@@ -40,7 +40,7 @@ _UP = np.array([0.0, 0.0, 1.0])
 
 @dataclass(frozen=True, eq=False, slots=True)
 class BundlePose:
-    """One pose of the target: its points seen in `view`, where `pose` is believed, and the fan lines' stripes."""
+    """Pose of the target in a bundle: its points in `view`, the `pose` to start from, and the fan lines' stripes."""
 
     view: TargetView
     pose: Pose
@@ -49,7 +49,7 @@ class BundlePose:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Plate:
-    """A plate that may be bowed: its extent, and what is known of its bow, values (3,) and covariance (3, 3) in mm."""
+    """Plate that may be bowed: its extent, and the prior of its bow, values (3,) and covariance (3, 3) in mm."""
 
     board: Board
     bow: Array
@@ -57,18 +57,21 @@ class Plate:
 
     @classmethod
     def flat_within(cls, board: Board, flatness_mm: float) -> Plate:
-        """A plate whose edges may be off its plane by a standard deviation of `flatness_mm`."""
+        """Make a plate whose edges may be off its plane by a standard deviation of `flatness_mm`."""
         return cls(board, np.zeros(BOWS), flatness_mm**2 * np.eye(BOWS))
 
     @property
     def whiten(self) -> Array:
-        """(3, 3) that turns bows into independent numbers of unit variance."""
+        """Matrix (3, 3) that turns bows into independent numbers of unit variance."""
         return np.asarray(np.linalg.inv(np.linalg.cholesky(self.covariance)), dtype=np.float64)
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class State:
-    """The unknowns: `bow` (3 or 0,) in mm of the plate; `camera` (10,) is the change of the camera's parameters."""
+    """Unknowns of the bundle.
+
+    `bow` (3 or 0,) in mm is the plate's, `camera` (10,) the change of the camera's parameters.
+    """
 
     planes: PlaneSet
     poses: tuple[Pose, ...]
@@ -78,7 +81,7 @@ class State:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class ObservationWeights:
-    """How much each observation is trusted.
+    """Weights of the target points and stripes.
 
     `corner_scale` is a factor on the stated uncertainty of the target's points, `noise` (S,) in mm the stripes' own,
     `extra` (K,) in mm what their offsets, slopes and bends have beyond it, `weight` (S,) of each stripe.
@@ -128,17 +131,17 @@ class Observations:
         self.free, self.whiten = _whitening(camera_covariance)
 
     def camera(self, state: State) -> Camera:
-        """The camera of a state."""
+        """Make the camera of a state."""
         if not state.camera.any():
             return self.given
         return reprojection.camera_of(reprojection.parameters_of(self.given) + state.camera, self.given.image_size)
 
     def distances(self, state: State) -> Distances:
-        """Of the stripes from the light planes."""
+        """Compute the distances of the stripes from the light planes."""
         return self.stripes.distances(state.planes, state.poses, state.camera, state.bow)
 
     def linearise(self, state: State, trust: ObservationWeights) -> PoseEquations:
-        """All that is seen and known, by the unknowns that are free."""
+        """Make the equations of all observations and priors, for the free unknowns."""
         residuals, common, own = self.observed(state, trust)
         known = common.shape[1] - PARAMETERS
         prior, by_bow = self._known_of_bows(state, known)
@@ -153,13 +156,13 @@ class Observations:
         )
 
     def with_every_camera_parameter(self, state: State, trust: ObservationWeights) -> PoseEquations:
-        """The same as if nothing was known of the camera, all its parameters among the unknowns."""
+        """Make the equations with no prior on the camera, all its parameters among the unknowns."""
         residuals, common, own = self.observed(state, trust)
         prior, by_bow = self._known_of_bows(state, common.shape[1])
         return PoseEquations(residuals, common, own, self.rows_of_pose, (prior, by_bow))
 
     def observed(self, state: State, trust: ObservationWeights) -> tuple[Array, Array, Array]:
-        """Residuals (M,) of target points and stripes in standard deviations.
+        """Compute the residuals (M,) of target points and stripes in standard deviations.
 
         And their derivatives by the common unknowns (M, C) and by those of the pose each is of (M, 6).
         """
@@ -177,7 +180,7 @@ class Observations:
         )
 
     def expected_mm(self, state: State, trust: ObservationWeights) -> float:
-        """RMS in mm of stripes' offsets and slopes by noise alone, the poses where the target's points put them."""
+        """Compute the RMS in mm of stripes' offsets and slopes by noise alone; poses are by the target's points."""
         points, distances = self._target_points(state), self.distances(state)
         by_pose = [points[rows, 1:7] for rows in self.rows]
         covariance = np.array([inverse(own.T @ own) for own in by_pose])[self.stripes.pose_of]
@@ -221,7 +224,7 @@ class Observations:
         return np.asarray(whiten @ (state.bow - self.plate.bow), dtype=np.float64), rows
 
     def move(self, state: State, step: Array) -> State:
-        """The state after a step of the unknowns that are free."""
+        """Change a state by a step of the free unknowns."""
         first = state.planes.jacobian.shape[1]
         last = first + self.bows + len(self.free)
         steps: list[NDArray[np.float64]] = list(step[last:].reshape(-1, 6))
@@ -230,7 +233,7 @@ class Observations:
         return State(moved.planes, poses, moved.bow, moved.camera)
 
     def move_common(self, state: State, step: Array) -> State:
-        """The state after a step of the free unknowns that all poses have in common."""
+        """Change a state by a step of the free unknowns that all poses have in common."""
         first = state.planes.jacobian.shape[1]
         bow = state.bow + step[first : first + self.bows]
         camera = state.camera.copy()
@@ -238,7 +241,7 @@ class Observations:
         return State(state.planes.moved(step[:first]), state.poses, bow, camera)
 
     def shape(self, bow: Array, covariance: Array) -> BoardShape:
-        """The plate with this bow (3 or 0,) and its covariance; flat where it was said to be."""
+        """Make the plate's shape with this bow (3 or 0,) and its covariance; flat where it was stated to be."""
         if self.plate is None:
             return BoardShape()
         values, own = np.zeros(len(SHAPE_PARAMETERS)), np.zeros((len(SHAPE_PARAMETERS), len(SHAPE_PARAMETERS)))

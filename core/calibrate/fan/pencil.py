@@ -34,12 +34,12 @@ class PlaneSet(Protocol):
         """∂(stacked π)/∂(local step), (3N, P)."""
 
     def moved(self, step: Array) -> PlaneSet:
-        """The planes after a local step (P,)."""
+        """Move the planes by a local step (P,)."""
 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class FreePlanes:
-    """Planes that know nothing of each other: 3N unknowns, `pis` (N, 3) in 1/mm."""
+    """Planes without a constraint between them: 3N unknowns, `pis` (N, 3) in 1/mm."""
 
     pis: Array
 
@@ -117,7 +117,7 @@ class Pencil:
 
 
 def pencil_near(pis: Array, angle: float | None) -> Pencil:
-    """The pencil near N ≥ 2 planes: where a fit can start.
+    """Find a pencil near N ≥ 2 planes, from which a fit can start.
 
     Parameters
     ----------
@@ -145,7 +145,7 @@ def pencil_near(pis: Array, angle: float | None) -> Pencil:
 
 
 def plane_distances(pis: Array, points: Array) -> tuple[Array, Array]:
-    """Signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and their derivatives by π (N, 3)."""
+    """Compute signed distances (N,) in mm of `points` (N, 3) from planes `pis` (N, 3), and derivatives by π (N, 3)."""
     length = np.linalg.norm(pis, axis=1)
     distances = (np.einsum("ni,ni->n", pis, points) - 1) / length
     by_pi = (points - distances[:, None] * pis / length[:, None]) / length[:, None]

@@ -79,7 +79,9 @@ def judge_points(located: Sequence[LocatedPose], bundle: Bundle) -> PointResidua
 
 
 def points_off_alike(found: PointResiduals) -> bool | None:
-    """Whether points lie off in all poses, so far that U need not contain it; None where too few poses seem to say so.
+    """Whether points lie off alike in all poses, so far that U need not contain it.
+
+    None where too few poses seem to show it.
 
     Points that lie off by less than is told are not doubted, nor those that turned signs of the poses show as far off:
     U holds their scatter.
@@ -92,8 +94,8 @@ def points_off_alike(found: PointResiduals) -> bool | None:
 
 
 def notes_on_points(found: PointResiduals, poses: int) -> tuple[Message, ...]:
-    """What is wrong, where and in which direction: over the target, else over the picture, for the poses of a rig are
-    so alike that one often shows as the other. Or that so many `poses` do not tell.
+    """Note what is wrong with the target's points, where and in which direction. Or that so many `poses` do not
+    tell.
     """
     alike = points_off_alike(found)
     if alike is None:

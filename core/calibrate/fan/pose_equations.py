@@ -58,12 +58,12 @@ class PoseEquations:
         self._products = np.array([part.T @ part for part in parts])
 
     def by_first(self, count: int) -> PoseEquations:
-        """The same with the first `count` common unknowns only, the others taken as known."""
+        """Restrict the equations to the first `count` common unknowns, the others taken as known."""
         known = (self._known[0], self._known[1][:, :count])
         return PoseEquations(self.residuals, self.common[:, :count], self.own, self.rows, known)
 
     def step(self, damping: float) -> Array:
-        """The local step (C + 6P,), the common unknowns first."""
+        """Solve for the local step (C + 6P,), the common unknowns first."""
         normal, gradient, followed = self._reduced(damping)
         common = -_solved(normal, gradient)
         own = -(followed[..., -1] + followed[..., :-1] @ common)
@@ -71,16 +71,16 @@ class PoseEquations:
 
     @property
     def covariance(self) -> Array:
-        """(C, C) of the common unknowns, for residuals of unit variance."""
+        """Covariance (C, C) of the common unknowns, for residuals of unit variance."""
         return inverse(self._reduced(0.0)[0])
 
     def followed_by(self, first: int) -> Array:
-        """(first, C − first): how the first common unknowns follow a change of the further ones, all poses moving."""
+        """Compute (first, C − first), how the first common unknowns follow a change of the others, all poses moving."""
         normal = self._reduced(0.0)[0]
         return np.asarray(-inverse(normal[:first, :first]) @ normal[:first, first:], dtype=np.float64)
 
     def leverages(self) -> Array:
-        """(M,) the share of each residual that the fit takes up."""
+        """Compute the share (M,) of each residual that the fit takes up."""
         inverse_own = np.array([inverse(products[:OWN, :OWN]) for products in self._products])
         covariance = self.covariance
         shares = np.zeros(len(self.residuals))
@@ -91,7 +91,7 @@ class PoseEquations:
         return shares
 
     def steps_without_each(self) -> Array:
-        """(P, C): the step of the common unknowns that leaving out each pose would make, to first order."""
+        """Compute the step (P, C) of the common unknowns that leaving out each pose would make, to first order."""
         normal, gradient, _ = self._reduced(0.0)
         return np.array([-inverse(normal - part[:, :-1]) @ (gradient - part[:, -1]) for part in self._parts()])
 
@@ -118,7 +118,7 @@ class PoseEquations:
 
 
 def inverse(normal: Array) -> Array:
-    """The inverse of a normal matrix, scaled to a unit diagonal first so that mm, rad and 1/mm do not upset it."""
+    """Invert a normal matrix, scaled to a unit diagonal first because mm, rad and 1/mm differ by orders of size."""
     scale = np.sqrt(_positive(np.diag(normal)))
     values, vectors = np.linalg.eigh(normal / np.outer(scale, scale))
     values = np.maximum(values, SMALLEST * values[-1])

@@ -55,7 +55,7 @@ def judge_lines(located: Sequence[LocatedPose], adjusted: Sequence[Pose], pis: A
 
 
 def bends_of(points: Sequence[Array], distances: Sequence[Array], pis: Array) -> Array:
-    """Forms (N, 3, 3) in 1/mm of how the light is off the planes `pis` (N, 3), as in `core.model.Fan`.
+    """Fit the forms (N, 3, 3) in 1/mm of how the light is off the planes `pis` (N, 3), as in `core.model.Fan`.
 
     `points` (n_k, 3) in mm are those on each line of all poses, `distances` (n_k,) what they are off its plane. Of
     these a parabola along the lines takes what it can: the same for all, for their light goes through one lens and
@@ -76,13 +76,16 @@ def bends_of(points: Sequence[Array], distances: Sequence[Array], pis: Array) ->
 
 
 def off_planes_mm(points: Sequence[Array], bends: Array) -> float:
-    """RMS distance in mm of light with these `bends` (N, 3, 3) from its planes, at points (n_k, 3) on each line."""
+    """Compute the RMS distance in mm of light with these `bends` (N, 3, 3) from its planes.
+
+    At points (n_k, 3) on each line.
+    """
     off = [np.einsum("ni,ij,nj->n", own, form, own) for own, form in zip(points, bends, strict=True)]
     return float(np.sqrt(np.mean(np.concatenate(off) ** 2)))
 
 
 def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
-    """What is wrong with the lines, and in which direction."""
+    """Note what is wrong with the lines, and in which direction."""
     if not judgement.systematic:
         return ()
     middle = judgement.profile[CELLS // 2]
@@ -97,7 +100,7 @@ def notes_on_lines(judgement: Judgement) -> tuple[Message, ...]:
 
 
 def bow_or_bend(judgement: Judgement) -> Message:
-    """Note that stripes bend alike on a flat target, of which `judgement` is, and that a bow has been taken for it."""
+    """Note that stripes bend alike on a flat target, by this `judgement`, and that a bow is assumed as the reason."""
     return note_of(
         "fan.bow_or_bend",
         mm=float(np.nanmax(judgement.profile) - np.nanmin(judgement.profile)),

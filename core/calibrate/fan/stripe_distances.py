@@ -38,7 +38,7 @@ class Distances:
 
 
 class Stripes:
-    """S stripes, each on a pose and of a fan line, stacked.
+    """S stripes stacked, each with its pose and its fan line.
 
     `poses` are where the plate roughly is. `board` is its middle and extent if it may be bowed, None if it is flat.
     """
@@ -65,7 +65,10 @@ class Stripes:
     def distances(
         self, planes: PlaneSet, poses: Sequence[Pose], camera_change: Array, bow: Array | None = None
     ) -> Distances:
-        """Where the stripes are on a plate with this `bow` (3,), seen by a camera `camera_change` (10,) from theirs."""
+        """Compute the stripes' distances on a plate with this `bow` (3,).
+
+        The camera has changed by `camera_change` (10,).
+        """
         pivots = self._pivots.copy()
         of_camera = self._by_camera[:, :2]
         pivots[..., :2] += (of_camera @ camera_change)[..., None] * self._across[:, None]
@@ -114,7 +117,7 @@ class Stripes:
         return Distances(mm + by_bow @ bow, with_bend(flat.by_planes), with_bend(flat.by_pose), by_bow, by_camera)
 
     def noise_mm(self, planes: PlaneSet, poses: Sequence[Pose]) -> Array:
-        """A stripe's own noise (S,) across its line of rays, seen as a distance in mm from the light plane."""
+        """Compute each stripe's own noise (S,) across its line of rays, as a distance in mm from the light plane."""
         target = np.array([target_plane_changes(pose)[0] for pose in poses])[self.pose_of]
         pis = planes.pis[self.line_of]
         middle = self._pivots.mean(axis=1)

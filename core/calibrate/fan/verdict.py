@@ -30,7 +30,7 @@ Constrained = Literal["auto", "always", "axis", "never"]
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Verdict:
-    """What to use and why.
+    """Decision whether to use free planes or a pencil, and its reason.
 
     `start` are the planes to solve for in the end, `constrained_angles` those of the constrained planes; `converged`
     is whether the pencils compared were fitted to the end. The other fields are those of
@@ -98,7 +98,7 @@ def judge(free: Bundle, volume: Sequence[Array], angle: float | None, constraine
 
 
 def fan_of(planes: PlaneSet, covariance: Array | None = None) -> Fan:
-    """The planes as a fan."""
+    """Make a fan of the planes."""
     return Fan(tuple(LightPlane(pi) for pi in planes.pis), covariance)
 
 

@@ -23,14 +23,14 @@ _LEAST_LIGHT = 0.05  # of what is about a pixel, or the brightness there is not 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class EvenPlate:
-    """A plate without what is on it: `picture` (H, W) is as bright there as about it, `uneven` (H, W) tells where."""
+    """Picture of a plate without marks: `picture` (H, W) is as bright there as around, `uneven` (H, W) tells where."""
 
     picture: NDArray[np.float32]
     uneven: NDArray[np.bool_]
 
     @classmethod
     def of(cls, plate: NDArray[Any], view: TargetView, level: float) -> EvenPlate:
-        """From a picture (H, W) of a target without laser, and the grey `level` of the light plate around its points.
+        """Remove the marks from a picture (H, W) of a target without laser, with the grey `level` of the light plate.
 
         The brightness about a pixel is the mean, a cell of the target wide, of what is not dark itself.
         """

@@ -52,7 +52,7 @@ class WholeLight(NamedTuple):
     beside: NDArray[np.bool_]
 
     def as_sure_as_seen(self, line: Centreline, filter_px: float) -> Centreline:
-        """A line found here with the σ that its points have: what is mirrored says the same as what it mirrors.
+        """Widen the σ of a line found here to that of the measured points alone: mirrored points add no information.
 
         With a share f of the filter σ `filter_px` on such pixels, the variance is 1 + 2 f times that of as many of its
         own: at a mark's edge, where half are, twice.
@@ -95,7 +95,7 @@ def across_marks(
 
 
 def follows(line: Centreline, courses: Sequence[Array], stripe: StripeSettings) -> bool:
-    """Whether a line runs along one of the `courses`, and is no speck of noise beside it."""
+    """Whether a line runs along one of the `courses`, and is more than a speck of noise beside it."""
     points = np.vstack(courses)
     away, nearest = cKDTree(points[:, :2]).query(line.uv)
     along = np.abs(np.einsum("ij,ij->i", line.normal, points[nearest, 2:4]))
@@ -103,7 +103,7 @@ def follows(line: Centreline, courses: Sequence[Array], stripe: StripeSettings) 
 
 
 def course_of(line: StripeLine, camera: Camera, sites: Sites) -> Array:
-    """Where a line goes on all over the picture of some sites: (N, 4) u, v, n_u, n_v in their px, one px apart.
+    """Extend a line over the whole picture of some sites: (N, 4) u, v, n_u, n_v in their px, one px apart.
 
     Near its ends it is bent as where it was seen.
     """

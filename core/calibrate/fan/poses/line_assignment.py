@@ -55,7 +55,7 @@ ANGLE_PENALTY = 1.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseLines:
-    """The straight stripes of one pose, and the plane they lie on.
+    """Straight stripes of one pose, and the plane they lie on.
 
     `target` (3,) is τ in 1/mm with τ·X = 1 on the target, `covariance` (3, 3) its covariance, `points` (N, 3) rays of
     the target's points.
@@ -69,7 +69,7 @@ class PoseLines:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Assignment:
-    """`which` (N, P): the index of fan line k's stripe in pose p or NOT_SEEN; `pis` (N, 3) roughly, in 1/mm."""
+    """Stripe of each fan line: `which` (N, P), its index in pose p or NOT_SEEN; `pis` (N, 3) roughly, in 1/mm."""
 
     which: NDArray[np.intp]
     pis: Array

@@ -18,7 +18,7 @@ from core.model import Camera, Pose
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LocatedPose(Excludable):
-    """A pose of the target.
+    """Pose of the target with its straight stripes.
 
     Parameters
     ----------
@@ -50,15 +50,15 @@ class LocatedPose(Excludable):
 
     @property
     def lines_left(self) -> tuple[StripeLine, ...]:
-        """The straight stripes that no fan line drew."""
+        """Straight stripes that no fan line drew."""
         return tuple(line for line in self.lines if all(line is not stripe for stripe in self.stripes.values()))
 
     def left_out(self, exclusion: Reason) -> LocatedPose:
-        """The same pose, not used."""
+        """Exclude the pose for this reason."""
         return replace(self, stripes={}, exclusion=exclusion)
 
     def as_lines(self, camera: Camera) -> PoseLines:
-        """The stripes and the target's plane, for their assignment; no stripes if the pose is not used."""
+        """Give the stripes and the target's plane for their assignment; no stripes if the pose is not used."""
         if not self.used or self.features.view is None:
             return PoseLines((), np.zeros(3), np.zeros((3, 3)), np.zeros((0, 3)))
         covariance = target_plane_covariance(self.features.view, self.pose, camera)
@@ -66,7 +66,7 @@ class LocatedPose(Excludable):
 
 
 def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
-    """Pose of the target and straight lines among its stripes, or the reason why there are none."""
+    """Estimate the pose of the target and the straight lines among its stripes, or the reason why there are none."""
     nowhere = LocatedPose(features, Pose.identity(), np.nan, (), exclusion=features.exclusion)
     if not features.used or features.view is None:
         return nowhere
@@ -82,7 +82,7 @@ def locate(features: PoseFeatures, camera: Camera) -> LocatedPose:
 
 
 def shows_no_stripe(features: PoseFeatures, camera: Camera) -> bool:
-    """Whether the target is seen on a pose, but no straight stripe on it."""
+    """Whether the target is found in a pose, but no straight stripe on it."""
     if features.view is None or features.target_moved:
         return False
     return not straight_lines(features.centrelines, camera)

@@ -67,7 +67,7 @@ AS_BRIGHT = 0.25
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Beside:
-    """What there is of a pose beside its pictures with the fan on and off.
+    """Further pictures and settings of a pose beside its pictures with the fan on and off.
 
     `target` are the same pictures, fan on and off, in the channel in which the target is looked for, None if that is
     theirs; `compression` is that of each picture; `further` are further exposures of them, shorter or longer.
@@ -165,7 +165,7 @@ def measure_plane_pose(
 
 
 def stripe_strength(on: Picture, off: Picture | None, settings: StripeSettings) -> NDArray[np.float32]:
-    """How strongly each pixel (H, W) of the laser's light looks like such a stripe, in grey levels of its height."""
+    """Compute the ridge strength (H, W) of the laser's light for such a stripe, in grey levels of its height."""
     light = on.astype(np.float32)
     return ridge_strength(light if off is None else light - off.astype(np.float32), settings)
 

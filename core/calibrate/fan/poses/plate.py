@@ -37,7 +37,7 @@ ROOM = 0.25
 
 
 class Plate:
-    """The plate of a target as one picture shows it.
+    """Plate of a target in one picture: its outline and grey levels.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Plate:
         self._homography = homography_of(self._rays(view.uv), view.points[:, :2])
 
     def holds(self, uv: Array, room: float = 0.0) -> NDArray[np.bool_]:
-        """Whether points (N, 2) in pixels are on the plate; `room` widens it by a share of its margin."""
+        """Mask (N,) of the points (N, 2) in pixels that are on the plate; `room` widens it by a share of its margin."""
         if self._homography is None:
             return np.ones(len(uv), dtype=bool)
         places = map_by(self._homography, self._rays(uv))
@@ -70,7 +70,10 @@ class Plate:
         return np.asarray(((places > self._low - reach) & (places < self._high + reach)).all(axis=1))
 
     def outside(self, shape: tuple[int, ...]) -> NDArray[np.bool_]:
-        """(H, W) True where a picture of this shape shows other things than the plate, some px around it left out."""
+        """Mask (H, W), True where a picture of this shape shows other things than the plate.
+
+        Some px around it are left out.
+        """
         rows, columns = (size // SPACING + 2 for size in shape)
         places = SPACING * np.stack(np.meshgrid(np.arange(columns), np.arange(rows)), axis=-1).reshape(-1, 2)
         within = self.holds(places.astype(np.float64), ROOM).reshape(rows, columns).astype(np.uint8)
@@ -96,7 +99,7 @@ def _printed(target: Target) -> tuple[tuple[Array, Array], float]:
 
 
 def without_clutter(centrelines: Sequence[Centreline], camera: Camera | None) -> tuple[Centreline, ...]:
-    """The centrelines that a laser may have drawn on a flat plate of even brightness.
+    """Select the centrelines that a laser may have drawn on a flat plate of even brightness.
 
     What most of the light has in common counts: its height and width. With a camera, lines have to be straight as well.
     """

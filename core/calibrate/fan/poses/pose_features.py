@@ -20,7 +20,7 @@ MOVED_PX = 0.5
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseFeatures(Excludable):
-    """What the pictures of one pose show.
+    """Target and stripes found in the pictures of one pose.
 
     Parameters
     ----------
@@ -55,7 +55,7 @@ class PoseFeatures(Excludable):
 
     @property
     def used(self) -> bool:
-        """Whether it can be used."""
+        """Whether the pose can be used."""
         return self.exclusion is None
 
     @property
@@ -65,12 +65,12 @@ class PoseFeatures(Excludable):
 
 
 def usual_stripe(poses: Iterable[PoseFeatures]) -> StripeSettings | None:
-    """Width and contrast of most stripes of some poses; None where none was found."""
+    """Compute width and contrast of the typical stripe of some poses; None where none was found."""
     return usual_of([line for pose in poses for line in pose.centrelines])
 
 
 def usual_of(lines: Sequence[Centreline]) -> StripeSettings | None:
-    """Width and contrast of most of some stripes; None for none."""
+    """Compute width and contrast of the typical one of some stripes; None for none."""
     if not lines:
         return None
     width = float(np.median(np.concatenate([line.width for line in lines])))

@@ -24,7 +24,7 @@ TOO_FAR = 0.005
 
 @dataclass(frozen=True, eq=False, slots=True)
 class NumberedStripe:
-    """One straight stripe: its points (N, 2) in pixels, and the fan line (from 0) that drew it or NOT_SEEN."""
+    """Straight stripe: its points (N, 2) in px, and the fan line (from 0) that drew it or NOT_SEEN."""
 
     uv: Array
     line: int
@@ -32,7 +32,7 @@ class NumberedStripe:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseStages:
-    """The picture (H, W) of a pose with the fan on, and what was found.
+    """Picture (H, W) of a pose with the fan on, with the target and stripes found.
 
     `corners` (N, 2) in pixels are the target's points, none if it was not found; `stripes` the straight stripes with
     the fan line each is of; `reason` why the pose cannot be used, None if it can. `ridge` (H, W), where no
@@ -49,7 +49,7 @@ class PoseStages:
 
 
 def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = None) -> tuple[NumberedStripe, ...]:
-    """The straight stripes of a pose; without a fan, or where the target was not found, they have no numbers."""
+    """Number the straight stripes of a pose; without a fan, or where the target was not found, they have no numbers."""
     located = locate(features, camera)
     if features.view is None or not located.lines:
         return tuple(NumberedStripe(piece.uv, NOT_SEEN) for piece in features.centrelines)
@@ -58,7 +58,7 @@ def numbered_stripes(features: PoseFeatures, camera: Camera, fan: Fan | None = N
 
 
 def line_numbers(stripes: Sequence[StripeLine], pose: Pose, fan: Fan) -> list[int]:
-    """The fan line that drew each stripe, or NOT_SEEN.
+    """Find the fan line that drew each stripe, or NOT_SEEN.
 
     Each plane takes the stripe that is nearest to it, the best-fitting pair first.
     """

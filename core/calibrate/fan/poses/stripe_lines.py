@@ -39,7 +39,7 @@ REJECT = 4.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class StripeLine:
-    """A straight line of rays and what is known of it.
+    """Straight line of rays with its uncertainty.
 
     A straight-line fit to many points weighs exactly as two points one standard deviation of the spread either side
     of the centroid, each with half of all weight. `pivots` (2, 3) are these two rays and `sigma` is the standard
@@ -69,7 +69,7 @@ class StripeLine:
 
 
 def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int = 12) -> tuple[StripeLine, ...]:
-    """The straight lines among `centrelines`, the one with most points first, at most `limit`.
+    """Find the straight lines among `centrelines`, the one with most points first, at most `limit`.
 
     Saturated points are left out of a line as long as half of it remains without them.
     """
@@ -88,7 +88,7 @@ def straight_lines(centrelines: Sequence[Centreline], camera: Camera, limit: int
 
 
 def chunk_length(centrelines: Sequence[Centreline]) -> int:
-    """How many points are judged as one piece: fewer where the centrelines hold no more than a short line."""
+    """Choose how many points are judged as one piece: fewer where the centrelines hold no more than a short line."""
     if sum(map(len, centrelines)) >= CHUNKS * CHUNK:
         return CHUNK
     correlation = min((line.correlation_px for line in centrelines), default=np.inf)
