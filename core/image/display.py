@@ -20,14 +20,14 @@ def in_8_bit(picture: NDArray[Any], brightest: float) -> NDArray[np.uint8]:
 
 
 def white_level(picture: NDArray[Any]) -> float:
-    """Largest grey level that a camera with the bits `picture` uses can give, to be shown as white."""
+    """Compute the largest grey level of a camera with the bits that `picture` uses, to be shown as white."""
     if picture.dtype == np.uint8:
         return 255.0
     return float(2 ** max(int(picture.max()).bit_length(), _LEAST_BITS) - 1)
 
 
 def halved(picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
-    """A picture at half size, (H // 2, W // 2) or in colour (H // 2, W // 2, 3): means of four pixels each."""
+    """Reduce a picture to half size, (H // 2, W // 2) or in colour (H // 2, W // 2, 3), by means over four pixels."""
     rows, columns = picture.shape[0] // 2, picture.shape[1] // 2
     small = cv2.resize(picture[: 2 * rows, : 2 * columns], (columns, rows), interpolation=cv2.INTER_AREA)
     return np.ascontiguousarray(small, dtype=np.uint8)

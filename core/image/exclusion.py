@@ -9,7 +9,7 @@ from core.messages import Message
 
 
 class Exclusion(Enum):
-    """What excludes a view, a pose or a frame whose pictures can be read, where something is decided by it."""
+    """Reason to exclude a readable view, pose or frame, where something is decided by it."""
 
     BY_HAND = auto()
     REPEATED = auto()
@@ -19,7 +19,7 @@ class Exclusion(Enum):
 
     @property
     def message(self) -> Message:
-        """The same in words."""
+        """Sentence for this exclusion."""
         return _WORDS[self]
 
 
@@ -46,19 +46,19 @@ Reason = Exclusion | Message
 
 
 def message_of(reason: Reason) -> Message:
-    """A reason in words."""
+    """Give the sentence for a reason."""
     return reason.message if isinstance(reason, Exclusion) else reason
 
 
 class Excludable:
-    """Something that counts unless there is an `exclusion`."""
+    """View, pose or frame that counts unless it has an `exclusion`."""
 
     __slots__ = ()
     exclusion: Reason | None
 
     @property
     def reason(self) -> Message | None:
-        """Why it does not count, in words; None if it does."""
+        """Sentence why it is excluded; None if it is not."""
         return None if self.exclusion is None else message_of(self.exclusion)
 
 
@@ -66,7 +66,7 @@ _KNOWN = {one.message.code: one for one in Exclusion} | {str(one.message): one f
 
 
 def known_exclusion(kept: Message | None) -> Reason | None:
-    """What a reason in a file excludes by: named by its code, or by its English words as in older files.
+    """Find the exclusion that a file states, by its code, or by its English words in older files.
 
     Examples
     --------

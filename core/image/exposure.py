@@ -43,12 +43,12 @@ class Exposure:
 
     @property
     def is_good(self) -> bool:
-        """Whether nothing needs to change."""
+        """Whether the exposure needs no change."""
         return self.factor == 1.0
 
 
 def stripe_exposure(centrelines: Sequence[Centreline], full_scale: float) -> Exposure | None:
-    """Exposure of the stripes of one picture, and by how much it should change.
+    """Measure the exposure of the stripes of one picture, and by how much it should change.
 
     Parameters
     ----------

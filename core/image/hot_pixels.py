@@ -26,7 +26,7 @@ Gaussian σ of 0.5 px gives them 0.23."""
 
 
 def standing_out(picture: Picture) -> NDArray[np.int64]:
-    """Pixels of a picture (H, W) that are brighter than all around them as no blurred light is: (K,) places, row-major.
+    """Find pixels of a picture (H, W) brighter than all around them as no blurred light is; (K,) places, row-major.
 
     Raises
     ------
@@ -50,7 +50,7 @@ def standing_out(picture: Picture) -> NDArray[np.int64]:
 
 
 def hot_pixels(pictures: Sequence[NDArray[np.int64]]) -> NDArray[np.int64]:
-    """Places of hot pixels, those that stand out in nearly all `pictures`, each as `standing_out` gives it."""
+    """Find the hot pixels: places that stand out in nearly all `pictures`, each as `standing_out` gives it."""
     if len(pictures) < _FEWEST_PICTURES:
         return np.zeros(0, dtype=np.int64)
     places, times = np.unique(np.concatenate(pictures), return_counts=True)

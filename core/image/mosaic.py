@@ -49,7 +49,7 @@ _ROUGH_SHARE = 0.1
 
 
 def is_interpolated(picture: NDArray[Any]) -> bool:
-    """Whether the pixels of a picture (H, W) differ from their neighbours by their place in tiles of 2 × 2."""
+    """Whether a picture (H, W) is interpolated from a colour mosaic, by how pixels differ within tiles of 2 × 2."""
     rows, columns = (size // PERIOD_PX for size in picture.shape)
     if min(rows, columns) < PERIOD_PX:
         return False
@@ -62,22 +62,22 @@ def is_interpolated(picture: NDArray[Any]) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Sites:
-    """The sites of one colour: those `u`, `v` from the first one of each tile, of `period` px either way."""
+    """Sites of one colour in a mosaic: those `u`, `v` from the first one of each tile, of `period` px either way."""
 
     u: int
     v: int
     period: int = PERIOD_PX
 
     def of(self, picture: NDArray[Any]) -> NDArray[Any]:
-        """What these sites of a picture (H, W) hold, about (H / period, W / period)."""
+        """Select the pixels of a picture (H, W) at these sites, about (H / period, W / period)."""
         return np.ascontiguousarray(picture[self.v :: self.period, self.u :: self.period])
 
     def places_of(self, uv: Array) -> Array:
-        """Places (N, 2) of the whole picture, in px of the sites'."""
+        """Convert places (N, 2) from px of the whole picture to px of the sites."""
         return np.asarray((uv - (self.u, self.v)) / self.period)
 
     def stripe_of(self, stripe: StripeSettings | None) -> StripeSettings | None:
-        """A stripe of the whole picture, in px of the sites'; None for none."""
+        """Convert a stripe from px of the whole picture to px of the sites; None stays None."""
         return None if stripe is None else replace(stripe, width_px=stripe.width_px / self.period)
 
     @overload
@@ -85,11 +85,11 @@ class Sites:
     @overload
     def stripe_back(self, stripe: None) -> None: ...
     def stripe_back(self, stripe: StripeSettings | None) -> StripeSettings | None:
-        """A stripe of the sites' picture, in px of the whole one; None for none."""
+        """Convert a stripe from px of the sites to px of the whole picture; None stays None."""
         return None if stripe is None else replace(stripe, width_px=stripe.width_px * self.period)
 
     def brought_back(self, lines: Sequence[Centreline]) -> tuple[Centreline, ...]:
-        """Centrelines of the sites' picture in px of the whole one: their points are about a period apart."""
+        """Convert centrelines from px of the sites to px of the whole picture; points are then about a period apart."""
         if self == ALL_SITES:
             return tuple(lines)
         return tuple(
@@ -109,18 +109,18 @@ ALL_SITES = Sites(0, 0, 1)
 
 
 def sites_of(pattern: Pattern, colour: str) -> Sites:
-    """The sites that see "red", "green" or "blue"; of green, of which there are two in a tile, the first."""
+    """Give the sites that see "red", "green" or "blue"; of green, with two in a tile, the first."""
     at = pattern.index(colour[0].upper())
     return Sites(at % PERIOD_PX, at // PERIOD_PX)
 
 
 def colours_of(picture: NDArray[Any], pattern: Pattern) -> NDArray[Any]:
-    """Blue, green and red (H, W, 3) of a raw picture (H, W): measured at the sites, between them their means."""
+    """Interpolate blue, green and red (H, W, 3) of a raw picture (H, W): measured at the sites, means between them."""
     return np.asarray(cv2.cvtColor(picture, _TO_BGR[pattern]))
 
 
 def even_grey(picture: NDArray[Any]) -> NDArray[np.uint16]:
-    """A raw picture (H, W) of a black and white target in one light, all sites brought to one sensitivity.
+    """Bring all sites of a raw picture (H, W) of a black and white target to one sensitivity.
 
     So every pixel of it was measured, and an edge lies where it is. 16 bits, for no level is lost.
     """

@@ -17,7 +17,7 @@ _ROWS = 8
 
 
 def pixels_of(picture: NDArray[Any]) -> bytes:
-    """What a picture is known by, whatever its file: equal for equal pixels alone.
+    """Compute a hash of the pixels of a picture, whatever its file: equal for equal pixels alone.
 
     Nothing (b"") for a picture whose pixels are all the same, as an all black one: it has no noise to know it by.
     """
@@ -30,13 +30,13 @@ def pixels_of(picture: NDArray[Any]) -> bytes:
 
 
 class Repeats:
-    """Tells which pictures are earlier ones again."""
+    """Detector of pictures that repeat earlier ones."""
 
     def __init__(self) -> None:
         self._seen: set[bytes] = set()
 
     def again(self, *pixels: bytes) -> bool:
-        """Whether one of the pictures of a view, pose or frame was there before; all are known from now on."""
+        """Whether one of the pictures of a view, pose or frame was given before; all are remembered."""
         known = {one for one in pixels if one}
         repeated = not self._seen.isdisjoint(known)
         self._seen |= known

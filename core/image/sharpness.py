@@ -21,7 +21,7 @@ _SMALLEST_REACH, _LARGEST_REACH = 4, 32  # px around a mark
 
 
 def edge_blur_px(picture: Picture, uv: Array) -> float:
-    """Blur of the edges around the marks at `uv` (N, 2) as a Gaussian σ in pixels; NaN if there is no edge.
+    """Measure the blur of the edges around the marks at `uv` (N, 2) as a Gaussian σ in pixels; NaN if there is no edge.
 
     A step of height c blurred by σ is at most c / (√(2π) σ) steep. Around each mark, as far as half-way to the next,
     c is the range of grey levels and the steepness the largest gradient: that of the steepest edge, and that of the

@@ -50,7 +50,7 @@ _SIGNIFICANT_BEND = 3.0  # standard uncertainties by which a straight fit would 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Crossing:
-    """Crossing of line a of one picture with line b of another.
+    """Crossing of a line a of one picture with a line b of another.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ class Crossing:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class CrossingSearch:
-    """Crossings of two pictures, and what was left out.
+    """Crossings of two pictures, and counts of those left out.
 
     Parameters
     ----------
@@ -227,7 +227,7 @@ def _arm_too_short(line: LineAt, origin: tuple[float, float], reach: float) -> b
 
 @inlined()
 def cross_segments(a: LineAt, b: LineAt, half: float, min_angle: float, share: Array, result: Array) -> None:
-    """Meet the local fits of two lines near one segment of each.
+    """Cross the local fits of two lines near one segment of each.
 
     Parameters
     ----------

@@ -109,7 +109,7 @@ def influence(right: Array, left: Array, reach: float, sigma: float, change: int
 
 @inlined()
 def log_odds_of_break(right: Array, left: Array, reach: float) -> float:
-    """Logarithm of how much likelier two lines are, ending at x = 0, than one; per px² of jump·kink·reach.
+    """Compute the log odds of two lines that end at x = 0 over one line; per px² of jump·kink·reach.
 
     At least three bins on each side. The standard deviation of the curvature at x = 0 is tried like δ here: two lines
     must not be the less likely for having two curvatures.
@@ -143,7 +143,7 @@ def _log_sum(scores: Array) -> float:
 
 @inlined()
 def straight_sigma(right: Array, left: Array) -> float:
-    """Standard uncertainty in px of a straight line in its middle."""
+    """Compute the standard uncertainty in px of a straight line in its middle."""
     ahead, behind = 0.0, 0.0
     for k in range(len(right)):
         ahead += right[k, INFORMATION]

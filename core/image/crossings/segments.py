@@ -28,7 +28,7 @@ CELLS = 2 * CELL_REACH + 1
 
 
 class StackedPiece(NamedTuple):
-    """One piece of a `Stack`: its points (N, 3), the length along it (N,), its bins and which of them are broken."""
+    """Piece of a `Stack`: its points (N, 3), the length along it (N,), its bins and which of them are broken."""
 
     points: Array
     arc: Array
@@ -38,7 +38,7 @@ class StackedPiece(NamedTuple):
 
 
 class Stack:
-    """The centrelines of one picture, prepared for crossing with those of others.
+    """Centrelines of one picture, prepared for crossing with those of others.
 
     Parameters
     ----------
@@ -81,13 +81,13 @@ class Stack:
         return len(self.lines)
 
     def point_at(self, i: int, along: float) -> int:
-        """The point of piece i nearest to the length `along` it."""
+        """Find the point of piece i nearest to the length `along` it."""
         arc = self.arc[self.starts[i] : self.starts[i + 1]]
         after = min(int(np.searchsorted(arc, along)), len(arc) - 1)
         return after - 1 if after > 0 and along - arc[after - 1] < arc[after] - along else after
 
     def piece(self, i: int) -> StackedPiece:
-        """Piece i with its points, bins and breaks."""
+        """Give piece i with its points, bins and breaks."""
         part = slice(self.starts[i], self.starts[i + 1])
         correlation = self.lines[i].correlation_px
         return StackedPiece(self.points[part], self.arc[part], self.bins[i], self.broken[i], correlation)
@@ -164,7 +164,7 @@ def _overlapping(a: Array, b: Array) -> NDArray[np.int64]:
 
 @inlined()
 def boxes_apart(one: Array, other: Array) -> bool:
-    """Whether the boxes of two runs have nothing in common."""
+    """Whether the boxes of two runs do not overlap."""
     return bool(one[5] < other[3] or other[5] < one[3] or one[6] < other[4] or other[6] < one[4])
 
 

@@ -44,7 +44,7 @@ _NEW_WIDTHS = 4.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Exposure:
-    """The stripes that a picture shows, (H, W) where it is saturated, and its mean `light` as a share of full scale."""
+    """Stripes of a picture, (H, W) where it is saturated, and its mean `light` as a share of full scale."""
 
     lines: Sequence[Centreline]
     saturated: NDArray[np.bool_]
@@ -53,7 +53,7 @@ class Exposure:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Exposures:
-    """How another exposure of the same stripes goes with the first one.
+    """Comparison of another exposure of the same stripes with the first one.
 
     It is `factor` times shorter, below 1 if it is longer, nan where nothing tells; the stripes of the two are
     `shift_px` apart, and `points` were taken from it. None are if something `moved` between the two.
@@ -66,7 +66,7 @@ class Exposures:
 
 
 def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline, ...], tuple[Exposures, ...]]:
-    """The centrelines of several exposures as one, longest first, and how each of the others goes with the first.
+    """Merge the centrelines of several exposures, longest first, and compare each of the others with the first.
 
     Heights are in grey levels of the first exposure. What moved against that, or against what is longer, is left out.
     """
@@ -93,7 +93,7 @@ def fused(first: Exposure, others: Sequence[Exposure]) -> tuple[tuple[Centreline
 def bracketed(
     long: Sequence[Centreline], short: Sequence[Centreline], saturated: NDArray[np.bool_]
 ) -> tuple[tuple[Centreline, ...], Exposures]:
-    """The centrelines with the short exposure's points where the long one is saturated, longest first.
+    """Replace points of the long exposure's centrelines where it is saturated by those of the short one, longest first.
 
     Heights are in grey levels of the long exposure, against which the short one is told.
 

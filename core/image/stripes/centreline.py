@@ -12,7 +12,7 @@ from core.model.arrays import Array, frozen_array, set_field
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Centreline:
-    """One unbroken run of stripe points, in order along the stripe, about one pixel apart.
+    """Unbroken run of stripe points, in order along the stripe, about one pixel apart.
 
     A stripe cut by a depth edge or a dark gap gives several centrelines. Neighbouring points are further apart only
     across dark grains and where another stripe crosses (`core.image.stripes.lines.holes`); each lies ahead of the one
@@ -75,7 +75,7 @@ class Centreline:
         return np.column_stack([-self.normal[:, 1], self.normal[:, 0]])
 
     def select(self, keep: NDArray[np.bool_] | NDArray[np.intp] | slice) -> Centreline:
-        """The points that `keep` selects."""
+        """Select the points for which `keep` is true, or which it numbers."""
         return Centreline(
             self.uv[keep],
             self.normal[keep],

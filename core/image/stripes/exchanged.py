@@ -24,7 +24,7 @@ EXCHANGED = Message(
 
 
 def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
-    """How many times stronger the strongest light that only the off picture (H, W) has is than that of the on picture.
+    """Compute the ratio of the strongest light that only the off picture (H, W) has to that of the on picture.
 
     The off picture is brought to the exposure of the other. 0 where the two differ in size.
     """
@@ -37,5 +37,5 @@ def light_off_over_on(on: NDArray[Any], off: NDArray[Any]) -> float:
 
 
 def are_exchanged(ratios: Sequence[float]) -> bool:
-    """Whether on and off are exchanged in pairs of these ratios, by most of them."""
+    """Whether pictures on and off are exchanged in most of the pairs with these ratios."""
     return len(ratios) > 0 and float(np.median(ratios)) > _TIMES

@@ -41,7 +41,7 @@ _SAMPLE = 8  # points: every so many tell a median over sections
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Lit:
-    """The stripes of a picture as they are known before their refinement, and the scatter of its grey values."""
+    """Stripes of a picture before their refinement, and the scatter of its grey values."""
 
     picture: Picture
     state: NDArray[np.uint8]
@@ -51,14 +51,14 @@ class Lit:
     filter_px: float
 
     def refined(self, stripes: list[StripeModel]) -> list[Refined]:
-        """The likeliest places of these stripes."""
+        """Refine these stripes to their likeliest places."""
         return [
             refine(self.picture, self.state, stripe, self.noise, self.speckle, self.filter_px) for stripe in stripes
         ]
 
 
 def by_measured_section(lit: Lit, lines: list[Refined]) -> list[Refined] | None:
-    """Place stripes by their measured section; None where a Gaussian suits or no other one is known well.
+    """Locate stripes by their measured section; None where a Gaussian fits or no other section is known well.
 
     Parameters
     ----------

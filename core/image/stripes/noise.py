@@ -52,7 +52,7 @@ _BACKGROUND_PX = 15  # side of the mean that a difference of two pictures is fre
 
 @dataclass(frozen=True, slots=True)
 class Compression:
-    """What compression leaves the grey values of a picture off, all along a block alike, so no scatter shows it.
+    """Errors of the grey values of a picture by compression, all alike along a block, so that no scatter shows them.
 
     Parameters
     ----------
@@ -102,12 +102,12 @@ class NoiseModel:
             raise ValueError(f"grey_per_electron is {self.grey_per_electron}, not zero or positive")
 
     def variance(self, level: Array) -> Array:
-        """Variance in grey levels² at grey values `level` (any shape)."""
+        """Compute the variance in grey levels² at grey values `level` (any shape)."""
         variance: Array = self.read_grey**2 + self.grey_per_electron * np.maximum(level, 0)
         return variance
 
     def of_difference(self, common_grey: float = 0.0) -> NoiseModel:
-        """The noise of picture − reference, both of this noise, where both show `common_grey` of the same light."""
+        """Compute the noise of picture − reference, both of this noise and with `common_grey` of the same light."""
         return NoiseModel(
             float(np.sqrt(2 * self.read_grey**2 + 2 * self.grey_per_electron * max(common_grey, 0.0))),
             self.grey_per_electron,
@@ -137,7 +137,10 @@ def estimate_noise(picture: NDArray[np.float32], ignore: NDArray[np.bool_] | Non
 
 
 def free_of_structure(noise: NoiseModel, other: NoiseModel, level: float) -> NoiseModel:
-    """`noise`, or the `other` estimate of it where that is so much less at a grey `level` that structure is in it."""
+    """Choose the `other` estimate where it is so much lower at a grey `level` that `noise` includes structure.
+
+    Else `noise`.
+    """
     return other if _times(noise, other, level) > _STRUCTURED else noise
 
 

@@ -23,14 +23,17 @@ LARGEST = 3.0
 
 
 class Exposed(NamedTuple):
-    """How a picture is exposed beside another one: it is gain · other + offset, in grey levels, where no laser is."""
+    """Exposure of a picture against another one: gain · other + offset, in grey levels, where no laser is."""
 
     gain: float = 1.0
     offset: float = 0.0
 
     @classmethod
     def of(cls, on: NDArray[Any], off: NDArray[Any], full_scale: float) -> Exposed:
-        """How `on` (H, W) is exposed beside `off` (H, W), the same part of both; alike where it does not matter."""
+        """Estimate the exposure of `on` (H, W) against `off` (H, W), the same part of both.
+
+        Equal where it does not matter.
+        """
         every = max(1, int(np.sqrt(on.size / SAMPLES)))
         x = off[::every, ::every].ravel().astype(np.float64)
         y = on[::every, ::every].ravel().astype(np.float64)
@@ -51,7 +54,7 @@ class Exposed(NamedTuple):
         return cls(gain, offset)
 
     def like(self, other: NDArray[np.float32]) -> NDArray[np.float32]:
-        """The other picture (H, W) as it would be, exposed like this one."""
+        """Convert the other picture (H, W) to the exposure of this one."""
         if self == Exposed():
             return other
         return np.float32(self.gain) * other + np.float32(self.offset)

@@ -49,7 +49,7 @@ _LARGEST_SLOPE_PULL_PX = 0.5  # of such a correction: more is no pull on a line 
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Piece:
-    """A run of line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,).
+    """Run of line points (N, ≥ 4) on one smooth surface, their cross-sections, and which are saturated (N,).
 
     `usable` (N,) are the points to judge the line by: those not saturated, or all where most of them are.
     """

@@ -45,25 +45,31 @@ _OUTLIER = 25.0  # times the usual square of a difference: larger ones are cut d
 
 
 def response_noise(pixel_noise: float, stripe_px: float, filter_px: float) -> float:
-    """Noise of the second derivative across a line, as a height of stripe in grey levels; white noise."""
+    """Compute the noise of the second derivative across a line, as a stripe's height in grey levels.
+
+    For white noise.
+    """
     second: float = pixel_noise * math.sqrt(3 / (16 * math.pi)) / filter_px**3
     return second / ridge_response(1.0, stripe_px, filter_px)
 
 
 def added_in_squares(sigma: Array, extra: float) -> Array:
-    """√(σ² + extra²) of each σ, (N,): a tenth of what `np.hypot` takes for numbers that cannot overflow."""
+    """Compute √(σ² + extra²) of each σ, (N,).
+
+    In a tenth of the time of `np.hypot`, for numbers that cannot overflow.
+    """
     return np.asarray(np.sqrt(sigma * sigma + extra * extra))
 
 
 def noise_sigma(profiles: Profiles, noise: NoiseModel, filter_px: float) -> Array:
-    """Standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
+    """Compute the standard uncertainty (N,) in px of line points along their normals, from read and shot noise."""
     read, shot = noise.read_grey**2, noise.grey_per_electron
     sigma: Array = _noise_sigma(profiles.height, profiles.width, profiles.background, read, shot, filter_px)
     return sigma
 
 
 def compression_sigma(height: Array, noise: NoiseModel) -> Array:
-    """Standard uncertainty (N,) in px that compression leaves at least, of stripes of this height in grey levels."""
+    """Compute the least standard uncertainty (N,) in px by compression, of stripes of this height in grey levels."""
     return np.asarray(COMPRESSION_SHARE * noise.compression.grey / np.maximum(height, 1.0))
 
 
@@ -95,7 +101,7 @@ def roughness(lines: list[tuple[Array, Array]], correlation: float) -> list[floa
 
 
 def scatter(lines: list[Array], correlation: float) -> float:
-    """Standard deviation in px of all points of some lines, each (N, ≥ 4), as `roughness` measures it; 0 if too few."""
+    """Compute the standard deviation in px of all points of some lines, each (N, ≥ 4), as `roughness`; 0 if too few."""
     lag = max(1, round(correlation))
     sums = [_excess(points, np.zeros(len(points)), lag, correlation) for points in lines]
     number = sum(n for _, n in sums)

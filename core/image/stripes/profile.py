@@ -53,7 +53,7 @@ class Profiles:
     skewness: Array
 
     def select(self, part: slice) -> Profiles:
-        """The cross-sections of a part of the run."""
+        """Select the cross-sections of a part of the run."""
         return Profiles(
             self.height[part],
             self.background[part],

@@ -12,13 +12,13 @@ from core.model.small_arrays import first_not_below, median_of, new_row, row_of,
 
 @compiled()
 def median(values: Array) -> float:
-    """Median of `values` (N,), N ≥ 1."""
+    """Compute the median of `values` (N,), N ≥ 1."""
     return median_of(values, 0, len(values))
 
 
 @inlined()
 def quantile_of_magnitudes(values: Array, share: float) -> float:
-    """The size |value| that `share` of the `values` (N,) do not exceed."""
+    """Compute the magnitude |value| that `share` of the `values` (N,) do not exceed."""
     k = min(int(share * len(values)), len(values) - 1)
     sizes = new_row(len(values))
     for i in range(len(values)):
@@ -28,7 +28,7 @@ def quantile_of_magnitudes(values: Array, share: float) -> float:
 
 @inlined()
 def running_median(values: Array, length: int) -> Array:
-    """Median of the `length` (odd) values around each of `values` (N,); the first and last go on beyond the ends."""
+    """Compute the median of the `length` (odd) values around each of `values` (N,); the ends are repeated beyond."""
     count, half = len(values), length // 2
     window = new_row(length)
     for k in range(length):
@@ -51,7 +51,9 @@ def running_median(values: Array, length: int) -> Array:
 
 @inlined()
 def running_mean(values: Array, length: int) -> tuple[Array, Array]:
-    """Mean over `length` (odd) neighbours, fewer at the ends, and its standard error, (N,) each; outliers clipped.
+    """Compute the mean over `length` (odd) neighbours, fewer at the ends, and its standard error, (N,) each.
+
+    Outliers clipped.
 
     Two values give no standard error: it is infinite.
     """

@@ -36,7 +36,7 @@ _MEAN_REACH = 1.5  # filter σ on either side over which width² is averaged
 
 @compiled(inline=True)
 def arc_length(run: Array) -> Array:
-    """Length along a run (N, ≥ 2) up to each point, in pixels."""
+    """Compute the length along a run (N, ≥ 2) up to each point, in pixels."""
     arc = new_row(len(run))
     arc[0] = 0.0
     for k in range(1, len(run)):
@@ -46,7 +46,7 @@ def arc_length(run: Array) -> Array:
 
 
 def correlation_length(filter_px: float) -> float:
-    """Length along the stripe over which the noise of its points counts as one, 2√π·g, in pixels."""
+    """Compute the length in px along the stripe over which the noise of its points counts as one, 2√π·g."""
     return 2 * math.sqrt(math.pi) * filter_px
 
 

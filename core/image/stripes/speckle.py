@@ -34,7 +34,10 @@ _LAGS = 3  # distances in px of the pixels multiplied: 0, 1 and 2
 
 
 class Speckle(NamedTuple):
-    """Speckle: contrast, standard deviation over mean as pixels see it; 1/e half-width in px of its correlation."""
+    """Speckle of a stripe: contrast, standard deviation over mean as pixels see it.
+
+    1/e half-width in px of its correlation.
+    """
 
     contrast: float
     grain_px: float

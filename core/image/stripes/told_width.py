@@ -25,7 +25,9 @@ _ROUNDS = 3
 def as_measured(
     told: StripeSettings, look: Callable[[StripeSettings], tuple[Centreline, ...]]
 ) -> tuple[StripeSettings, tuple[Centreline, ...]]:
-    """What `look` finds with the `told` settings; with the measured width instead where that is quite another.
+    """Extract centrelines by `look` with the `told` settings.
+
+    Again with the measured width where that is very different.
 
     With it come the settings that it was found with.
     """
@@ -42,7 +44,7 @@ def as_measured(
 
 
 def told_width_notes(told: StripeSettings | None, used: Iterable[StripeSettings | None]) -> tuple[Message, ...]:
-    """A note if a width was `told` and the widths `used` instead are others, with the one farthest from it."""
+    """Note if a width was `told` and other widths were `used` instead, with the one farthest from it."""
     if told is None:
         return ()
     widths = [settings.width_px for settings in used if settings is not None]

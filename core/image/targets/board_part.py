@@ -32,7 +32,7 @@ LEAST_EVEN = 0.8
 
 
 class Place(NamedTuple):
-    """A part's first corner on the board after `turn` quarter turns of its grid."""
+    """Place of a part on the board: its first corner after `turn` quarter turns of its grid."""
 
     turn: int
     row: int
@@ -40,7 +40,7 @@ class Place(NamedTuple):
 
 
 def places(picture: NDArray[np.uint8], grid: Array, board: Checkerboard) -> list[Place]:
-    """Where on `board` the corners `grid` (R, C, 2), in a right-handed order, may lie; none if it is no part of it.
+    """List places on `board` where the corners `grid` (R, C, 2), right-handed, may lie; none if it is no part of it.
 
     Places that the board's own symmetry makes alike count as one: that whose origin is nearest to the picture's top
     left, as for a whole board.
@@ -54,12 +54,12 @@ def places(picture: NDArray[np.uint8], grid: Array, board: Checkerboard) -> list
 
 
 def right_handed_grid(grid: Array) -> Array:
-    """`grid` (R, C, 2), mirrored if need be."""
+    """Mirror `grid` (R, C, 2) if it is left-handed."""
     return grid if right_handed(grid) else grid[:, ::-1]
 
 
 def on_board(place: Place, grid: Array, board: Checkerboard) -> tuple[Array, Array]:
-    """The part's corners (r, c, 2) in the board's order, and their points (r · c, 3) in mm."""
+    """Arrange the part's corners (r, c, 2) in the board's order, with their points (r · c, 3) in mm."""
     way = np.rot90(grid, place.turn)
     rows, columns = way.shape[:2]
     points = board.points.reshape(board.rows, board.columns, 3)
@@ -68,7 +68,7 @@ def on_board(place: Place, grid: Array, board: Checkerboard) -> tuple[Array, Arr
 
 
 def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
-    """`grid` (R, C, 2) without its outermost corners if its ground is as dark as its black squares; else None.
+    """Drop the outermost corners of `grid` (R, C, 2) if its ground is as dark as its black squares; else None.
 
     The ground must be seen on two sides at least, and be dark on all on which it is seen.
     """
@@ -90,7 +90,7 @@ def within_dark_ground(picture: NDArray[np.uint8], grid: Array) -> Array | None:
 
 
 def nearest_to_middle(choices: list[Place], grid: Array, board: Checkerboard) -> Place:
-    """That of the places whose corners lie nearest to the board's middle."""
+    """Choose the place whose corners lie nearest to the board's middle."""
     middle = board.points.mean(axis=0)
     return min(choices, key=lambda place: float(np.linalg.norm(on_board(place, grid, board)[1].mean(axis=0) - middle)))
 
@@ -150,7 +150,7 @@ def _ends(picture: NDArray[np.uint8], side: Array, contrast: float) -> bool:
 
 
 def ends_all_round(picture: NDArray[np.uint8], grid: Array) -> bool:
-    """Whether the board of the corners `grid` (R, C, 2) ends at all four sides: it has no more of them."""
+    """Whether the board ends on all four sides of the corners `grid` (R, C, 2), so that these are all it has."""
     contrast = contrast_of(picture, grid)
     return all(_ends(picture, np.rot90(grid, turn), contrast) for turn in range(4))
 

@@ -29,7 +29,7 @@ SMOOTHING = 1.0
 
 
 def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetView:
-    """The inner corners of `board` in `picture`; a part of the board will do.
+    """Find the inner corners of `board` in `picture`; a part of the board is enough.
 
     Boards printed in OpenCV's pattern before version 4.6 (even number of rows) are recognised too.
 
@@ -57,7 +57,7 @@ def detect_charuco(board: Charuco, picture: Picture, name: str = "") -> TargetVi
 
 
 def dictionary_of(board: Charuco) -> cv2.aruco.Dictionary:
-    """The markers of `board`, as OpenCV has them.
+    """Make OpenCV's dictionary of the markers of `board`.
 
     Raises
     ------

@@ -48,7 +48,7 @@ _CORNERS = Field("target.inner_corners")
 def detect_checkerboard(
     board: Checkerboard, picture: Picture, name: str = "", camera: Camera | None = None, *, thorough: bool = True
 ) -> TargetView:
-    """The inner corners of `board` in `picture`, in the order of `board.points`.
+    """Find the inner corners of `board` in `picture`, in the order of `board.points`.
 
     Nine corners are found on a reduced picture and grown until the board ends: so a board of another size, and a part
     of the board, are told from no board. Where the quick search does not find it, a `thorough` one goes through more
@@ -165,7 +165,7 @@ def _refined_view(
 
 
 def half_window(grid: Array) -> int:
-    """Half the window, in pixels, for corners (R, C, 2): as large as the squares and the lens's distortion allow."""
+    """Compute half the window in px for corners (R, C, 2): as large as squares and lens distortion allow."""
     nearest = float(spacing(grid).min())
     room = int(np.clip(round(0.5 * nearest), 2, LARGEST_HALF_WINDOW))
     bends = np.concatenate([_bends(line) for line in (*grid, *grid.transpose(1, 0, 2))])

@@ -40,7 +40,7 @@ _ACROSS, _DOWN = np.mgrid[-1:2, -1:2].reshape(2, 9, 1)
 
 
 def spacing(grid: Array) -> Array:
-    """Distance (R, C) in pixels from each corner of `grid` (R, C, 2) to its nearest neighbour."""
+    """Compute the distance (R, C) in px from each corner of `grid` (R, C, 2) to its nearest neighbour."""
     nearest = np.full(grid.shape[:2], np.inf)
     along = np.linalg.norm(np.diff(grid, axis=1), axis=2)
     down = np.linalg.norm(np.diff(grid, axis=0), axis=2)
@@ -52,7 +52,7 @@ def spacing(grid: Array) -> Array:
 
 
 def squares_around(picture: Picture, corner: Array, along: Array, down: Array, share: float = 0.4) -> Array:
-    """Grey levels (N, 4) in the four squares that meet at `corner` (N, 2), NaN outside the picture.
+    """Sample grey levels (N, 4) in the four squares that meet at `corner` (N, 2), NaN outside the picture.
 
     `along` and `down` (N, 2) lead to the next corners, `share` tells how far into the squares to look (0.5: their
     middles); order: before-above, after-above, after-below, before-below.
@@ -68,7 +68,9 @@ def squares_around(picture: Picture, corner: Array, along: Array, down: Array, s
 
 
 def blackness(picture: Picture, corner: Array, along: Array, down: Array, contrast: float) -> NDArray[np.int_]:
-    """For each corner (N,): +1 if its first and third squares are black, −1 if the others are, 0 if it is no corner.
+    """Compute for each corner (N,) +1 if its first and third squares are black, −1 if the others are.
+
+    0 if it is no corner.
 
     Looked at in the squares, each for itself, and close to the corner, where round spots leave a gap and blur a smear.
     """
@@ -101,12 +103,12 @@ def is_even(grid: Array) -> bool:
 
 
 def steps_of(grid: Array) -> tuple[Array, Array]:
-    """Local steps to the next corner along the rows and down the columns of `grid` (R, C, 2)."""
+    """Compute local steps to the next corner along rows and down columns of `grid` (R, C, 2); each (R, C, 2)."""
     return np.gradient(grid, axis=1), np.gradient(grid, axis=0)
 
 
 def contrast_of(picture: Picture, grid: Array) -> float:
-    """Median difference of white and black squares around the corners of `grid`."""
+    """Compute the median difference of white and black squares around the corners of `grid`."""
     along, down = steps_of(grid)
     levels = squares_around(picture, grid.reshape(-1, 2), along.reshape(-1, 2), down.reshape(-1, 2))
     return float(np.nanmedian(np.abs(levels[:, 0] + levels[:, 2] - levels[:, 1] - levels[:, 3])) / 2)
@@ -168,14 +170,14 @@ def _board_reaches_out(picture: NDArray[np.uint8], grid: Array, contrast: float)
 
 
 def refined(picture: Picture, corners: Array, half: int) -> Array:
-    """`corners` (N, 2) refined to sub-pixel by cornerSubPix in windows of 2 `half` + 1 pixels."""
+    """Refine `corners` (N, 2) to sub-pixel by cornerSubPix in windows of 2 `half` + 1 pixels."""
     stop = (cv2.TERM_CRITERIA_EPS + cv2.TERM_CRITERIA_MAX_ITER, 40, 0.001)
     start = np.ascontiguousarray(corners, dtype=np.float32).reshape(-1, 1, 2)
     return np.asarray(cv2.cornerSubPix(picture, start, (half, half), (-1, -1), stop), dtype=np.float64).reshape(-1, 2)
 
 
 def oriented(picture: Picture, grid: Array, columns: int, rows: int) -> Array:
-    """`grid` (R, C, 2) turned to (rows, columns) in the order that :class:`Checkerboard` promises."""
+    """Turn `grid` (R, C, 2) to (rows, columns) in the order that :class:`Checkerboard` promises."""
     ways = [way for way in _turns(grid) if way.shape[:2] == (rows, columns) and right_handed(way)]
     black = [way for way in ways if first_is_black(picture, way)]
     return min(black or ways, key=lambda way: float(way[0, 0].sum()))
@@ -207,7 +209,7 @@ def _parity(grid: Array) -> NDArray[np.int_]:
 
 
 def corner_sigma(picture: Picture, corners: Array, half: int, noise: float, smoothing: float = 0.0) -> Array:
-    """Standard uncertainty (N,) in pixels of each coordinate of `corners` (N, 2).
+    """Compute the standard uncertainty (N,) in px of each coordinate of `corners` (N, 2).
 
     Parameters
     ----------

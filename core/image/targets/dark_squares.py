@@ -26,14 +26,14 @@ MOST_PIECES = 12
 
 @dataclass(frozen=True, eq=False, slots=True)
 class DarkSquares:
-    """What was seen: whole quadrilaterals (4, 2) clockwise in the picture, largest first, and how many are cut off."""
+    """Dark squares of a picture: whole quadrilaterals (4, 2) clockwise, largest first, and the number cut off."""
 
     whole: tuple[Array, ...]
     cut_off: int
 
 
 def dark_squares(picture: NDArray[np.uint8]) -> DarkSquares:
-    """Dark, convex, filled quadrilaterals with light all round them; stripes of light may cross them."""
+    """Find dark, convex, filled quadrilaterals with light all round them; stripes of light may cross them."""
     cut_off = 0
     found: list[Array] = []
     for width in STRIPE_WIDTHS:
@@ -145,14 +145,14 @@ def _levels(picture: NDArray[np.uint8], uv: Array) -> Array:
 
 
 def clockwise(quad: Array) -> Array:
-    """`quad` (4, 2) clockwise in the picture, from its corner nearest to the top left."""
+    """Order `quad` (4, 2) clockwise in the picture, from its corner nearest to the top left."""
     order = np.argsort(np.arctan2(*(quad - quad.mean(axis=0)).T[::-1]))  # v runs down: growing angle is clockwise
     turned = quad[order]
     return np.roll(turned, -first_corner(turned), axis=0)
 
 
 def first_corner(quad: Array) -> int:
-    """Index of the corner nearest to the top left of the picture (smallest u + v)."""
+    """Find the index of the corner nearest to the top left of the picture (smallest u + v)."""
     return int(np.argmin(quad.sum(axis=1)))
 
 

@@ -55,7 +55,7 @@ class PictureSpline:
         self._coefficients = spline_filter(part.astype(np.float64), order=3, mode="mirror")
 
     def at(self, uv: Array) -> Array:
-        """Grey levels at `uv` (…, 2) in pixels of the whole picture; NaN outside the part."""
+        """Interpolate grey levels at `uv` (…, 2) in px of the whole picture; NaN outside the part."""
         local = uv - self._origin
         inside = ((local >= 0) & (local <= self._limits)).all(axis=-1)
         levels = map_coordinates(
@@ -65,7 +65,7 @@ class PictureSpline:
 
 
 def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float) -> Profiles:
-    """Profiles through `uv` (K, 2) along the unit vectors `normal` (K, 2), which point from dark to bright."""
+    """Sample grey profiles through `uv` (K, 2) along unit vectors `normal` (K, 2); these point from dark to bright."""
     half = round(half_width / STEP)
     t = np.arange(-half - _REACH, half + _REACH + 1) * STEP
     levels = spline.at(uv[:, None, :] + t[None, :, None] * normal[:, None, :])
@@ -96,7 +96,7 @@ def profiles(spline: PictureSpline, uv: Array, normal: Array, half_width: float)
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Line:
-    """normal · (X − middle) = 0, with the uncertainty of its place and direction.
+    """Straight line normal · (X − middle) = 0, with the uncertainty of its place and direction.
 
     `sigma` is the points' spread about it, `variance_middle` that of the line's place at `middle`, `variance_angle`
     of its direction.
@@ -115,7 +115,7 @@ class Line:
 
 
 def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line | None:
-    """The line through most of `points` (N, 2), in order along it; None if fewer than 25 % or 10 of them agree.
+    """Fit the line through most of `points` (N, 2), in order along it; None if fewer than 25 % or 10 of them agree.
 
     Least median of squares over pairs of points, then Tukey's biweight from there. Neighbouring points may share
     their error: the variances are raised by what the means of 16 neighbours show over what independent points would.
@@ -159,13 +159,13 @@ def fit_line(points: Array, candidates: NDArray[np.bool_], floor: float) -> Line
 
 
 def meet(a: Line, b: Line) -> Array:
-    """Where two lines meet, (2,)."""
+    """Compute the intersection (2,) of two lines."""
     normals = np.array([a.normal, b.normal])
     return np.asarray(np.linalg.solve(normals, [a.normal @ a.middle, b.normal @ b.middle]), dtype=np.float64)
 
 
 def corner_covariance(lines: Sequence[Line]) -> Array:
-    """Covariance (K, 2, K, 2) of the corners of a polygon, corner k where line k − 1 meets line k.
+    """Compute the covariance (K, 2, K, 2) of the corners of a polygon, corner k where line k − 1 meets line k.
 
     Neighbouring corners have an edge in common: its middle is known far better than its ends, which a turn of the
     line moves against each other.

@@ -25,7 +25,10 @@ LEAST_POINTS = 8
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Ellipse:
-    """`centre` (2,) in pixels, `sigma` of each of its coordinates; `shape` (2, 2) maps the unit circle onto it."""
+    """Fitted ellipse: `centre` (2,) in px, `sigma` of each of its coordinates.
+
+    `shape` (2, 2) maps the unit circle onto it.
+    """
 
     centre: Array
     shape: Array
@@ -58,7 +61,7 @@ class _Outlines:
 
 
 def fit_dark_ellipses(picture: Picture, centres: Array, radii: Array) -> list[Ellipse | None]:
-    """The outlines of dark discs near `centres` (N, 2) of about `radii` (N,) pixels; None where 60 % are not seen.
+    """Fit the outlines of dark discs near `centres` (N, 2) of about `radii` (N,) px; None where 60 % are not seen.
 
     All at a time: a fit for each costs twenty times what its sums do.
     """
@@ -179,7 +182,7 @@ def _distances(ellipses: _Ellipses, points: Array) -> Array:
 
 
 def centre_shift(homography: Array, centres: Array, radius: float) -> Array:
-    """Ellipse's centre minus image of the circle's centre, (N, 2), under `homography` (3, 3).
+    """Compute the ellipse's centre minus the image of the circle's centre, (N, 2), under `homography` (3, 3).
 
     The image of the circle x² + y² = r² about c has the dual conic H T diag(r², r², −1) Tᵀ Hᵀ; an ellipse's centre is
     the first two elements of the last column of its dual conic, over the third.

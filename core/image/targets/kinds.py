@@ -30,7 +30,7 @@ USUAL_MARKER = 0.75
 
 @dataclass(frozen=True, slots=True)
 class Checkerboard:
-    """A checkerboard with `columns` × `rows` inner corners and squares of `square_mm`.
+    """Checkerboard with `columns` × `rows` inner corners and squares of `square_mm`.
 
     The first corner is the one whose square diagonally outside is black; where the board allows several (columns + rows
     even), or none, that of them nearest to the top left of the picture.
@@ -59,7 +59,7 @@ DICTIONARIES = (
 
 @dataclass(frozen=True, slots=True)
 class Charuco:
-    """A checkerboard of `columns` × `rows` squares of `square_mm`, with markers of `marker_mm` in its white ones.
+    """Checkerboard of `columns` × `rows` squares of `square_mm`, with markers of `marker_mm` in its white ones.
 
     `dictionary` is OpenCV's name of the markers, with or without "DICT_" in front. Any part of the board will do.
     """
@@ -134,7 +134,7 @@ class CircleGrid:
 
 @dataclass(frozen=True, slots=True)
 class BlackSquare:
-    """The paper's plane target: one black square of `side_mm` on a light plate.
+    """Plane target of the paper: one black square of `side_mm` on a light plate.
 
     A plain square looks the same turned by 90°. The convention: corner 1 is the corner nearest to the top left of the
     picture (smallest u + v), and corners 1 … 4 run clockwise in the picture; in the target's frame they are (0, 0),

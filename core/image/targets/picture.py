@@ -20,7 +20,7 @@ _FAINTEST = {np.dtype(np.uint8): 8, np.dtype(np.uint16): 128}
 
 
 def check_exposure(picture: Picture, name: str) -> None:
-    """Refuse a picture that shows nothing.
+    """Check that a picture is neither all black nor all white, nor of one grey.
 
     Raises
     ------
@@ -57,14 +57,14 @@ def check_exposure(picture: Picture, name: str) -> None:
 
 
 def grey_range(picture: Picture) -> tuple[float, float]:
-    """Grey levels that leave 0.2 % of the pixels below and above."""
+    """Compute the grey levels that leave 0.2 % of the pixels below and above."""
     step = max(1, min(picture.shape) // 400)
     low, high = level_quantiles(picture[::step, ::step], 0.002, 0.998)
     return low, high
 
 
 def level_quantiles(levels: Picture, *shares: float) -> list[float]:
-    """What :func:`numpy.quantile` gives for grey `levels` of any shape, counted: there are far more pixels."""
+    """Compute the quantiles of grey `levels` of any shape, as :func:`numpy.quantile`; by counting, for many pixels."""
     upto = np.cumsum(np.bincount(levels.ravel()))
     quantiles: list[float] = []
     for share in shares:
@@ -77,7 +77,7 @@ def level_quantiles(levels: Picture, *shares: float) -> list[float]:
 
 
 def as_8bit(picture: Picture) -> NDArray[np.uint8]:
-    """The picture in 8 bit, stretched to the full range if it is 16 bit or dark; a good 8-bit picture as it is."""
+    """Convert the picture to 8 bit, stretched to the full range if it is 16 bit or dark; a good 8-bit picture stays."""
     low, high = grey_range(picture)
     if picture.dtype == np.uint8 and high >= 128:
         return picture
@@ -86,12 +86,15 @@ def as_8bit(picture: Picture) -> NDArray[np.uint8]:
 
 
 def as_refinable(picture: Picture) -> Picture:
-    """The picture in a type that OpenCV's corner refinement takes, grey levels unchanged."""
+    """Convert the picture to a type that OpenCV's corner refinement takes, grey levels unchanged."""
     return picture if picture.dtype == np.uint8 else picture.astype(np.float32)
 
 
 def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8], int]:
-    """The picture reduced by a whole factor, so that its longer side is at most about `longest`, and the factor."""
+    """Reduce the picture by a whole factor, so that its longer side is at most about `longest`.
+
+    Also give the factor.
+    """
     factor = max(1, round(max(picture.shape) / longest))
     if factor == 1:
         return picture, 1
@@ -101,7 +104,7 @@ def reduced(picture: NDArray[np.uint8], longest: int) -> tuple[NDArray[np.uint8]
 
 
 def resized(picture: NDArray[np.uint8], factor: float) -> tuple[NDArray[np.uint8], float]:
-    """The picture reduced by about `factor`, or enlarged if that is below one, and the factor."""
+    """Reduce the picture by about `factor`, or enlarge it if that is below one; also give the exact factor."""
     rows, columns = (max(1, round(side / factor)) for side in picture.shape)
     way = cv2.INTER_AREA if factor > 1 else cv2.INTER_CUBIC
     small = picture if factor == 1 else cv2.resize(picture, (columns, rows), interpolation=way)
@@ -109,18 +112,21 @@ def resized(picture: NDArray[np.uint8], factor: float) -> tuple[NDArray[np.uint8
 
 
 def enlarged(uv: Array, factor: float) -> Array:
-    """Points `uv` (…, 2) of a reduced picture in pixels of the full one (pixel centres are whole numbers in both)."""
+    """Convert points `uv` (…, 2) of a reduced picture to px of the full one.
+
+    Pixel centres are whole numbers in both.
+    """
     return (np.asarray(uv, dtype=np.float64) + 0.5) * factor - 0.5
 
 
 def without_stripes(picture: NDArray[np.uint8], width: int) -> NDArray[np.uint8]:
-    """The picture without bright lines narrower than `width` pixels (grey opening); dark shapes keep their outline."""
+    """Remove bright lines narrower than `width` px by grey opening; dark shapes keep their outline."""
     disc = cv2.getStructuringElement(cv2.MORPH_ELLIPSE, (width, width))
     return np.asarray(cv2.morphologyEx(picture, cv2.MORPH_OPEN, disc), dtype=np.uint8)
 
 
 def noise_of(picture: Picture, uv: Array) -> float:
-    """Standard deviation of the pixel noise in grey levels around the points `uv` (N, 2).
+    """Estimate the standard deviation of the pixel noise in grey levels around the points `uv` (N, 2).
 
     From the median absolute response of a mask blind to edges, apart for the darker and the brighter half of the area,
     as noise grows with light.

@@ -27,7 +27,7 @@ LIKELIHOOD_STEP = 9.0
 
 @dataclass(frozen=True, eq=False, slots=True)
 class PoseEstimate:
-    """Where the target stands.
+    """Estimated pose of a target, with its covariance and fit.
 
     Parameters
     ----------
@@ -62,7 +62,9 @@ class PoseEstimate:
 
 
 def estimate_pose(view: TargetView, camera: Camera) -> PoseEstimate:
-    """The target's pose from `view`, by weighted least squares over the pixel residuals of the full camera model.
+    """Estimate the target's pose from `view`.
+
+    By weighted least squares over the pixel residuals of the full camera model.
 
     Both solutions that a plane allows (IPPE) are refined; the better one is the pose, and whether the view tells
     them apart is reported. With twelve points or more outliers lose their weight (Tukey).
@@ -235,13 +237,13 @@ def _vector_by_turn(vector: Array) -> Array:
 
 
 def homography_of(xy: Array, uv: Array, *, robust: bool = False) -> Array | None:
-    """The homography (3, 3) that maps `xy` (N, 2) to `uv` (N, 2); None if they do not determine one."""
+    """Fit the homography (3, 3) that maps `xy` (N, 2) to `uv` (N, 2); None if they do not determine one."""
     matrix = cv2.findHomography(xy, uv, cv2.LMEDS if robust else 0)[0]
     return None if matrix is None else np.asarray(matrix, dtype=np.float64)
 
 
 def map_by(homography: Array, xy: Array) -> Array:
-    """Images (N, 2) of `xy` (N, 2)."""
+    """Map `xy` (N, 2) by a homography (3, 3) to their images (N, 2)."""
     ends = np.column_stack([xy, np.ones(len(xy))]) @ homography.T
     mapped: Array = ends[:, :2] / ends[:, 2:]
     return mapped

@@ -41,7 +41,7 @@ CORNERS = 3
 
 
 def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
-    """How far, in pixels, the target moved from one view to the other: the median length of its points' displacements.
+    """Compute by how many px the target moved from one view to another: the median length of its points' displacements.
 
     The median forgives points that a laser stripe disturbs in one of the pictures. A target that looks the same turned
     round (:class:`BlackSquare`, :class:`CircleGrid`) may be numbered differently in the two views, so points are paired
@@ -64,7 +64,7 @@ def camera_shift(view_a: TargetView, view_b: TargetView) -> float:
 
 
 def followed_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """How far, in pixels, the whole target of `view` moved from picture `before` to `after`, each mark followed alone.
+    """Measure by how many px the target of `view` moved from picture `before` to `after`, each mark followed alone.
 
     The median length of the marks' displacements (Lucas & Kanade, in the pyramid of J.-Y. Bouguet, 2000): far quicker
     than finding the target anew, for movements of a few pixels. A grid that moved by just its spacing looks unmoved
@@ -93,7 +93,7 @@ def _followed(one: Picture, other: Picture, points: NDArray[np.float32], window:
 
 
 def picture_shift(view: TargetView, before: Picture, after: Picture) -> float | None:
-    """How far, in pixels, the target of `view` moved from picture `before` to `after`, without finding it in `after`.
+    """Measure by how many px the target of `view` moved from picture `before` to `after`; it is not found in `after`.
 
     The shift under which most pixels at the target's edges look alike in both pictures, refined by robust least
     squares on the slopes (B. D. Lucas, T. Kanade, An iterative image registration technique, IJCAI 1981) together with

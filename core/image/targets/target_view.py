@@ -14,7 +14,7 @@ from core.model.arrays import Array, frozen_array, set_field
 
 @dataclass(frozen=True, eq=False, slots=True)
 class TargetView:
-    """The target's marked points found in one picture.
+    """View of a target: its marked points found in one picture.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class TargetView:
             set_field(self, "covariance", frozen_array(self.covariance, (2 * count, 2 * count), "covariance"))
 
     def whitened(self, values: Array) -> Array:
-        """Pixels `values` (N, 2, …) of the points as 2N independent numbers of unit variance, (2N, …)."""
+        """Whiten pixel `values` (N, 2, …) of the points to 2N independent numbers of unit variance, (2N, …)."""
         stacked = values.reshape(2 * len(self.uv), *values.shape[2:])
         if self.covariance is None:
             scale = np.repeat(self.sigma, 2).reshape(-1, *(1,) * (stacked.ndim - 1))
@@ -62,11 +62,11 @@ class TargetView:
 
 
 class TargetNotFound(InputError):
-    """The picture does not show the whole target; the message tells what it shows instead."""
+    """Error that a picture does not show the whole target; the message tells what it shows instead."""
 
 
 class OtherBoard(TargetNotFound):
-    """The picture shows the whole of a board of another size, `counted` columns and rows: all its ends are seen.
+    """Error that a picture shows the whole of a board of another size, `counted` columns and rows.
 
     Both are counted as the target that was looked for counts them: corners, squares or circles.
     """

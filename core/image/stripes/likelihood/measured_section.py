@@ -82,7 +82,7 @@ def add_departures(
     part: tuple[int, int, int],
     sums: Array,
 ) -> None:
-    """Add what a stripe departs from its Gaussian to `sums` (GROUPS, 3, BINS): Σ A·r, Σ A², Σ A²·d.
+    """Add to `sums` (GROUPS, 3, BINS) how a stripe departs from its Gaussian: Σ A·r, Σ A², Σ A²·d.
 
     Parameters
     ----------
@@ -129,7 +129,7 @@ def add_departures(
 
 @compiled()
 def departs(sums: Array) -> bool:
-    """Whether stripes surely depart from a Gaussian, evenly on both sides, by `sums` (GROUPS, 3, BINS)."""
+    """Whether stripes surely depart from a Gaussian, alike on both sides, by `sums` (GROUPS, 3, BINS)."""
     found = 0
     for k in range(round((_SEEN - _JUDGED) * _BINS_PER_SIGMA), BINS // 2):
         light, weight = 0.0, 0.0
@@ -149,7 +149,7 @@ def departs(sums: Array) -> bool:
 
 
 class Surroundings(NamedTuple):
-    """What a section is seen in: background in grey levels, σ of the stripe in px, noise, speckle, filter σ in px."""
+    """Surroundings of a section: background in grey levels, σ of the stripe in px, noise, speckle, filter σ in px."""
 
     background: float
     width_px: float
@@ -173,7 +173,7 @@ class Weights:
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """A section f(d) and its push −f'(d) at the places of the tables (PLACES,), seen in these `surroundings`.
+    """Section f(d) of a stripe and its push −f'(d) at the places of the tables (PLACES,), seen in these `surroundings`.
 
     It is the mean of both sides: d = 0 is its middle.
     """
@@ -184,11 +184,11 @@ class Section:
     _known: dict[int, Weights] = field(default_factory=dict)
 
     def weights(self, height: float) -> Weights:
-        """The optimal weights for a section of this height in grey levels, within a factor of 1.16."""
+        """Compute the optimal weights for a section of this height in grey levels, within a factor of 1.16."""
         return self._of_level(round(math.log(max(height, 1e-3)) / _HEIGHT_CLASS))
 
     def weights_along(self, height: Array) -> tuple[NDArray[np.int64], list[Weights]]:
-        """Which of a few weights suits each of some heights (N,), and these."""
+        """Choose for each of some heights (N,) one of a few weights; returns its index, and these weights."""
         levels, kind = np.unique(np.round(np.log(np.maximum(height, 1e-3)) / _HEIGHT_CLASS), return_inverse=True)
         return kind.astype(np.int64), [self._of_level(int(level)) for level in levels]
 
@@ -198,13 +198,13 @@ class Section:
         return self._known[level]
 
     def variance_by(self, psi: Array, height: float) -> float:
-        """Variance of the place in px² for 1 px of stripe, if pixels are weighted by `psi` (S,)."""
+        """Compute the variance of the place in px² for 1 px of stripe, if pixels are weighted by `psi` (S,)."""
         derivative, covariance, strip = self._model(height)
         return float(psi @ covariance @ psi) / (strip * float(psi @ derivative)) ** 2
 
     @property
     def tables(self) -> NDArray[np.float32]:
-        """Value and push (2, PLACES)."""
+        """Value and push at the places of the tables, (2, PLACES)."""
         return np.stack([self.value, self.push]).astype(np.float32)
 
     def _model(self, height: float) -> tuple[Array, Array, float]:
@@ -243,14 +243,14 @@ class Section:
 
 
 def gaussian_section(surroundings: Surroundings) -> Section:
-    """The Gaussian that sections are compared with."""
+    """Make the Gaussian section that others are compared with."""
     d = _places()
     value = np.exp(-0.5 * d * d)
     return Section(value, d * value, surroundings)
 
 
 def section_from(sums: Array, surroundings: Surroundings) -> Section | None:
-    """The section that `sums` (3, BINS) of `add_departures` show; None if too little of it is seen."""
+    """Compute the section from `sums` (3, BINS) of `add_departures`; None if too little of it is seen."""
     light, weight, moment = sums
     judged = np.abs(np.arange(BINS) + 0.5 - BINS / 2) < _JUDGED * _BINS_PER_SIGMA
     if np.count_nonzero(weight[judged]) < _LEAST_SEEN * np.count_nonzero(judged):

@@ -79,7 +79,7 @@ class Refined(NamedTuple):
 
 
 class StripeModel(NamedTuple):
-    """A stripe as it is known before its refinement, at each of N points.
+    """Stripe before its refinement, at each of N points.
 
     Parameters
     ----------
@@ -110,7 +110,7 @@ def refine(
     speckle: Speckle,
     filter_px: float,
 ) -> Refined:
-    """Move the points of a stripe to its likeliest place.
+    """Move the points of a stripe to its likeliest place, by the pixels of each cut.
 
     Parameters
     ----------

@@ -25,14 +25,14 @@ _ROUNDING_PX = 3.0
 
 
 def longest_hole_px(filter_px: float) -> float:
-    """Longest distance in px between neighbouring points of one line, where nothing hides it."""
+    """Compute the longest distance in px between neighbouring points of one line that nothing hides."""
     return HOLD * filter_px + _ROUNDING_PX
 
 
 def unbroken_parts(
     lines: Sequence[Array], keep: Sequence[NDArray[np.bool_]], own: int, filter_px: float, state: NDArray[np.uint8]
 ) -> list[NDArray[np.intp] | slice]:
-    """Choose the points that are to be kept of the line `own` among `lines`, those of each unbroken part on their own.
+    """Select the points to keep of the line `own` among `lines`, those of each unbroken part together.
 
     `lines` are the runs (N, ≥ 4) of all lines of the picture, `keep` (N,) which of their points are to be kept; the
     others may cross this one. `state` (H, W) are the bits of the picture's pixels.

@@ -52,7 +52,7 @@ class _Gap:
 
 
 def joined_at_crossings(pieces: list[Piece], filter_px: float) -> tuple[list[Piece], list[Array]]:
-    """Join the pieces of one line on either side of a crossing; with each, the bridges across its gaps.
+    """Join the pieces of one line on either side of a crossing; also give the bridges across the gaps of each.
 
     Bridges are points (M, 4) u, v, n_u, n_v in no order, none for a piece that was whole.
     """
@@ -152,7 +152,10 @@ def _crosses_light(gap: _Gap, gaps: list[_Gap], pieces: list[Piece], hole: float
 
 
 def crosses(bridge: Array, line: Array, hole: float) -> bool:
-    """Whether a line (M, ≥ 2) passes from one side of a `bridge`, nearly straight, to the other; `hole` px are none."""
+    """Whether a line (M, ≥ 2) passes from one side of a nearly straight `bridge` to the other.
+
+    Gaps up to `hole` px are passed.
+    """
     start, chord = bridge[0, :2], bridge[-1, :2] - bridge[0, :2]
     x = line[:, :2] - start
     along, across = x @ chord / (chord @ chord), x @ np.array([chord[1], -chord[0]])

@@ -17,7 +17,9 @@ _BOXED = 32  # points that share a bounding box; chosen by speed
 
 
 def distances_to_neighbours(runs: list[Array], bridges: list[Array], touching: float, reach: float) -> list[Array]:
-    """Distance in px (N,) of each point of each run from another run beside or across it; infinite beyond `reach`.
+    """Compute the distance in px (N,) of each point of each run from another run beside or across it.
+
+    Infinite beyond `reach`.
 
     Another run that goes on where this one ends (ahead of it, not beside it) does not count, unless it is nearer than
     `touching` px: so near, no direction can be told. `bridges` are the curves across the gaps of each run (M, 4), empty

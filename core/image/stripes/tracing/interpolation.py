@@ -14,7 +14,7 @@ _HOLE_PX = 0.6  # more than usual from one point to the next: what lies between 
 
 @compiled(inline=True)
 def tracing_step(filter_px: float) -> int:
-    """Largest distance in px, a whole number, of points that tell all a filter of σ `filter_px` leaves of a line."""
+    """Compute the largest whole distance in px of points that keep all a filter of σ `filter_px` leaves of a line."""
     return max(1, int(filter_px / _FILTER_PER_STEP))
 
 
@@ -54,7 +54,9 @@ def with_points_between(run: Array, stride: int) -> Array:
 
 @inlined()
 def cubic_weights(stride: int) -> Array:
-    """Lagrange's weights (stride, 4) of four points for the place k/stride of the way from the second to the third."""
+    """Compute Lagrange's weights (stride, 4) of four points for places k/stride of the way from the second to the
+    third.
+    """
     weights = new_table(stride, 4)
     for k in range(stride):
         x = k / stride

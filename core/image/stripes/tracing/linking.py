@@ -52,7 +52,7 @@ holds it."""
 
 
 class PointGrid(NamedTuple):
-    """Points sorted into cells of the picture, as lists linked from each cell's last point; counted from 1 on.
+    """Grid of points by cells of the picture, as lists linked from each cell's last point; counted from 1 on.
 
     `last` (rows, columns) is the last point of each cell, `before` (N,) the point before each one in its cell.
     """
@@ -82,7 +82,7 @@ class _Traced(NamedTuple):
 
 @dataclass(frozen=True, slots=True)
 class Hysteresis:
-    """Thresholds as heights of a stripe in grey levels, and how far a run goes on without seeing it, in px.
+    """Thresholds as heights of a stripe in grey levels, and the length in px that a run may continue unseen.
 
     `noise_grey` is the scatter of a pixel in grey levels.
     """
@@ -276,14 +276,14 @@ def _follow(
 
 @inlined()
 def empty_point_grid(shape: tuple[int, int], reach: int, count: int) -> PointGrid:
-    """No points yet: for a picture of (height, width) px, `count` points and distances up to `reach` px."""
+    """Make an empty grid for a picture of (height, width) px, `count` points and distances up to `reach` px."""
     cell = _cell(reach)
     return PointGrid(np.zeros((shape[0] // cell + 1, shape[1] // cell + 1), np.int32), np.empty(count, np.int32))
 
 
 @inlined()
 def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
-    """The same points, with room for `count`."""
+    """Enlarge a grid to make room for `count` points."""
     before = np.empty(count, np.int32)
     for k in range(len(grid.before)):
         before[k] = grid.before[k]
@@ -292,7 +292,7 @@ def enlarged_point_grid(grid: PointGrid, count: int) -> PointGrid:
 
 @inlined()
 def add_point(grid: PointGrid, points: Array, number: int, reach: int) -> None:
-    """Add the point of this `number` among the `points` (N, ≥ 2)."""
+    """Add the point number `number` of the `points` (N, ≥ 2) to the grid."""
     last, before = grid
     cell = _cell(reach)
     row, column = int(points[number, 1] + 0.5) // cell, int(points[number, 0] + 0.5) // cell

@@ -29,7 +29,7 @@ COLUMNS_AT_ONCE = 32
 
 
 class Detector(NamedTuple):
-    """`kernel_radius` and `kernel_table` of a filter, and (3 · COLUMNS_AT_ONCE,) numbers to work in."""
+    """Line detector: `kernel_radius` and `kernel_table` of a filter, and (3 · COLUMNS_AT_ONCE,) numbers to work in."""
 
     radius: int
     kernels: NDArray[np.float32]
@@ -37,12 +37,12 @@ class Detector(NamedTuple):
 
 
 def kernel_radius(filter_px: float) -> int:
-    """Half width of the kernels in pixels."""
+    """Compute the half width of the kernels in pixels."""
     return math.ceil(KERNEL_REACH * filter_px)
 
 
 def ridge_response(amplitude: float, stripe_px: float, filter_px: float) -> float:
-    """Second derivative across a Gaussian stripe of σ `stripe_px` after the filter, at its crest (sign reversed)."""
+    """Compute the second derivative (sign reversed) at the crest of a Gaussian stripe of σ `stripe_px`, filtered."""
     return float(amplitude * stripe_px / math.hypot(stripe_px, filter_px) ** 3)
 
 
