@@ -14,7 +14,7 @@ Array = NDArray[np.float64]
 
 
 def frozen_array(values: ArrayLike, shape: tuple[int | None, ...], name: str) -> Array:
-    """A read-only float64 copy of `values`, its shape checked (None: any length).
+    """Make a read-only float64 copy of `values`, its shape checked (None: any length).
 
     Raises
     ------
@@ -45,6 +45,6 @@ def set_field(instance: object, name: str, value: Any) -> None:
 
 
 def runs_of(chosen: NDArray[np.bool_]) -> list[tuple[int, int]]:
-    """First index, and one past the last, of every unbroken run of True in `chosen` (N,)."""
+    """Find first index, and one past the last, of every unbroken run of True in `chosen` (N,)."""
     edges = np.flatnonzero(np.diff(np.concatenate([[False], chosen, [False]]).astype(np.int8)))
     return [(int(a), int(b)) for a, b in edges.reshape(-1, 2)]

@@ -92,7 +92,7 @@ class Camera:
         return float(np.sqrt(self.matrix[0, 0] * self.matrix[1, 1]))
 
     def scaled(self, factor: float) -> Camera:
-        """The same camera with its pictures resized by `factor`, pixel edges kept in place."""
+        """Scale the camera to pictures resized by `factor`, pixel edges kept in place."""
         width, height = self.image_size
         matrix = self.matrix.copy()
         matrix[:2] *= factor
@@ -109,12 +109,12 @@ class Camera:
         return self.project(pose_cam_target.apply(points))
 
     def pixels(self, xy: ArrayLike) -> Array:
-        """Image points (N, 2) in pixels of undistorted ray coordinates `xy` (N, 2)."""
+        """Compute image points (N, 2) in pixels of undistorted ray coordinates `xy` (N, 2)."""
         distorted = self.distort(np.asarray(xy, dtype=np.float64))
         return distorted @ self.matrix[:2, :2].T + self.matrix[:2, 2]
 
     def distort(self, xy: Array) -> Array:
-        """Distorted ray coordinates (N, 2) of undistorted ones (N, 2)."""
+        """Distort ray coordinates `xy` (N, 2)."""
         k1, k2, p1, p2, k3 = self.distortion
         x, y = xy[:, 0], xy[:, 1]
         r2 = x * x + y * y
@@ -127,7 +127,7 @@ class Camera:
         )
 
     def distort_jacobian(self, xy: Array) -> Array:
-        """∂(distorted)/∂(undistorted) at `xy` (N, 2): (N, 2, 2)."""
+        """Compute ∂(distorted)/∂(undistorted) at `xy` (N, 2): (N, 2, 2)."""
         k1, k2, p1, p2, k3 = self.distortion
         x, y = xy[:, 0], xy[:, 1]
         r2 = x * x + y * y
@@ -141,7 +141,7 @@ class Camera:
         return jacobian
 
     def undistort(self, uv: ArrayLike) -> Array:
-        """Undistorted ray coordinates (N, 2) of image points `uv` (N, 2), by Newton's method to 1e-12.
+        """Compute undistorted ray coordinates (N, 2) of image points `uv` (N, 2), by Newton's method to 1e-12.
 
         A point outside the region where the distortion is one-to-one does not converge; it comes back as NaN.
         """
@@ -152,17 +152,20 @@ class Camera:
         return np.asarray(undistorted(distorted, self.distortion))
 
     def rays(self, uv: ArrayLike) -> Array:
-        """Rays (N, 3), r = (x, y, 1), of image points `uv` (N, 2) in pixels."""
+        """Compute rays (N, 3), r = (x, y, 1), of image points `uv` (N, 2) in pixels."""
         xy = self.undistort(uv)
         return np.column_stack([xy, np.ones(len(xy))])
 
     def ray_jacobian(self, rays: Array) -> Array:
-        """∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
+        """Compute ∂(x, y)/∂(u, v) at `rays` (N, 3): (N, 2, 2) in 1/pixel."""
         forward: Array = self.matrix[:2, :2] @ self.distort_jacobian(rays[:, :2])
         (a, b), (c, d) = np.moveaxis(forward, 0, 2)
         inverse = np.array([[d, -b], [-c, a]]) / (a * d - b * c)
         return np.ascontiguousarray(np.moveaxis(inverse, 2, 0))
 
     def inverse_depth_slopes(self, pi: Array, rays: Array, directions: Array) -> Array:
-        """∂(1/z) (N,) in 1/(mm px) of light in the plane `pi` (3,) seen at `rays`, along `directions` (N, 2) of uv."""
+        """Compute ∂(1/z) (N,) in 1/(mm px) along `directions` (N, 2) of uv.
+
+        Of light in the plane `pi` (3,) at `rays`.
+        """
         return np.asarray(np.einsum("i,nij,nj->n", pi[:2], self.ray_jacobian(rays), directions), dtype=np.float64)

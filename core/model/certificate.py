@@ -26,9 +26,9 @@ class Certificate:
 
     @property
     def stated(self) -> bool:
-        """Whether anything of it is."""
+        """Whether anything is stated in the certificate."""
         return self != Certificate()
 
     def lapsed(self, day: date) -> bool:
-        """Whether it did not hold any more on this day."""
+        """Whether the certificate has expired by this day."""
         return self.due is not None and day > self.due

@@ -50,17 +50,20 @@ class Fan:
 
     @property
     def pis(self) -> Array:
-        """All π stacked, (N, 3) in 1/mm."""
+        """Planes π of all lines stacked, (N, 3) in 1/mm."""
         return np.array([plane.pi for plane in self.planes])
 
     def pis_at(self, line: NDArray[np.int64], rays: Array) -> Array:
-        """π (M, 3) of planes that meet `rays` (M, 3) at the depth of the light of `line` (M,): its own, if not bent."""
+        """Compute π (M, 3) of planes that meet `rays` (M, 3) at the depth of the light of `line` (M,).
+
+        Its own if not bent.
+        """
         pis: Array = self.pis[line]
         return pis if self.bends is None else bent_pis(pis, self.bends[line], rays)
 
     @property
     def angles(self) -> tuple[float, ...]:
-        """Angles between neighbouring planes, in rad; N − 1 of them."""
+        """Angles between neighbouring planes in rad, N − 1 of them."""
         return tuple(angle_between(a, b) for a, b in pairwise(self.planes))
 
     @property
@@ -90,7 +93,7 @@ class Fan:
 
 
 def bent_pis(pis: Array, bends: Array, rays: Array) -> Array:
-    """π (M, 3) of planes that meet `rays` (M, 3) where light does that is XᵀQX mm off `pis` (M, 3) at X.
+    """Compute π (M, 3) of planes that meet `rays` (M, 3) where light that is XᵀQX mm off `pis` (M, 3) at X meets them.
 
     `bends` (M, 3, 3) are the Q. On X = z r the light has π·r − 1/z = ‖π‖ z rᵀQr; with z of the plane, to first order.
     """

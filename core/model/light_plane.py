@@ -18,7 +18,7 @@ from core.model.arrays import Array, frozen_array, set_field
 
 @dataclass(frozen=True, eq=False, slots=True)
 class LightPlane:
-    """The plane π·X = 1, with `pi` (3,) in 1/mm, in the camera frame."""
+    """Light plane π·X = 1, with `pi` (3,) in 1/mm, in the camera frame."""
 
     pi: Array
 
@@ -29,7 +29,7 @@ class LightPlane:
 
     @classmethod
     def from_normal(cls, normal: ArrayLike, d_mm: float) -> LightPlane:
-        """The plane normal·X = d_mm."""
+        """Make the plane normal·X = d_mm."""
         return cls(np.asarray(normal, dtype=np.float64) / d_mm)
 
     @property
@@ -44,25 +44,25 @@ class LightPlane:
         return float(1 / np.linalg.norm(self.pi))
 
     def depths(self, rays: ArrayLike) -> Array:
-        """Depths z (N,) in mm at which `rays` (N, 3) meet the plane; negative or infinite where they do not."""
+        """Compute depths z (N,) in mm at which `rays` (N, 3) meet the plane; negative or infinite where they do not."""
         with np.errstate(divide="ignore"):
             depths: Array = 1 / (np.asarray(rays, dtype=np.float64) @ self.pi)
         return depths
 
     def points(self, rays: ArrayLike) -> Array:
-        """Points (N, 3) in mm where `rays` (N, 3) meet the plane (triangulation)."""
+        """Compute points (N, 3) in mm where `rays` (N, 3) meet the plane (triangulation)."""
         directions = np.asarray(rays, dtype=np.float64)
         points: Array = directions * self.depths(directions)[:, None]
         return points
 
     def distances(self, points: ArrayLike) -> Array:
-        """Signed distances (N,) in mm of `points` (N, 3); positive on the side away from the camera."""
+        """Compute signed distances (N,) in mm of `points` (N, 3); positive on the side away from the camera."""
         signed: Array = np.asarray(points, dtype=np.float64) @ self.normal - self.d_mm
         return signed
 
 
 def angle_between(a: LightPlane, b: LightPlane) -> float:
-    """Angle between two planes in rad, 0 to π/2."""
+    """Compute the angle between two planes in rad, 0 to π/2."""
     sine = np.linalg.norm(np.cross(a.normal, b.normal))
     cosine = abs(a.normal @ b.normal)
     return float(np.arctan2(sine, cosine))

@@ -26,12 +26,12 @@ class Pose:
 
     @classmethod
     def identity(cls) -> Pose:
-        """The identity."""
+        """Make the identity."""
         return cls(np.eye(3), np.zeros(3))
 
     @classmethod
     def from_vector(cls, vector: ArrayLike) -> Pose:
-        """From six numbers: rotation vector in rad, translation in mm."""
+        """Make a pose of six numbers: rotation vector in rad, translation in mm."""
         from scipy.spatial.transform import Rotation
 
         six = np.asarray(vector, dtype=np.float64)
@@ -39,7 +39,7 @@ class Pose:
 
     @property
     def vector(self) -> Array:
-        """Six numbers: rotation vector in rad, translation in mm."""
+        """Rotation vector in rad and translation in mm, six numbers."""
         from scipy.spatial.transform import Rotation
 
         return np.concatenate([Rotation.from_matrix(self.rotation).as_rotvec(), self.translation])
@@ -50,7 +50,7 @@ class Pose:
         return moved
 
     def inverse(self) -> Pose:
-        """The inverse motion."""
+        """Invert the motion."""
         return Pose(self.rotation.T, -self.rotation.T @ self.translation)
 
     def __matmul__(self, other: Pose) -> Pose:

@@ -21,6 +21,6 @@ def inverse_of(matrix: Array) -> Array:
 
 
 def inverse_by(lower: Array) -> Array:
-    """The same (N, N) by the `lower` (N, N) Cholesky factor; what stands above its diagonal does not count."""
+    """Invert a matrix (N, N) by its `lower` (N, N) Cholesky factor; values above the diagonal are ignored."""
     inverse = np.tril(dpotri(lower, lower=1)[0])
     return np.asarray(inverse + np.tril(inverse, -1).T)

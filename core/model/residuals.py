@@ -74,7 +74,7 @@ class Residuals:
 
 @dataclass(frozen=True, eq=False, slots=True)
 class Judgement:
-    """What residuals say of their fit.
+    """Judgement of residuals against their stated uncertainty.
 
     Parameters
     ----------
@@ -119,7 +119,7 @@ class Judgement:
 
     @property
     def times(self) -> float:
-        """How many times as large as stated the residuals are, √(χ²/N)."""
+        """Ratio of the residuals to their stated size, √(χ²/N)."""
         return self.rms / max(self.expected, 1e-300)
 
     @property
@@ -129,7 +129,7 @@ class Judgement:
 
     @property
     def together(self) -> float:
-        """How many neighbours err as one: 1 where each errs on its own."""
+        """Number of neighbours that err together: 1 where each errs on its own."""
         return self.run_length / _INDEPENDENT_RUN
 
 
@@ -164,7 +164,7 @@ def judge_residuals(residuals: Residuals) -> Judgement:
 def of_vectors(
     values: Array, expected: Array, group: NDArray[np.intp], cell: NDArray[np.intp], cells: int
 ) -> Residuals:
-    """Both coordinates of residual vectors `values` (N, 2), the first in `cells` places of its own, then the second.
+    """Make residuals of both coordinates of vectors `values` (N, 2); the second coordinate has `cells` of its own.
 
     `expected` (N,) is the standard uncertainty of each coordinate; else as :class:`Residuals`.
     """
@@ -175,7 +175,7 @@ def of_vectors(
 
 @dataclass(frozen=True, eq=False, slots=True)
 class SharedErrors:
-    """What N residuals have in common, and what the fit has taken out of them.
+    """Errors that N residuals share, and the unknowns that the fit has taken out of them.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ class SharedErrors:
     information_of: Callable[[Array, Array], Array] | None = None
 
     def information(self, others: Array, weight: Array) -> Array:
-        """Aᵀ W A (q + S, q + S) of A = [`others` (N, q), `shared`]; `weight` (N,) is the diagonal of W."""
+        """Compute Aᵀ W A (q + S, q + S) of A = [`others` (N, q), `shared`]; `weight` (N,) is the diagonal of W."""
         if self.information_of is not None:
             return self.information_of(others, weight)
         columns = np.hstack([others, self.shared])
@@ -330,7 +330,7 @@ def along_line(place: Array, cells: int) -> NDArray[np.intp]:
 
 
 def without_line(place: Array, values: Array) -> Array:
-    """Residuals (N,) along a line less their own offset and slope by `place` (N,): how the line is bent."""
+    """Subtract from residuals (N,) along a line their own offset and slope by `place` (N,), to show how it is bent."""
     off = place - place.mean()
     slope = float(off @ values) / max(float(off @ off), 1e-300)
     return np.asarray(values - values.mean() - slope * off, dtype=np.float64)

@@ -29,7 +29,7 @@ MAD_TO_SD = 1.4826
 
 
 def huber_weights(residuals: Array, limit: float = HUBER) -> Array:
-    """Huber's weights: 1 up to `limit`, beyond it limit / |residual|, so that no residual pulls harder than that.
+    """Compute Huber's weights, 1 up to `limit` and limit / |residual| beyond; no residual pulls harder than that.
 
     Parameters
     ----------
@@ -42,13 +42,16 @@ def huber_weights(residuals: Array, limit: float = HUBER) -> Array:
 
 
 def tukey_weights(residuals: Array, limit: float | Array = TUKEY) -> Array:
-    """Tukey's biweight, (1 − (residual / limit)²)² up to `limit` and 0 beyond; of any shape, both in the same unit."""
+    """Compute Tukey's biweight, (1 − (residual / limit)²)² up to `limit` and 0 beyond.
+
+    Of any shape, both in one unit.
+    """
     return np.asarray(np.clip(1 - (residuals / limit) ** 2, 0.0, None) ** 2)
 
 
 @dataclass(frozen=True, slots=True)
 class Schedule:
-    """How often observations are weighted anew, by what weights, and when that ends.
+    """Schedule of iterative reweighting: the kinds of weights, the number of rounds, and the stop.
 
     Parameters
     ----------
@@ -75,14 +78,14 @@ class Schedule:
     counts_from: int = 0
 
     def rejects(self, round_: int, settled: int) -> bool:
-        """Whether a round is by Tukey's weights, after so many that have settled."""
+        """Whether a round uses Tukey's weights, after so many that have settled."""
         by_huber = self.rounds if self.huber is None else self.huber
         return round_ >= by_huber or (self.early and settled > 0)
 
 
 @dataclass(frozen=True, slots=True)
 class Weigh:
-    """The weights of one `round` of a schedule, counted from 0; `rejects`: by Tukey's biweight."""
+    """Weights of one `round` of a schedule, counted from 0; `rejects`: by Tukey's biweight."""
 
     schedule: Schedule
     round: int
@@ -139,12 +142,15 @@ def irls(
 
 
 def mad_sd(residuals: Array) -> float:
-    """Standard deviation of residuals about zero by their median absolute value: outliers up to a half do not count."""
+    """Estimate the standard deviation of residuals about zero by their median absolute value.
+
+    Up to half may be outliers.
+    """
     return MAD_TO_SD * median(np.abs(residuals))
 
 
 def median(values: Array) -> float:
-    """Median of values of any shape, NaN if one is or there are none.
+    """Compute the median of values of any shape, NaN if one is or there are none.
 
     That of NumPy to the last bit, which takes 30 µs to begin. Compiled loops have `core.model.small_arrays.median_of`.
     """

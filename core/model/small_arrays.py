@@ -17,31 +17,31 @@ Index = NDArray[np.int64]
 
 @inlined()
 def new_row(count: int) -> Array:
-    """An array (count,) that is still to be filled."""
+    """Allocate an array (count,) without values."""
     return np.empty(count)
 
 
 @inlined()
 def new_table(rows: int, columns: int) -> Array:
-    """An array (rows, columns) that is still to be filled."""
+    """Allocate an array (rows, columns) without values."""
     return np.empty((rows, columns))
 
 
 @inlined()
 def zero_table(rows: int, columns: int) -> Array:
-    """An array (rows, columns) of zeros."""
+    """Make an array (rows, columns) of zeros."""
     return np.zeros((rows, columns))
 
 
 @inlined()
 def new_single_table(rows: int, columns: int) -> NDArray[np.float32]:
-    """An array (rows, columns) of single precision that is still to be filled."""
+    """Allocate an array (rows, columns) of single precision without values."""
     return np.empty((rows, columns), np.float32)
 
 
 @inlined()
 def row_of(count: int, value: float) -> Array:
-    """An array (count,) of one value."""
+    """Make an array (count,) of one value."""
     row = np.empty(count)
     for k in range(count):
         row[k] = value
@@ -50,19 +50,19 @@ def row_of(count: int, value: float) -> Array:
 
 @inlined()
 def new_indices(count: int) -> Index:
-    """An array (count,) of whole numbers that is still to be filled."""
+    """Allocate an array (count,) of whole numbers without values."""
     return np.empty(count, np.int64)
 
 
 @inlined()
 def new_index_table(rows: int, columns: int) -> Index:
-    """An array (rows, columns) of whole numbers that is still to be filled."""
+    """Allocate an array (rows, columns) of whole numbers without values."""
     return np.empty((rows, columns), np.int64)
 
 
 @inlined()
 def indices_of(count: int, value: int) -> Index:
-    """An array (count,) of one whole number."""
+    """Make an array (count,) of one whole number."""
     row = np.empty(count, np.int64)
     for k in range(count):
         row[k] = value
@@ -71,13 +71,13 @@ def indices_of(count: int, value: int) -> Index:
 
 @inlined()
 def new_flags(count: int) -> NDArray[np.bool_]:
-    """An array (count,) of False."""
+    """Make an array (count,) of False."""
     return np.zeros(count, np.bool_)
 
 
 @inlined()
 def doubled_index_table(table: Index) -> Index:
-    """`table` (N, C) with room for as many rows again."""
+    """Copy `table` (N, C) into one with twice as many rows."""
     rows, columns = table.shape
     larger = np.empty((2 * rows, columns), np.int64)
     for i in range(rows):
@@ -88,7 +88,7 @@ def doubled_index_table(table: Index) -> Index:
 
 @inlined()
 def doubled_indices(row: Index) -> Index:
-    """`row` (N,) with room for as many again."""
+    """Copy `row` (N,) into one twice as long."""
     larger = np.empty(2 * len(row), np.int64)
     for k in range(len(row)):
         larger[k] = row[k]
@@ -97,7 +97,7 @@ def doubled_indices(row: Index) -> Index:
 
 @inlined()
 def first_rows(table: Array, count: int) -> Array:
-    """A copy of the first rows of a `table` (N, C)."""
+    """Copy the first rows of a `table` (N, C)."""
     copy = np.empty((count, table.shape[1]))
     for i in range(count):
         for k in range(table.shape[1]):
@@ -107,7 +107,7 @@ def first_rows(table: Array, count: int) -> Array:
 
 @inlined()
 def column(table: Array, k: int) -> Array:
-    """A copy of column `k` of a `table` (N, C)."""
+    """Copy column `k` of a `table` (N, C)."""
     copy = np.empty(len(table))
     for i in range(len(table)):
         copy[i] = table[i, k]
@@ -116,7 +116,7 @@ def column(table: Array, k: int) -> Array:
 
 @inlined()
 def mean_of(table: Array, k: int) -> float:
-    """Mean of column `k` of a `table` (N, C)."""
+    """Compute the mean of column `k` of a `table` (N, C)."""
     total = 0.0
     for i in range(len(table)):
         total += table[i, k]
@@ -125,7 +125,7 @@ def mean_of(table: Array, k: int) -> float:
 
 @inlined()
 def backwards(row: Array) -> Array:
-    """A copy of `row` (N,) from its end."""
+    """Copy `row` (N,) in reverse order."""
     copy = np.empty(len(row))
     for k in range(len(row)):
         copy[k] = row[len(row) - 1 - k]
@@ -134,7 +134,7 @@ def backwards(row: Array) -> Array:
 
 @inlined()
 def smallest(values: Array, k: int) -> float:
-    """The value that `k` of the `values` (N,) are not above; they change their places. Hoare's selection.
+    """Find the value that `k` of the `values` (N,) do not exceed; `values` are reordered. Hoare's selection.
 
     Hoare, C. A. R., Algorithm 65: Find, Communications of the ACM 4 (1961), doi:10.1145/366622.366647.
     """
@@ -159,7 +159,7 @@ def smallest(values: Array, k: int) -> float:
 
 @inlined()
 def median_of(values: Array, first: int, behind: int) -> float:
-    """Median of the `values` (N,) from `first` to before `behind`, at least one."""
+    """Compute the median of the `values` (N,) from `first` to before `behind`, at least one."""
     count = behind - first
     copy = np.empty(count)
     for k in range(count):
@@ -186,7 +186,7 @@ def sort(values: Array) -> None:
 
 @inlined()
 def first_not_below(values: Array, limit: float) -> int:
-    """How many of the rising `values` (N,) are below the limit."""
+    """Count the values of the rising `values` (N,) that are below the limit."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -199,7 +199,7 @@ def first_not_below(values: Array, limit: float) -> int:
 
 @inlined()
 def first_above(values: Array, limit: float) -> int:
-    """How many of the rising `values` (N,) are not above the limit."""
+    """Count the values of the rising `values` (N,) that are not above the limit."""
     low, high = 0, len(values)
     while low < high:
         middle = (low + high) // 2
@@ -212,7 +212,9 @@ def first_above(values: Array, limit: float) -> int:
 
 @inlined()
 def invert(matrix: Array, inverse: Array, size: int) -> None:
-    """Put into `inverse` that of the first `size` rows and columns of a positive definite `matrix`, which is lost.
+    """Write into `inverse` that of the first `size` rows and columns of a positive definite `matrix`.
+
+    This is overwritten.
 
     Gauss and Jordan's elimination, which needs no search for pivots where a matrix is positive definite.
     """
